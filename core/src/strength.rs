@@ -1,0 +1,244 @@
+//! What a whole joint can carry: the facets of its law integrated over its height.
+//!
+//! With forces (N_0, N_1) at the joint's ends and T along it (N = N_0 + N_1, M = (N_1 − N_0) h/2),
+//! A = h × width, tension bound F_t = f_t A and crushing bound F_c = f_c A:
+//! - opening: N_0 ≥ −F_t/2 and N_1 ≥ −F_t/2, which is |M| ≤ (N + F_t) h/2;
+//! - crushing: (N + F_t)² ≤ (F_c + F_t)(2 N_i + F_t) at both ends i, which is the rectangular stress
+//!   block |M| ≤ (N + F_t)(F_c − N) h / (2 (F_c + F_t));
+//! - sliding: a_n N + a_t T ≤ b A for each facet with a_t ≠ 0.
+//!
+//! These are exact: with b = 0 the two ends span every distribution; with b > 0 the admissible T of
+//! a distribution of t_n depends on N only as long as each sense of sliding has one facet.
+//! Source of the stress block: Livesley (1978), rectangular block; the cone form is ours.
+
+use crate::interface::{Facet, FacetMode};
+
+/// A linear row over (N_0, N_1, T) [N].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceRow {
+    /// Coefficients of N_0, N_1 and T.
+    pub normal: [f64; 3],
+    /// Right-hand side [N].
+    pub bound: f64,
+    /// What happens when it yields.
+    pub mode: FacetMode,
+}
+
+/// The stress block of a joint that crushes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StressBlock {
+    /// F_t [N].
+    pub tension: f64,
+    /// F_c + F_t [N].
+    pub total: f64,
+}
+
+/// What a joint can carry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointStrength {
+    /// Linear rows: opening (unless a stress block is present, which implies them), sliding.
+    pub rows: Vec<ForceRow>,
+    /// Crushing, where strength is finite: applies to both ends.
+    pub block: Option<StressBlock>,
+}
+
+impl JointStrength {
+    /// Whether rows leave T free of bounds, or fix it to zero.
+    pub fn tangential(&self) -> Tangential {
+        let mut sliding = self.rows.iter().filter(|row| row.normal[2] != 0.0).peekable();
+        if sliding.peek().is_none() {
+            Tangential::Stuck
+        } else if sliding.all(|row| row.normal[0] == 0.0 && row.bound == 0.0) {
+            Tangential::Free
+        } else {
+            Tangential::Friction
+        }
+    }
+}
+
+/// The three ways a joint treats T.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tangential {
+    /// T has no bound: no tangential rows.
+    Stuck,
+    /// T = 0: no tangential variable.
+    Free,
+    /// Bounds on T.
+    Friction,
+}
+
+/// The polygon of admissible tractions of a law: its vertices and the directions in which it is
+/// unbounded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct YieldPolygon {
+    /// Corners [Pa].
+    pub vertices: Vec<[f64; 2]>,
+    /// Extreme rays of the recession cone, unit vectors.
+    pub rays: Vec<[f64; 2]>,
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+impl YieldPolygon {
+    /// The set {t : a·t ≤ b for all facets}, by intersection of all pairs of facets.
+    pub fn of(facets: &[Facet]) -> Self {
+        let scale = facets.iter().map(|f| f.bound.abs()).fold(0.0, f64::max).max(1.0);
+        let length = |a: [f64; 2]| a[0].hypot(a[1]);
+        let mut vertices: Vec<[f64; 2]> = Vec::new();
+        let mut rays: Vec<[f64; 2]> = Vec::new();
+        for (i, f) in facets.iter().enumerate() {
+            for sense in [1.0, -1.0] {
+                let l = length(f.normal);
+                let ray = [-sense * f.normal[1] / l, sense * f.normal[0] / l];
+                let admissible = facets.iter().all(|g| dot(g.normal, ray) <= 1e-12 * length(g.normal));
+                if admissible && !rays.iter().any(|r| (dot(*r, ray) - 1.0).abs() < 1e-12) {
+                    rays.push(ray);
+                }
+            }
+            for g in &facets[i + 1..] {
+                let determinant = f.normal[0] * g.normal[1] - f.normal[1] * g.normal[0];
+                if determinant.abs() <= 1e-12 * length(f.normal) * length(g.normal) {
+                    continue;
+                }
+                let vertex = [
+                    (f.bound * g.normal[1] - g.bound * f.normal[1]) / determinant,
+                    (g.bound * f.normal[0] - f.bound * g.normal[0]) / determinant,
+                ];
+                let tolerance = 1e-12 * scale.max(length(vertex));
+                let inside = facets.iter().all(|h| dot(h.normal, vertex) <= h.bound + tolerance * length(h.normal));
+                if inside && !vertices.iter().any(|v| length([v[0] - vertex[0], v[1] - vertex[1]]) <= tolerance) {
+                    vertices.push(vertex);
+                }
+            }
+        }
+        if vertices.is_empty() {
+            // A half plane or strip has no corner: any point of its boundary stands for it.
+            vertices.extend(facets.iter().take(1).map(|f| {
+                let l2 = dot(f.normal, f.normal);
+                [f.normal[0] * f.bound / l2, f.normal[1] * f.bound / l2]
+            }));
+        }
+        YieldPolygon { vertices, rays }
+    }
+
+    /// The least t_n [Pa], −∞ where unbounded.
+    pub fn least_normal(&self) -> f64 {
+        if self.rays.iter().any(|ray| ray[0] < -1e-12) {
+            return f64::NEG_INFINITY;
+        }
+        self.vertices.iter().map(|v| v[0]).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The greatest t_n [Pa], ∞ where unbounded.
+    pub fn greatest_normal(&self) -> f64 {
+        if self.rays.iter().any(|ray| ray[0] > 1e-12) {
+            return f64::INFINITY;
+        }
+        self.vertices.iter().map(|v| v[0]).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Integrates facets over a joint of area `area` [m²]. An error says what cannot be integrated.
+pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
+    let polygon = YieldPolygon::of(facets);
+    let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
+    if least == f64::NEG_INFINITY {
+        return Err("its tensile strength is unlimited".into());
+    }
+    let tension = -least * area;
+    let mut rows = Vec::new();
+    if greatest.is_infinite() {
+        rows.push(ForceRow { normal: [-1.0, 0.0, 0.0], bound: tension / 2.0, mode: FacetMode::Opening });
+        rows.push(ForceRow { normal: [0.0, -1.0, 0.0], bound: tension / 2.0, mode: FacetMode::Opening });
+    }
+    for sense in [1.0, -1.0] {
+        let on_side: Vec<&Facet> = facets.iter().filter(|f| f.normal[1] * sense > 0.0).collect();
+        // A facet counts where it bounds the polygon in more than a corner.
+        let bounding: Vec<&Facet> = on_side
+            .iter()
+            .copied()
+            .filter(|f| {
+                let touching = |v: &&[f64; 2]| {
+                    dot(f.normal, **v) >= f.bound - 1e-9 * f.bound.abs().max(dot(**v, **v).sqrt())
+                };
+                let corners = polygon.vertices.iter().filter(touching).count();
+                let along = polygon.rays.iter().filter(|r| dot(f.normal, **r).abs() < 1e-12).count();
+                corners + along >= 2
+            })
+            .collect();
+        match bounding[..] {
+            [] if on_side.is_empty() => {}
+            [] | [_] => {
+                let f = bounding.first().copied().unwrap_or(on_side[0]);
+                rows.push(ForceRow {
+                    normal: [f.normal[0], f.normal[0], f.normal[1]],
+                    bound: f.bound * area,
+                    mode: FacetMode::Sliding,
+                });
+            }
+            _ => {
+                return Err(format!(
+                    "{} facets bound sliding in one sense; limit analysis integrates one",
+                    bounding.len()
+                ));
+            }
+        }
+    }
+    let block = greatest.is_finite().then(|| StressBlock { tension, total: (greatest - least) * area });
+    Ok(JointStrength { rows, block })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mohr_coulomb(f_t: f64, f_c: f64, c: f64, mu: f64) -> Vec<Facet> {
+        let [left, right] = Facet::friction(mu, c, mu);
+        vec![Facet::opening(f_t), Facet::crushing(f_c), left, right]
+    }
+
+    #[test]
+    fn dry_friction_has_opening_rows_and_two_sliding_rows() {
+        let [left, right] = Facet::friction(0.6, 0.0, 0.0);
+        let strength = integrate(&[Facet::opening(0.0), left, right], 2.0).unwrap();
+        assert_eq!(strength.block, None);
+        assert_eq!(strength.rows.len(), 4);
+        assert_eq!(strength.tangential(), Tangential::Friction);
+        assert!(strength.rows.iter().all(|row| row.bound == 0.0));
+    }
+
+    #[test]
+    fn the_tension_bound_is_the_polygon_s_apex_where_cohesion_ends_first() {
+        let strength = integrate(&mohr_coulomb(5.0, 100.0, 1.0, 0.5), 1.0).unwrap();
+        let block = strength.block.unwrap();
+        assert!((block.tension - 2.0).abs() < 1e-12 && (block.total - 102.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_stress_block_is_the_parabola_of_the_design() {
+        let (f_t, f_c, h, area) = (0.3, 10.0, 0.6, 1.2);
+        let block = integrate(&mohr_coulomb(f_t, f_c, 4.0, 0.5), area).unwrap().block.unwrap();
+        for n in [0.0, 1.0, 5.0, 11.0] {
+            let limit = (n + f_t * area) * (f_c * area - n) * h / (2.0 * area * (f_c + f_t));
+            let (n_0, n_1) = (n / 2.0 - limit / h, n / 2.0 + limit / h);
+            let slack = |end: f64| block.total * (2.0 * end + block.tension) - (n + block.tension).powi(2);
+            assert!(slack(n_0).abs() < 1e-9 && slack(n_1) > -1e-9);
+        }
+    }
+
+    #[test]
+    fn frictionless_and_stuck_joints_are_recognised() {
+        let [left, right] = Facet::friction(0.0, 0.0, 0.0);
+        assert_eq!(integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap().tangential(), Tangential::Free);
+        assert_eq!(integrate(&[Facet::opening(0.0)], 1.0).unwrap().tangential(), Tangential::Stuck);
+    }
+
+    #[test]
+    fn two_facets_in_one_sense_are_refused() {
+        let mut facets = mohr_coulomb(0.1, 10.0, 1.0, 0.5);
+        facets.push(Facet::associated(FacetMode::Sliding, [0.0, 1.0], 2.0));
+        assert!(integrate(&facets, 1.0).is_err());
+    }
+}

@@ -1,0 +1,143 @@
+//! Quantities and their units. Inside the program every number is in the unit of its [`Quantity`]
+//! (SI; angles in degrees where the key says so); strings with a unit are converted on reading.
+
+/// What a number measures, which fixes the unit of a plain number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// A pure number.
+    Ratio,
+    /// m.
+    Length,
+    /// Degrees.
+    Degrees,
+    /// Radians.
+    Radians,
+    /// N.
+    Force,
+    /// Pa.
+    Stress,
+    /// Pa/m.
+    Stiffness,
+    /// kg/m³; a specific weight (kN/m³) is divided by the study's gravity.
+    Density,
+    /// m/s².
+    Acceleration,
+}
+
+const POUND_FORCE: f64 = 4.448_221_615_260_5; // exact: 0.45359237 kg × 9.80665 m/s²
+const FOOT: f64 = 0.3048; // exact
+const INCH: f64 = 0.0254; // exact
+/// Standard gravity [m/s²], used for specific weights only where a study has no gravity.
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+const LENGTHS: &[(&str, f64)] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("ft", FOOT), ("in", INCH)];
+const FORCES: &[(&str, f64)] =
+    &[("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("lbf", POUND_FORCE), ("kip", 1e3 * POUND_FORCE)];
+const STRESSES: &[(&str, f64)] = &[
+    ("Pa", 1.0),
+    ("kPa", 1e3),
+    ("MPa", 1e6),
+    ("GPa", 1e9),
+    ("N/mm2", 1e6),
+    ("kN/m2", 1e3),
+    ("psi", POUND_FORCE / (INCH * INCH)),
+    ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)),
+];
+const STIFFNESSES: &[(&str, f64)] =
+    &[("Pa/m", 1.0), ("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9), ("N/mm3", 1e9)];
+const DENSITIES: &[(&str, f64)] = &[("kg/m3", 1.0), ("t/m3", 1e3), ("lb/ft3", 0.453_592_37 / (FOOT * FOOT * FOOT))];
+const SPECIFIC_WEIGHTS: &[(&str, f64)] =
+    &[("N/m3", 1.0), ("kN/m3", 1e3), ("lbf/ft3", POUND_FORCE / (FOOT * FOOT * FOOT))];
+const ACCELERATIONS: &[(&str, f64)] = &[("m/s2", 1.0), ("g", STANDARD_GRAVITY), ("ft/s2", FOOT)];
+
+impl Quantity {
+    /// The unit of a plain number; empty for a ratio.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Ratio => "",
+            Quantity::Length => "m",
+            Quantity::Degrees => "deg",
+            Quantity::Radians => "rad",
+            Quantity::Force => "N",
+            Quantity::Stress => "Pa",
+            Quantity::Stiffness => "Pa/m",
+            Quantity::Density => "kg/m3",
+            Quantity::Acceleration => "m/s2",
+        }
+    }
+
+    /// Unit names with the factor that turns a number in them into the quantity's own unit.
+    /// `gravity` [m/s²] turns a specific weight into a density.
+    fn table(self, gravity: f64) -> Vec<(&'static str, f64)> {
+        match self {
+            Quantity::Ratio => vec![("%", 0.01)],
+            Quantity::Length => LENGTHS.to_vec(),
+            Quantity::Degrees => vec![("deg", 1.0), ("rad", 180.0 / std::f64::consts::PI)],
+            Quantity::Radians => vec![("rad", 1.0), ("deg", std::f64::consts::PI / 180.0)],
+            Quantity::Force => FORCES.to_vec(),
+            Quantity::Stress => STRESSES.to_vec(),
+            Quantity::Stiffness => STIFFNESSES.to_vec(),
+            Quantity::Density => {
+                let weights = SPECIFIC_WEIGHTS.iter().map(|&(name, factor)| (name, factor / gravity));
+                DENSITIES.iter().copied().chain(weights).collect()
+            }
+            Quantity::Acceleration => ACCELERATIONS.to_vec(),
+        }
+    }
+
+    /// Reads `"5 GPa"`. The unit may be left out. Errors say what is wrong, with the units that fit.
+    pub fn parse(self, text: &str, gravity: f64) -> Result<f64, String> {
+        let text = text.trim();
+        let split = text
+            .char_indices()
+            .find(|&(i, c)| {
+                let exponent = (c == 'e' || c == 'E')
+                    && text[i + 1..].starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
+                !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | '_') || exponent)
+            })
+            .map_or(text.len(), |(i, _)| i);
+        let (number, unit) = (text[..split].replace('_', ""), text[split..].trim());
+        let number: f64 = number
+            .parse()
+            .map_err(|_| format!("\"{text}\" does not start with a number"))?;
+        if unit.is_empty() {
+            return Ok(number);
+        }
+        let unit = unit.replace('²', "2").replace('³', "3").replace('^', "");
+        let table = self.table(gravity);
+        match table.iter().find(|(name, _)| *name == unit) {
+            // Dividing by an inverse power of ten is exact to rounding; multiplying by 1e-3 is not.
+            Some(&(_, factor)) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
+            Some(&(_, factor)) => Ok(number * factor),
+            None => {
+                let names: Vec<_> = table.iter().map(|(name, _)| *name).collect();
+                Err(format!("unit \"{unit}\" does not fit; units here: {}", names.join(", ")))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strings_with_units_become_si() {
+        let read = |q: Quantity, t: &str| q.parse(t, 9.81).unwrap();
+        assert_eq!(read(Quantity::Stress, "5 GPa"), 5e9);
+        assert_eq!(read(Quantity::Stress, "10N/mm2"), 1e7);
+        assert_eq!(read(Quantity::Length, "600 mm"), 0.6);
+        assert_eq!(read(Quantity::Length, "1e-1 m"), 0.1);
+        assert_eq!(read(Quantity::Force, "-1_000"), -1000.0);
+        assert!((read(Quantity::Density, "21.582 kN/m3") - 2200.0).abs() < 1e-9);
+        assert!((read(Quantity::Stress, "1 psi") - 6894.757_293_168).abs() < 1e-6);
+        assert!((read(Quantity::Radians, "180 deg") - std::f64::consts::PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_wrong_unit_is_named_with_those_that_fit() {
+        let error = Quantity::Length.parse("3 kN", 9.81).unwrap_err();
+        assert_eq!(error, "unit \"kN\" does not fit; units here: m, mm, cm, ft, in");
+        assert!(Quantity::Force.parse("kN", 9.81).is_err());
+    }
+}
