@@ -1,0 +1,1 @@
+//! Benches; they are in `benches/benches`.

@@ -1,0 +1,58 @@
+//! `coulomb`: unilateral contact with Coulomb friction, slip not dilating unless asked.
+#![doc = include_str!("coulomb.md")]
+
+use crate::parameters::*;
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, check_as};
+use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::schema::{Parameter, PluginKind};
+
+/// Dry friction, non-associated by default.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Coulomb {
+    /// μ.
+    pub friction: Option<f64>,
+    /// atan μ [deg].
+    pub friction_angle: Option<f64>,
+    /// ψ [deg].
+    #[serde(default)]
+    pub dilatancy_angle: f64,
+    /// k_n [Pa/m].
+    pub normal_stiffness: Option<f64>,
+    /// k_t [Pa/m].
+    pub shear_stiffness: Option<f64>,
+}
+
+#[typetag::serde(name = "coulomb")]
+impl InterfaceLaw for Coulomb {
+    fn formulation(&self) -> Formulation {
+        let mu = friction(self.friction, self.friction_angle);
+        let [left, right] = Facet::friction(mu, 0.0, tangent(self.dilatancy_angle).min(mu));
+        Formulation::Facets(vec![Facet::opening(0.0), left, right])
+    }
+
+    fn stiffness(&self) -> Option<[f64; 2]> {
+        stiffness(self.normal_stiffness, self.shear_stiffness)
+    }
+}
+
+const PARAMETERS: &[Parameter] =
+    &[FRICTION, FRICTION_ANGLE, DILATANCY_ANGLE.default("0.0"), NORMAL_STIFFNESS, SHEAR_STIFFNESS];
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::InterfaceLaw,
+        tag: "coulomb",
+        summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle says so",
+        parameters: PARAMETERS,
+        provides: &[Capability::Facets],
+        requires: &[],
+        sources: &["Coulomb 1776", "Drucker 1954, J. Appl. Mech. 21"],
+        file: file!(),
+        page: include_str!("coulomb.md"),
+        check: |value| check_as::<Coulomb>(value, |law| {
+            validate_friction(law.friction, law.friction_angle, Some(law.dilatancy_angle))
+        }),
+    }
+}

@@ -1,0 +1,52 @@
+//! `coulomb_associated`: Coulomb friction whose slip dilates by the angle of friction.
+#![doc = include_str!("coulomb_associated.md")]
+
+use crate::parameters::*;
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, check_as};
+use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::schema::{Parameter, PluginKind};
+
+/// Dry friction with associated flow.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoulombAssociated {
+    /// μ.
+    pub friction: Option<f64>,
+    /// atan μ [deg].
+    pub friction_angle: Option<f64>,
+    /// k_n [Pa/m].
+    pub normal_stiffness: Option<f64>,
+    /// k_t [Pa/m].
+    pub shear_stiffness: Option<f64>,
+}
+
+#[typetag::serde(name = "coulomb_associated")]
+impl InterfaceLaw for CoulombAssociated {
+    fn formulation(&self) -> Formulation {
+        let mu = friction(self.friction, self.friction_angle);
+        let [left, right] = Facet::friction(mu, 0.0, mu);
+        Formulation::Facets(vec![Facet::opening(0.0), left, right])
+    }
+
+    fn stiffness(&self) -> Option<[f64; 2]> {
+        stiffness(self.normal_stiffness, self.shear_stiffness)
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::InterfaceLaw,
+        tag: "coulomb_associated",
+        summary: "no tension, Coulomb friction with associated flow: slip opens the joint, as linear programs assume",
+        parameters: &[FRICTION, FRICTION_ANGLE, NORMAL_STIFFNESS, SHEAR_STIFFNESS],
+        provides: &[Capability::Facets],
+        requires: &[],
+        sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Drucker 1954, J. Appl. Mech. 21"],
+        file: file!(),
+        page: include_str!("coulomb_associated.md"),
+        check: |value| check_as::<CoulombAssociated>(value, |law| {
+            validate_friction(law.friction, law.friction_angle, None)
+        }),
+    }
+}

@@ -1,0 +1,54 @@
+//! `elastic`: linear isotropic elasticity.
+//!
+//! **Purpose.** Stone that does not crush. **Equations.** Hooke's law, σ = λ_L tr ε I + 2 G ε with
+//! G = E / (2(1 + ν)), λ_L = E ν / ((1 + ν)(1 − 2ν)). **State.** None. **Validity.** Small strains.
+//! Limit loads do not depend on E and ν: limit analysis reads such blocks as rigid.
+
+use crate::rigid::DENSITY;
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::material::{BulkMaterial, Deformability};
+use voussoir_core::schema::{Parameter, PluginKind, Range};
+use voussoir_core::units::Quantity;
+
+/// A linear elastic material.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Elastic {
+    /// E [Pa].
+    pub young_modulus: f64,
+    /// ν.
+    pub poisson_ratio: f64,
+    /// ρ [kg/m³].
+    pub density: f64,
+}
+
+#[typetag::serde(name = "elastic")]
+impl BulkMaterial for Elastic {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn deformability(&self) -> Deformability {
+        Deformability::LinearElastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::BulkMaterial,
+        tag: "elastic",
+        summary: "linear isotropic elasticity",
+        parameters: &[
+            Parameter::number("young_modulus", Quantity::Stress, Range::POSITIVE, "Young's modulus E"),
+            Parameter::number("poisson_ratio", Quantity::Ratio, Range::new(-1.0, true, 0.5, true), "Poisson's ratio ν"),
+            DENSITY,
+        ],
+        provides: &[Capability::RigidLimit],
+        requires: &[],
+        sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
+        file: file!(),
+        page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them: limit analysis reads such blocks as rigid.\n",
+        check: no_further_check,
+    }
+}

@@ -1,0 +1,79 @@
+//! `mohr_coulomb`: friction with cohesion, tension cut-off and crushing strength.
+#![doc = include_str!("mohr_coulomb.md")]
+
+use crate::parameters::*;
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, check_as};
+use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::schema::{Parameter, PluginKind, Range};
+use voussoir_core::units::Quantity;
+
+/// A joint with strengths.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MohrCoulomb {
+    /// μ.
+    pub friction: Option<f64>,
+    /// atan μ [deg].
+    pub friction_angle: Option<f64>,
+    /// c [Pa].
+    #[serde(default)]
+    pub cohesion: f64,
+    /// f_t [Pa].
+    #[serde(default)]
+    pub tensile_strength: f64,
+    /// f_c [Pa].
+    pub compressive_strength: Option<f64>,
+    /// ψ [deg].
+    pub dilatancy_angle: Option<f64>,
+    /// k_n [Pa/m].
+    pub normal_stiffness: Option<f64>,
+    /// k_t [Pa/m].
+    pub shear_stiffness: Option<f64>,
+}
+
+#[typetag::serde(name = "mohr_coulomb")]
+impl InterfaceLaw for MohrCoulomb {
+    fn formulation(&self) -> Formulation {
+        let mu = friction(self.friction, self.friction_angle);
+        let dilatancy = self.dilatancy_angle.map_or(mu, |angle| tangent(angle).min(mu));
+        let [left, right] = Facet::friction(mu, self.cohesion, dilatancy);
+        let mut facets = vec![Facet::opening(self.tensile_strength), left, right];
+        facets.extend(self.compressive_strength.map(Facet::crushing));
+        Formulation::Facets(facets)
+    }
+
+    fn stiffness(&self) -> Option<[f64; 2]> {
+        stiffness(self.normal_stiffness, self.shear_stiffness)
+    }
+}
+
+const STRENGTH: Range = Range::NON_NEGATIVE;
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::InterfaceLaw,
+        tag: "mohr_coulomb",
+        summary: "friction with cohesion, tension cut-off and crushing; associated unless dilatancy_angle says otherwise",
+        parameters: &[
+            FRICTION,
+            FRICTION_ANGLE,
+            Parameter::number("cohesion", Quantity::Stress, STRENGTH, "shear strength without compression").default("0.0"),
+            Parameter::number("tensile_strength", Quantity::Stress, STRENGTH, "tension cut-off; cohesion / μ bounds it too")
+                .default("0.0"),
+            Parameter::number("compressive_strength", Quantity::Stress, Range::POSITIVE, "crushing strength of the joint")
+                .optional("unlimited"),
+            DILATANCY_ANGLE.optional("the angle of friction: associated flow"),
+            NORMAL_STIFFNESS,
+            SHEAR_STIFFNESS,
+        ],
+        provides: &[Capability::Facets],
+        requires: &[],
+        sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12 (rectangular stress block)"],
+        file: file!(),
+        page: include_str!("mohr_coulomb.md"),
+        check: |value| check_as::<MohrCoulomb>(value, |law| {
+            validate_friction(law.friction, law.friction_angle, law.dilatancy_angle)
+        }),
+    }
+}

@@ -1,0 +1,48 @@
+//! `rigid`: blocks that do not deform.
+//!
+//! **Purpose.** Limit analysis, and blocks far stiffer than the rest of the scene. **Equations.** ε = 0.
+//! **State.** None. **Validity.** Stresses inside a rigid block are not defined.
+
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::material::{BulkMaterial, Deformability};
+use voussoir_core::schema::{Parameter, PluginKind, Range};
+use voussoir_core::units::Quantity;
+
+/// ρ, which every material has.
+pub(crate) const DENSITY: Parameter =
+    Parameter::number("density", Quantity::Density, Range::NON_NEGATIVE, "density, or specific weight such as \"22 kN/m3\"");
+
+/// A material that does not deform.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rigid {
+    /// ρ [kg/m³].
+    pub density: f64,
+}
+
+#[typetag::serde(name = "rigid")]
+impl BulkMaterial for Rigid {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn deformability(&self) -> Deformability {
+        Deformability::Rigid
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::BulkMaterial,
+        tag: "rigid",
+        summary: "blocks that do not deform",
+        parameters: &[DENSITY],
+        provides: &[Capability::RigidLimit],
+        requires: &[],
+        sources: &["Heyman 1966, Int. J. Solids Struct. 2"],
+        file: file!(),
+        page: "# `rigid`\n\nBlocks that do not deform: ε = 0. Limit loads are those of rigid blocks.\n",
+        check: no_further_check,
+    }
+}

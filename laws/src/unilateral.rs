@@ -1,0 +1,69 @@
+//! `unilateral`: contact that cannot pull; tangentially free or stuck.
+#![doc = include_str!("unilateral.md")]
+
+use crate::parameters::*;
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+
+/// What a closed joint does along itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TangentialContact {
+    /// Slides without resistance.
+    Free,
+    /// Never slides.
+    Stuck,
+}
+
+/// No tension.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Unilateral {
+    /// Along the joint.
+    pub tangential: TangentialContact,
+    /// k_n [Pa/m].
+    pub normal_stiffness: Option<f64>,
+    /// k_t [Pa/m].
+    pub shear_stiffness: Option<f64>,
+}
+
+#[typetag::serde(name = "unilateral")]
+impl InterfaceLaw for Unilateral {
+    fn formulation(&self) -> Formulation {
+        let mut facets = vec![Facet::opening(0.0)];
+        if self.tangential == TangentialContact::Free {
+            facets.extend(Facet::friction(0.0, 0.0, 0.0));
+        }
+        Formulation::Facets(facets)
+    }
+
+    fn stiffness(&self) -> Option<[f64; 2]> {
+        stiffness(self.normal_stiffness, self.shear_stiffness)
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::InterfaceLaw,
+        tag: "unilateral",
+        summary: "no tension; tangentially stuck (Heyman's assumptions) or free (frictionless)",
+        parameters: &[
+            Parameter {
+                name: "tangential",
+                doc: "along the joint: \"stuck\" never slides, \"free\" slides without resistance",
+                shape: Shape::Choice(&["stuck", "free"]),
+                need: Need::Default("\"stuck\""),
+            },
+            NORMAL_STIFFNESS,
+            SHEAR_STIFFNESS,
+        ],
+        provides: &[Capability::Facets],
+        requires: &[],
+        sources: &["Signorini 1933", "Heyman 1966, Int. J. Solids Struct. 2"],
+        file: file!(),
+        page: include_str!("unilateral.md"),
+        check: no_further_check,
+    }
+}

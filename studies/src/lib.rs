@@ -1,0 +1,9 @@
+//! Voussoir: how masonry made of blocks stands and collapses.
+//!
+//! The facade: it names every crate that holds plug-ins (a crate that no source names registers
+//! nothing) and reads study files, expands them into cases, answers them and writes results.
+#![forbid(unsafe_code)]
+
+pub use voussoir_core as core;
+pub use voussoir_laws as laws;
+pub use voussoir_solvers as solvers;

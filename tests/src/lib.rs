@@ -1,0 +1,1 @@
+//! Verification, regression, stress and error messages; the tests are in `tests/tests`.
