@@ -4,6 +4,8 @@
 //! nothing) and reads study files, expands them into cases, answers them and writes results.
 #![forbid(unsafe_code)]
 
+pub mod results;
+
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;
 pub use voussoir_solvers as solvers;

@@ -1,0 +1,97 @@
+//! The result of a case, as it stands in `results.json`.
+
+use serde::{Deserialize, Serialize};
+use voussoir_core::certificate::Certificate;
+use voussoir_core::limit::{Counters, Status};
+use voussoir_core::mechanism::Mechanism;
+
+/// All results of a study.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct StudyResults {
+    /// Name of the study.
+    pub study: String,
+    /// Version of the program.
+    pub version: String,
+    /// One entry per case, by `id`.
+    pub cases: Vec<CaseResult>,
+}
+
+/// A contact force at a point of a joint [N].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FieldEntry {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Where it acts [m].
+    pub point: [f64; 2],
+    /// [r_n, r_t] on the plus body.
+    pub force: [f64; 2],
+}
+
+/// Velocity of a body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MotionEntry {
+    /// Name of the body.
+    pub body: String,
+    /// [v_x, v_y, ω] at its centroid.
+    pub velocity: [f64; 3],
+}
+
+/// What one stage came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageResult {
+    /// Its name.
+    pub name: String,
+    /// How it ended.
+    pub status: Status,
+    /// The factor it reached; `null` where it reached none, or any.
+    pub factor: Option<f64>,
+    /// Hinges of the mechanism that ended it, else empty.
+    pub hinges: Vec<usize>,
+}
+
+/// The answer to one case with what proves it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct CaseResult {
+    /// Index from 0, variants outermost.
+    pub id: usize,
+    /// Name of the variant, if the study has variants.
+    pub variant: Option<String>,
+    /// Swept key → value.
+    pub parameters: serde_json::Map<String, serde_json::Value>,
+    /// How it ends.
+    pub status: Status,
+    /// The collapse factor.
+    pub load_factor: Option<f64>,
+    /// [lower, upper], from the field and from the mechanism.
+    pub bounds: Option<[f64; 2]>,
+    /// The factor with associated flow, where the solver answers another question.
+    pub associated_load_factor: Option<f64>,
+    /// All factors with an admissible field, where dead load alone has none; `null` ends are infinite.
+    pub feasible_interval: Option<[Option<f64>; 2]>,
+    /// `"associated"` where a non-associated law was read so.
+    pub flow_read_as: Option<String>,
+    /// The solver that answered.
+    pub solver: String,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// The collapse mechanism, or the one that refutes equilibrium.
+    pub mechanism: Option<Mechanism>,
+    /// The factor at which `field` is in equilibrium.
+    pub field_factor: Option<f64>,
+    /// Contact forces.
+    pub field: Option<Vec<FieldEntry>>,
+    /// Velocities of the mechanism.
+    pub motion: Option<Vec<MotionEntry>>,
+    /// Contact forces that balance the live load alone, for `unbounded`.
+    pub ray: Option<Vec<FieldEntry>>,
+    /// On arches, where the resultant crosses each joint [m]; `null` where a joint carries nothing.
+    pub thrust_line: Option<Vec<Option<[f64; 2]>>>,
+    /// Named residuals.
+    pub certificate: Certificate,
+    /// Work done.
+    pub counters: Counters,
+    /// Wall time [s].
+    pub seconds: f64,
+    /// Each stage in turn.
+    pub stages: Vec<StageResult>,
+}
