@@ -1,6 +1,17 @@
 //! Certificates: what proves an answer, recomputed from the assembly alone.
+//!
+//! Nothing here is shared with solvers: equilibrium is summed body by body from forces at points,
+//! strengths are checked as the rectangular stress block, dissipation is the integral of the support
+//! function of the law's own polygon along each joint. Laws are read with associated flow.
 
+use crate::assembly::{Assembly, Bond, StageLoads, add_force};
+use crate::geometry::{Vec2, cross};
+use crate::interface::{Facet, Formulation};
+use crate::limit::Status;
+use crate::mechanism::{CentroidVelocity, Jump, jumps};
+use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Named residuals, all relative, and the verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -8,7 +19,392 @@ pub struct Certificate {
     /// Whether every residual is within its tolerance.
     pub passed: bool,
     /// Name → value.
-    pub residuals: std::collections::BTreeMap<String, f64>,
+    pub residuals: BTreeMap<String, f64>,
     /// What failed, in words; empty when passed.
     pub failures: Vec<String>,
+}
+
+/// A contact force at a point of a joint, on the plus body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Where it acts [m].
+    pub point: Vec2,
+    /// (r_n, r_t) [N].
+    pub force: [f64; 2],
+}
+
+/// What an answer claims.
+#[derive(Debug, Clone, Copy)]
+pub struct Claim<'a> {
+    /// How the last stage ends.
+    pub status: Status,
+    /// The collapse factor.
+    pub factor: Option<f64>,
+    /// The factor at which the field is in equilibrium.
+    pub field_factor: f64,
+    /// The factor at which the stage starts.
+    pub start: f64,
+    /// Contact forces.
+    pub field: Option<&'a [ContactForce]>,
+    /// Velocity of every body.
+    pub motion: Option<&'a [CentroidVelocity]>,
+    /// Contact forces that balance the varying load alone.
+    pub ray: Option<&'a [ContactForce]>,
+    /// Whether some factor is feasible where the start is not, and the interval.
+    pub feasible_interval: Option<[f64; 2]>,
+}
+
+/// Tolerance of residuals that should be rounding.
+pub const ROUNDING: f64 = 1e-10;
+
+struct Check<'a> {
+    assembly: &'a Assembly,
+    loads: &'a StageLoads,
+    groups: Vec<Option<usize>>,
+    facets: Vec<Vec<Facet>>,
+    polygons: Vec<YieldPolygon>,
+    size: f64,
+    certificate: Certificate,
+}
+
+/// Checks a claim about the stage with these loads: the certificate, and the bounds [lower, upper]
+/// that field and motion prove where both exist.
+pub fn certify(
+    assembly: &Assembly,
+    loads: &StageLoads,
+    claim: &Claim,
+    gap: f64,
+) -> (Certificate, Option<[f64; 2]>) {
+    let facets: Vec<Vec<Facet>> = assembly
+        .catalogue
+        .laws
+        .iter()
+        .map(|(_, law)| {
+            let Formulation::Facets(facets) = law.formulation();
+            facets
+        })
+        .collect();
+    let mut check = Check {
+        groups: assembly.rigid_groups().0,
+        polygons: facets
+            .iter()
+            .map(|facets| YieldPolygon::of(facets))
+            .collect(),
+        facets,
+        size: assembly.size(),
+        assembly,
+        loads,
+        certificate: Certificate {
+            passed: true,
+            residuals: BTreeMap::new(),
+            failures: Vec::new(),
+        },
+    };
+    let mut bounds = None;
+    match claim.status {
+        Status::Stands => {
+            check.field(claim);
+        }
+        Status::Collapse => {
+            let lower = check.field(claim).then_some(claim.field_factor);
+            let upper = check.upper_bound(claim);
+            match (lower, upper, claim.factor) {
+                (Some(lower), Some(upper), Some(factor)) => {
+                    let scale = lower.abs().max(upper.abs()).max(check.factor_scale());
+                    let spread = (upper - lower).abs().max((factor - lower).abs()) / scale;
+                    check.residual("gap", spread, gap);
+                    bounds = Some([lower.min(upper), upper.max(lower)]);
+                }
+                _ => check.fail("a collapse needs a factor, an admissible field and a mechanism"),
+            }
+        }
+        Status::Unbounded => {
+            check.field(claim);
+            check.ray(claim);
+        }
+        Status::NoEquilibrium => check.refutation(claim, gap),
+        Status::LimitPoint | Status::Stalled => check.fail("not proven"),
+    }
+    (check.certificate, bounds)
+}
+
+impl Check<'_> {
+    fn fail(&mut self, why: impl Into<String>) {
+        self.certificate.passed = false;
+        self.certificate.failures.push(why.into());
+    }
+
+    /// Records a residual; NaN fails.
+    fn residual(&mut self, name: &str, value: f64, tolerance: f64) -> bool {
+        self.certificate.residuals.insert(name.into(), value);
+        let fine = value <= tolerance;
+        if !fine {
+            self.fail(format!("{name}: {value:.3e} exceeds {tolerance:.1e}"));
+        }
+        fine
+    }
+
+    /// Size of the loads in force units.
+    fn load_scale(&self, factor: f64) -> f64 {
+        let size = |w: &[f64; 3]| w[0].hypot(w[1]);
+        self.free_bodies()
+            .map(|b| size(&self.loads.fixed[b]) + factor.abs() * size(&self.loads.varying[b]))
+            .sum()
+    }
+
+    /// The factor at which live and dead load have the same size.
+    fn factor_scale(&self) -> f64 {
+        let (dead, both) = (self.load_scale(0.0), self.load_scale(1.0));
+        if both > dead {
+            1e-6 * dead / (both - dead)
+        } else {
+            0.0
+        }
+    }
+
+    fn free_bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.groups.len()).filter(|&body| self.groups[body].is_some())
+    }
+
+    /// Greatest resultant left on any free group by contact forces and `fixed × dead + factor ×
+    /// varying`, moments about the group's first body and divided by the scene's size [N].
+    fn imbalance(&self, forces: &[ContactForce], dead: f64, factor: f64) -> f64 {
+        let count = self.groups.iter().flatten().max().map_or(0, |g| g + 1);
+        let mut pole: Vec<Option<Vec2>> = vec![None; count];
+        let mut sums = vec![[0.0f64; 3]; count];
+        for body in self.free_bodies() {
+            let Some(group) = self.groups[body] else {
+                continue;
+            };
+            let pole = *pole[group].get_or_insert_with(|| self.assembly.inertia(body).centroid);
+            for (wrenches, factor) in [(&self.loads.fixed, dead), (&self.loads.varying, factor)] {
+                let [x, y, moment] = wrenches[body];
+                sums[group][0] += factor * x;
+                sums[group][1] += factor * y;
+                sums[group][2] += factor * (moment - cross(pole, Vec2::new(x, y)));
+            }
+        }
+        for contact in forces {
+            let joint = &self.assembly.joints[contact.joint];
+            let (n, t) = joint.frame();
+            let force = n * contact.force[0] + t * contact.force[1];
+            for (body, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+                if let Some(group) = self.groups[body]
+                    && let Some(pole) = pole[group]
+                {
+                    add_force(&mut sums[group], contact.point - pole, force, sign);
+                }
+            }
+        }
+        sums.iter()
+            .map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size))
+            .fold(0.0, f64::max)
+    }
+
+    /// Greatest violation of strength [N]; in the recession cone where `strengths` is false.
+    fn violation(&self, forces: &[ContactForce], strengths: bool) -> f64 {
+        let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+        for contact in forces {
+            let joint = &self.assembly.joints[contact.joint];
+            let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
+            let sum = resultants.entry(contact.joint).or_default();
+            sum[0] += contact.force[0];
+            sum[1] += contact.force[1];
+            sum[2] += contact.force[0] * lever;
+        }
+        let mut worst = 0.0f64;
+        for (index, [n, t, m]) in resultants {
+            let joint = &self.assembly.joints[index];
+            let Bond::Law(law) = joint.bond else { continue };
+            let (height, area) = (joint.height(), joint.height() * self.assembly.width);
+            let polygon = &self.polygons[law];
+            let scale = if strengths { area } else { 0.0 };
+            let least = polygon.least_normal() * scale;
+            let arm = 2.0 * m.abs() / height;
+            let greatest = polygon.greatest_normal();
+            if greatest.is_infinite() {
+                worst = worst.max(arm - (n - least));
+            } else {
+                // The compressed depth d of a rectangular block of stress must fit beside |M|/N.
+                let full = (greatest * scale - least).max(0.0);
+                let block = n - least;
+                worst = worst.max(-block).max(block - full);
+                let depth = if full > 0.0 { block / full } else { 0.0 };
+                worst = worst.max(arm - block.max(0.0) * (1.0 - depth));
+            }
+            for facet in self.facets[law].iter().filter(|f| f.normal[1] != 0.0) {
+                worst = worst.max(facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale);
+            }
+        }
+        worst
+    }
+
+    fn field(&mut self, claim: &Claim) -> bool {
+        let Some(field) = claim.field else {
+            self.fail("no field");
+            return false;
+        };
+        let at = claim.field_factor;
+        let scale = self.load_scale(at).max(f64::MIN_POSITIVE);
+        let balanced = self.residual(
+            "equilibrium",
+            self.imbalance(field, 1.0, at) / scale,
+            ROUNDING,
+        );
+        self.residual("strength", self.violation(field, true) / scale, ROUNDING) && balanced
+    }
+
+    fn ray(&mut self, claim: &Claim) {
+        let Some(ray) = claim.ray else {
+            return self.fail("no ray");
+        };
+        let largest = ray
+            .iter()
+            .map(|c| c.force[0].hypot(c.force[1]))
+            .fold(0.0, f64::max);
+        let load = self.load_scale(1.0) - self.load_scale(0.0);
+        let scale = load.max(largest).max(f64::MIN_POSITIVE);
+        self.residual(
+            "ray_equilibrium",
+            self.imbalance(ray, 0.0, 1.0) / scale,
+            ROUNDING,
+        );
+        self.residual("ray_strength", self.violation(ray, false) / scale, ROUNDING);
+    }
+
+    /// Power of fixed and varying loads, power dissipated, and the greatest motion that no force of
+    /// the law could do, relative to the greatest jump.
+    fn powers(&self, motion: &[CentroidVelocity]) -> (f64, f64, f64, f64) {
+        let (mut fixed, mut varying) = (0.0, 0.0);
+        for body in self.free_bodies() {
+            let c = self.assembly.inertia(body).centroid;
+            let [vx, vy, omega] = motion[body];
+            let power =
+                |w: &[f64; 3]| w[0] * vx + w[1] * vy + (w[2] - (c.x * w[1] - c.y * w[0])) * omega;
+            fixed += power(&self.loads.fixed[body]);
+            varying += power(&self.loads.varying[body]);
+        }
+        let jumps = jumps(self.assembly, motion);
+        let largest = jumps
+            .iter()
+            .map(Jump::size)
+            .fold(f64::MIN_POSITIVE, f64::max);
+        let (mut dissipated, mut impossible) = (0.0, 0.0f64);
+        for (joint, jump) in self.assembly.joints.iter().zip(&jumps) {
+            let Bond::Law(law) = joint.bond else {
+                impossible = impossible.max(jump.size());
+                continue;
+            };
+            let polygon = &self.polygons[law];
+            for open in jump.open {
+                for ray in &polygon.rays {
+                    impossible = impossible.max(-(ray[0] * open + ray[1] * jump.slip));
+                }
+            }
+            dissipated +=
+                support_integral(&polygon.vertices, jump) * joint.height() * self.assembly.width;
+        }
+        (fixed, varying, dissipated, impossible / largest)
+    }
+
+    fn upper_bound(&mut self, claim: &Claim) -> Option<f64> {
+        let motion = claim.motion?;
+        let (fixed, varying, dissipated, impossible) = self.powers(motion);
+        self.held(motion);
+        let flows = self.residual("flow", impossible, ROUNDING);
+        let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
+        (flows && scaled).then(|| (dissipated - fixed) / varying)
+    }
+
+    /// Held bodies do not move.
+    fn held(&mut self, motion: &[CentroidVelocity]) {
+        if self
+            .groups
+            .iter()
+            .zip(motion)
+            .any(|(group, v)| group.is_none() && v.iter().any(|x| *x != 0.0))
+        {
+            self.fail("a body held by the ground moves");
+        }
+    }
+
+    fn refutation(&mut self, claim: &Claim, gap: f64) {
+        let Some(motion) = claim.motion else {
+            return self.fail("no motion that refutes equilibrium");
+        };
+        self.held(motion);
+        let (fixed, varying, dissipated, impossible) = self.powers(motion);
+        self.residual("flow", impossible, ROUNDING);
+        let excess = fixed + claim.start * varying - dissipated;
+        let jumps = jumps(self.assembly, motion);
+        let scale = self.load_scale(claim.start) * jumps.iter().map(Jump::size).fold(0.0, f64::max);
+        if !(excess > ROUNDING * scale) {
+            self.fail(format!(
+                "the loads do no more work on the motion than is dissipated: excess {excess:.3e}"
+            ));
+        }
+        self.certificate
+            .residuals
+            .insert("excess_power".into(), excess / scale);
+        match claim.feasible_interval {
+            Some([low, high]) => {
+                let near = if low > claim.start { low } else { high };
+                self.residual("motion_scale", (varying.abs() - 1.0).abs(), 1e-9);
+                let proven = (dissipated - fixed) / varying;
+                let spread =
+                    (proven - near).abs() / proven.abs().max(near.abs()).max(self.factor_scale());
+                self.residual("interval_gap", spread, gap);
+            }
+            None => {
+                let both = self.load_scale(1.0) - self.load_scale(0.0);
+                if both == 0.0 {
+                    self.residual("motion_scale", (excess - 1.0).abs(), 1e-9);
+                }
+            }
+        }
+    }
+}
+
+/// ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area.
+/// The maximum of linear functions is integrated exactly between their crossings.
+fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
+    let end = |v: &[f64; 2], i: usize| -(v[0] * jump.open[i] + v[1] * jump.slip);
+    let lines: Vec<[f64; 2]> = vertices.iter().map(|v| [end(v, 0), end(v, 1)]).collect();
+    let mut cuts = vec![0.0, 1.0];
+    for (i, a) in lines.iter().enumerate() {
+        for b in &lines[i + 1..] {
+            let (first, last) = (a[0] - b[0], a[1] - b[1]);
+            if first * last < 0.0 {
+                cuts.push(first / (first - last));
+            }
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    let greatest = |s: f64| {
+        lines
+            .iter()
+            .map(|l| l[0] + s * (l[1] - l[0]))
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    cuts.windows(2)
+        .map(|w| (w[1] - w[0]) * (greatest(w[0]) + greatest(w[1])) / 2.0)
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dissipation_of_a_crushing_rotation_is_that_of_its_compressed_part() {
+        // f_c = 4 on the closing part of a joint whose ends move by −1 and +3: 4 · (1/2 · 1/4).
+        let jump = Jump {
+            open: [-1.0, 3.0],
+            slip: 0.0,
+        };
+        let power = support_integral(&[[0.0, 0.0], [4.0, 0.0]], &jump);
+        assert!((power - 0.5).abs() < 1e-15);
+    }
 }

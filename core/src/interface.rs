@@ -34,7 +34,12 @@ pub struct Facet {
 impl Facet {
     /// A facet with associated flow.
     pub fn associated(mode: FacetMode, normal: [f64; 2], bound: f64) -> Self {
-        Facet { mode, normal, bound, flow: normal }
+        Facet {
+            mode,
+            normal,
+            bound,
+            flow: normal,
+        }
     }
 
     /// t_n ≥ −`tensile_strength` [Pa].

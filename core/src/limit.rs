@@ -47,8 +47,14 @@ pub struct LimitJoint {
 impl LimitJoint {
     /// Wrenches about `pole` on the plus body per unit of N_0, N_1 and T; minus gets the opposite.
     pub fn wrenches(&self, pole: Vec2) -> [[f64; 3]; 3] {
-        let at = |point: Vec2, direction: Vec2| [direction.x, direction.y, cross(point - pole, direction)];
-        [at(self.ends[0], self.normal), at(self.ends[1], self.normal), at(self.ends[0], self.tangent)]
+        let at = |point: Vec2, direction: Vec2| {
+            [direction.x, direction.y, cross(point - pole, direction)]
+        };
+        [
+            at(self.ends[0], self.normal),
+            at(self.ends[1], self.normal),
+            at(self.ends[0], self.tangent),
+        ]
     }
 }
 
@@ -80,13 +86,19 @@ impl LimitProblem {
         let (group_of, groups) = assembly.rigid_groups();
         let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
         let (low, high) = crate::geometry::bounding_box(points);
-        let pole = if assembly.joints.is_empty() { Vec2::zeros() } else { (low + high) / 2.0 };
+        let pole = if assembly.joints.is_empty() {
+            Vec2::zeros()
+        } else {
+            (low + high) / 2.0
+        };
         let mut read: BTreeMap<usize, Vec<crate::interface::Facet>> = BTreeMap::new();
         let mut flow_read_as_associated = false;
         let mut joints = Vec::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
             let (minus, plus) = (group_of[joint.minus], group_of[joint.plus]);
-            let crate::assembly::Bond::Law(law) = joint.bond else { continue };
+            let crate::assembly::Bond::Law(law) = joint.bond else {
+                continue;
+            };
             if minus == plus {
                 continue;
             }
@@ -99,7 +111,15 @@ impl LimitProblem {
             let strength = integrate(facets, joint.height() * assembly.width)
                 .map_err(|why| format!("joint law \"{name}\": {why}"))?;
             let (normal, tangent) = joint.frame();
-            joints.push(LimitJoint { joint: index, minus, plus, ends: joint.ends, normal, tangent, strength });
+            joints.push(LimitJoint {
+                joint: index,
+                minus,
+                plus,
+                ends: joint.ends,
+                normal,
+                tangent,
+                strength,
+            });
         }
         let gather = |wrenches: &Wrenches| {
             let mut sum = vec![[0.0; 3]; groups];
@@ -120,14 +140,21 @@ impl LimitProblem {
             groups,
             joints,
             pole,
-            length: if low.x.is_finite() { (high - low).norm() } else { 1.0 },
+            length: if low.x.is_finite() {
+                (high - low).norm()
+            } else {
+                1.0
+            },
             flow_read_as_associated,
         })
     }
 
     /// Sum of the sizes of some wrenches as forces [N], moments divided by the scene's length.
     pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
-        wrenches.iter().map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length)).sum()
+        wrenches
+            .iter()
+            .map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length))
+            .sum()
     }
 }
 

@@ -10,8 +10,12 @@ use voussoir_core::schema::{Parameter, PluginKind, Range};
 use voussoir_core::units::Quantity;
 
 /// ρ, which every material has.
-pub(crate) const DENSITY: Parameter =
-    Parameter::number("density", Quantity::Density, Range::NON_NEGATIVE, "density, or specific weight such as \"22 kN/m3\"");
+pub(crate) const DENSITY: Parameter = Parameter::number(
+    "density",
+    Quantity::Density,
+    Range::NON_NEGATIVE,
+    "density, or specific weight such as \"22 kN/m3\"",
+);
 
 /// A material that does not deform.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -1,1 +1,6 @@
-//! Limit analysis.
+//! Solvers. Limit analysis so far: a general sparse conic one and one in the redundants of a chain.
+//!
+//! A solver knows no law: it reads strengths over a joint ([`voussoir_core::strength`]).
+#![forbid(unsafe_code)]
+
+pub mod limit;

@@ -4,6 +4,7 @@
 //! nothing) and reads study files, expands them into cases, answers them and writes results.
 #![forbid(unsafe_code)]
 
+pub mod answer;
 pub mod results;
 
 pub use voussoir_core as core;

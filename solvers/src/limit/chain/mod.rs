@@ -1,0 +1,209 @@
+//! `limit_chain`: limit analysis in the redundants of chains of bodies.
+//!
+//! A chain of bodies between two supports has three redundants (the force transmitted at its
+//! middle), one with a free end none. Every joint force is affine in the redundants and λ, so an
+//! arch is a problem in four variables with a few rows per joint. It is solved by the simplex
+//! method on the dual: columns are elementary mechanisms, four of them in the basis, and the joint
+//! that is violated most by the present field enters. Crushing joints give columns without end
+//! (the tangents of their stress block); the last digits come from Newton's method on the active
+//! stress blocks.
+
+mod layout;
+mod optimum;
+mod simplex;
+
+use super::{Engine, Greatest, Verdict, answer};
+use layout::{Chain, Forms, chains};
+use optimum::centre;
+use serde::{Deserialize, Serialize};
+use simplex::{Outcome, Program, Solved};
+use voussoir_core::assembly::Wrenches;
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::limit::{
+    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Velocity,
+};
+use voussoir_core::schema::PluginKind;
+
+/// Limit analysis of chains.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitChain {}
+
+#[typetag::serde(name = "limit_chain")]
+impl LimitSolver for LimitChain {
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+        match ChainEngine::new(problem) {
+            Some(mut engine) => answer(problem, question, &mut engine),
+            None => super::conic::LimitConic {}.solve(problem, question),
+        }
+    }
+
+    fn refuses(&self, problem: &LimitProblem) -> Option<String> {
+        chains(problem).is_none().then(|| {
+            "its bodies do not form chains between supports; limit_conic takes any scene".into()
+        })
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "limit_chain",
+        summary: "limit analysis of arches and other chains of blocks in three redundants and λ, by simplex, to rounding",
+        parameters: &[],
+        provides: &[Capability::RigidLimit],
+        requires: &[Capability::Facets],
+        sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Dantzig 1963, Linear Programming and Extensions"],
+        file: file!(),
+        page: include_str!("limit_chain.md"),
+        check: no_further_check,
+    }
+}
+
+/// The three optimisations over chains.
+struct ChainEngine<'a> {
+    problem: &'a LimitProblem,
+    chains: Vec<Chain>,
+    pivots: u64,
+    newton_iterations: u64,
+    programs: u64,
+}
+
+/// Force that makes `wrenches` of size one.
+fn unit(problem: &LimitProblem, wrenches: &Wrenches) -> f64 {
+    match problem.magnitude(wrenches) {
+        0.0 => 1.0,
+        magnitude => magnitude,
+    }
+}
+
+impl<'a> ChainEngine<'a> {
+    fn new(problem: &'a LimitProblem) -> Option<Self> {
+        Some(ChainEngine {
+            problem,
+            chains: chains(problem)?,
+            pivots: 0,
+            newton_iterations: 0,
+            programs: 0,
+        })
+    }
+
+    /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given.
+    fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>) -> Verdict {
+        let force = unit(self.problem, fixed);
+        let columns: Vec<_> = varying
+            .iter()
+            .map(|v| (*v, force / unit(self.problem, v)))
+            .collect();
+        let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &columns, force);
+        let program = Program::new(self.problem, &forms, force).with_margin();
+        match self.run(&program) {
+            Outcome::Optimal(solved) if solved.value >= -1e-12 => {
+                Verdict::Field(program.forces(&solved.point))
+            }
+            Outcome::Optimal(solved) => {
+                let motion = program.motion(self.problem, &self.chains, &solved.columns);
+                let excess = -solved.value * force;
+                Verdict::Motion(scaled(motion, 1.0 / excess))
+            }
+            Outcome::Unbounded(_) | Outcome::Infeasible => {
+                Verdict::Failed("the margin program has no optimum".into())
+            }
+            Outcome::Failed(why) => Verdict::Failed(why),
+        }
+    }
+
+    fn run(&mut self, program: &Program) -> Outcome {
+        self.programs += 1;
+        let (outcome, work) = program.solve();
+        self.pivots += work.pivots;
+        self.newton_iterations += work.newton_iterations;
+        outcome
+    }
+}
+
+fn scaled(mut motion: Vec<Velocity>, factor: f64) -> Vec<Velocity> {
+    motion.iter_mut().flatten().for_each(|v| *v *= factor);
+    motion
+}
+
+/// Power of wrenches about the problem's pole on a motion.
+fn power(wrenches: &Wrenches, motion: &[Velocity]) -> f64 {
+    wrenches
+        .iter()
+        .zip(motion)
+        .map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2])
+        .sum()
+}
+
+impl Engine for ChainEngine<'_> {
+    fn stand(&mut self, loads: &Wrenches) -> Verdict {
+        self.margin(loads, None)
+    }
+
+    fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Verdict {
+        self.margin(fixed, Some(varying))
+    }
+
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+        let force = match self.problem.magnitude(fixed) {
+            0.0 => unit(self.problem, varying),
+            magnitude => magnitude,
+        };
+        let factor_unit = force / unit(self.problem, varying);
+        let forms = Forms::new(
+            self.problem,
+            &self.chains,
+            (fixed, 1.0),
+            &[(varying, factor_unit)],
+            force,
+        );
+        let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
+        match self.run(&program) {
+            Outcome::Optimal(Solved {
+                value,
+                point,
+                columns,
+                capped: false,
+            }) => {
+                let (columns, unique) = centre(&program, &point, columns);
+                let motion = program.motion(self.problem, &self.chains, &columns);
+                let power = power(varying, &motion);
+                Greatest::Collapse {
+                    factor: value * factor_unit,
+                    field: program.forces(&point),
+                    motion: scaled(motion, 1.0 / power),
+                    unique,
+                }
+            }
+            Outcome::Optimal(Solved { point, .. }) => Greatest::Capped(program.forces(&point)),
+            Outcome::Unbounded(direction) => {
+                let forces = program.directions(&direction);
+                Greatest::Unbounded(
+                    forces
+                        .into_iter()
+                        .map(|f| JointForce {
+                            normal: f.normal.map(|n| n / factor_unit),
+                            shear: f.shear / factor_unit,
+                        })
+                        .collect(),
+                )
+            }
+            Outcome::Infeasible => Greatest::Failed(
+                "no admissible field: the start is on the verge of collapse".into(),
+            ),
+            Outcome::Failed(why) => Greatest::Failed(why),
+        }
+    }
+
+    fn counters(&self) -> Counters {
+        [
+            ("programs", self.programs),
+            ("pivots", self.pivots),
+            ("newton_iterations", self.newton_iterations),
+            ("factorisations", 0),
+        ]
+        .map(|(name, count)| (name.to_string(), count))
+        .into()
+    }
+}

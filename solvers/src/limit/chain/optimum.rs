@@ -1,0 +1,164 @@
+//! Mechanisms in the relative interior of the optimal ones, where the optimum is degenerate.
+
+use super::simplex::{Column, Program};
+use nalgebra::{DMatrix, DVector};
+
+/// The analytic centre of all optimal multipliers {y ≥ 0 : Σ y_i a_i = c} over the rows active at
+/// `point`, and whether there is only one. `found` is one of them. The centre does not depend on
+/// the scale of rows and is symmetric where the scene is.
+pub fn centre(
+    program: &Program,
+    point: &[f64],
+    found: Vec<(Column, f64)>,
+) -> (Vec<(Column, f64)>, bool) {
+    let mut columns: Vec<Column> = found.iter().map(|(column, _)| *column).collect();
+    for column in program.active(point) {
+        if column != Column::Cap && !columns.iter().any(|other| same(*other, column)) {
+            columns.push(column);
+        }
+    }
+    let gradients: Vec<DVector<f64>> = columns
+        .iter()
+        .map(|&column| program.gradient(column))
+        .collect();
+    let matrix = DMatrix::from_columns(&gradients);
+    if rank(&matrix) == columns.len() {
+        return (found, true);
+    }
+    let mut start = DVector::zeros(columns.len());
+    found
+        .iter()
+        .enumerate()
+        .for_each(|(i, (_, weight))| start[i] = *weight);
+    let Some(interior) = interior_point(&matrix, &start) else {
+        return (found, false);
+    };
+    let scale = interior.amax();
+    let support: Vec<usize> = (0..columns.len())
+        .filter(|&i| interior[i] > 1e-9 * scale)
+        .collect();
+    let reduced = matrix.select_columns(&support);
+    if rank(&reduced) == support.len() {
+        return (found, true);
+    }
+    let weights = analytic_centre(&reduced, interior.select_rows(&support));
+    (
+        support
+            .iter()
+            .zip(weights.iter())
+            .map(|(&i, &weight)| (columns[i], weight))
+            .collect(),
+        false,
+    )
+}
+
+fn same(a: Column, b: Column) -> bool {
+    match (a, b) {
+        (
+            Column::Tangent { joint, end, .. },
+            Column::Tangent {
+                joint: j, end: e, ..
+            },
+        ) => (joint, end) == (j, e),
+        _ => a == b,
+    }
+}
+
+fn rank(matrix: &DMatrix<f64>) -> usize {
+    let mut scaled = matrix.clone();
+    for mut column in scaled.column_iter_mut() {
+        let norm = column.norm();
+        if norm > 0.0 {
+            column /= norm;
+        }
+    }
+    scaled.svd(false, false).rank(1e-9)
+}
+
+/// A point of {y ≥ 0 : A y = A start} with as many positive entries as any: the mean of points that
+/// each carry one entry as far as it goes.
+fn interior_point(matrix: &DMatrix<f64>, start: &DVector<f64>) -> Option<DVector<f64>> {
+    let k = matrix.ncols();
+    let mut sum = start.clone();
+    let mut count = 1.0;
+    for target in 0..k {
+        if sum[target] > 1e-9 * sum.amax() {
+            continue;
+        }
+        sum += carry(matrix, start, target)?;
+        count += 1.0;
+    }
+    Some(sum / count)
+}
+
+/// Increases entry `target` of a feasible point along null directions of the matrix as far as
+/// positivity allows: a small simplex method with Bland's rule on the rows of the null space.
+fn carry(matrix: &DMatrix<f64>, start: &DVector<f64>, target: usize) -> Option<DVector<f64>> {
+    let k = matrix.ncols();
+    // A basis of independent columns that contains the positive ones.
+    let mut order: Vec<usize> = (0..k).collect();
+    order.sort_by(|&a, &b| start[b].total_cmp(&start[a]).then(a.cmp(&b)));
+    let mut basis: Vec<usize> = Vec::new();
+    for index in order {
+        let mut trial = basis.clone();
+        trial.push(index);
+        if rank(&matrix.select_columns(&trial)) == trial.len() {
+            basis = trial;
+        }
+    }
+    let mut y = start.clone();
+    for _ in 0..200 {
+        let b = matrix.select_columns(&basis);
+        let pseudo = b.clone().svd(true, true);
+        let entering = (0..k).filter(|i| !basis.contains(i)).find_map(|i| {
+            let change = pseudo.solve(&matrix.column(i).into_owned(), 1e-12).ok()?;
+            let gain = f64::from(i == target)
+                - basis
+                    .iter()
+                    .position(|&j| j == target)
+                    .map_or(0.0, |place| change[place]);
+            (gain > 1e-10).then_some((i, change))
+        });
+        let Some((entering, change)) = entering else {
+            return Some(y);
+        };
+        let ratio = |place: usize| y[basis[place]].max(0.0) / change[place];
+        let place = (0..basis.len())
+            .filter(|&place| change[place] > 1e-10)
+            .min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)).then(basis[a].cmp(&basis[b])))?;
+        let step = ratio(place);
+        for (p, &j) in basis.iter().enumerate() {
+            y[j] = (y[j] - step * change[p]).max(0.0);
+        }
+        y[entering] = step;
+        y[basis[place]] = 0.0;
+        basis[place] = entering;
+    }
+    Some(y)
+}
+
+/// Newton's method on max Σ log y_i with A y fixed, from a positive start.
+fn analytic_centre(matrix: &DMatrix<f64>, start: DVector<f64>) -> DVector<f64> {
+    let target = matrix * &start;
+    let mut y = start;
+    for _ in 0..100 {
+        // Step d = Y² (g − Aᵀ ν) with g = 1/y and A d = target − A y.
+        let squared = DMatrix::from_diagonal(&y.map(|v| v * v));
+        let normal = matrix * &squared * matrix.transpose();
+        let residual = &target - matrix * &y;
+        let Ok(nu) = normal
+            .svd(true, true)
+            .solve(&(matrix * &y - residual), 1e-13)
+        else {
+            break;
+        };
+        let step = &y - &squared * matrix.transpose() * nu;
+        let largest = (0..y.len()).map(|i| -step[i] / y[i]).fold(0.0, f64::max);
+        let length = if largest > 0.9 { 0.9 / largest } else { 1.0 };
+        y += &step * length;
+        if (0..y.len()).all(|i| step[i].abs() <= 1e-14 * y[i]) {
+            break;
+        }
+    }
+    y
+}

@@ -1,0 +1,204 @@
+//! `limit_conic`: limit analysis of any scene by sparse conic programming, polished to rounding.
+
+mod interior_point;
+mod polish;
+mod sparse;
+mod system;
+
+use super::{Engine, Greatest, Verdict, answer};
+use interior_point::{Pair, Word, solve};
+use polish::polish;
+use serde::{Deserialize, Serialize};
+use system::{Loads, System};
+use voussoir_core::assembly::Wrenches;
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
+use voussoir_core::schema::PluginKind;
+
+/// Error of the polished optimality system, in scaled units, up to which an answer counts.
+const POLISHED: f64 = 1e-9;
+
+/// Limit analysis of any scene.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitConic {}
+
+#[typetag::serde(name = "limit_conic")]
+impl LimitSolver for LimitConic {
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+        answer(
+            problem,
+            question,
+            &mut ConicEngine {
+                problem,
+                work: Counters::new(),
+            },
+        )
+    }
+
+    fn refuses(&self, _: &LimitProblem) -> Option<String> {
+        None
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "limit_conic",
+        summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
+        parameters: &[],
+        provides: &[Capability::RigidLimit],
+        requires: &[Capability::Facets],
+        sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
+        file: file!(),
+        page: include_str!("limit_conic.md"),
+        check: no_further_check,
+    }
+}
+
+struct ConicEngine<'a> {
+    problem: &'a LimitProblem,
+    work: Counters,
+}
+
+enum Optimum {
+    Found { pair: Pair, unique: bool },
+    Unbounded,
+    Failed(String),
+}
+
+impl ConicEngine<'_> {
+    fn count(&mut self, name: &str, by: u64) {
+        *self.work.entry(name.into()).or_default() += by;
+    }
+
+    fn optimum(&mut self, system: &System) -> Optimum {
+        self.count("programs", 1);
+        match solve(system) {
+            Word::Pair(pair, iterations) => {
+                self.count("interior_point_iterations", iterations);
+                self.count("factorisations", iterations);
+                let Some(polished) = polish(system, &pair) else {
+                    return Optimum::Failed("the polish met a singular system".into());
+                };
+                self.count("factorisations", polished.factorisations);
+                self.count("newton_iterations", polished.iterations);
+                if polished.error > POLISHED {
+                    return Optimum::Failed(format!(
+                        "the polish ended with an error of {:.1e} in the optimality system",
+                        polished.error
+                    ));
+                }
+                Optimum::Found {
+                    pair: polished.pair,
+                    unique: polished.unique,
+                }
+            }
+            Word::Unbounded(iterations) => {
+                self.count("interior_point_iterations", iterations);
+                Optimum::Unbounded
+            }
+            Word::Other(why, iterations) => {
+                self.count("interior_point_iterations", iterations);
+                Optimum::Failed(why)
+            }
+        }
+    }
+
+    fn unit(&self, wrenches: &Wrenches) -> f64 {
+        match self.problem.magnitude(wrenches) {
+            0.0 => 1.0,
+            magnitude => magnitude,
+        }
+    }
+
+    /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
+    fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Verdict {
+        let force = self.unit(loads);
+        let system = System::new(
+            self.problem,
+            &Loads {
+                constant: None,
+                varying: (loads, 1.0),
+                free: free.map(|f| (f, force / self.unit(f))),
+                cap: Some(1.0),
+                strengths,
+                force,
+            },
+        );
+        match self.optimum(&system) {
+            Optimum::Found { pair, .. } if pair.x[system.theta] >= 1.0 - 1e-10 => {
+                Verdict::Field(system.forces(&pair.x))
+            }
+            Optimum::Found { pair, .. } => {
+                // loads·q̇ = 1 − y_cap = 1 and D = θ, so the excess is 1 − θ.
+                let excess = force * (1.0 - pair.x[system.theta]);
+                let mut motion = system.motion(&pair.equations);
+                motion.iter_mut().flatten().for_each(|v| *v /= excess);
+                Verdict::Motion(motion)
+            }
+            Optimum::Unbounded => Verdict::Failed("a bounded program was called unbounded".into()),
+            Optimum::Failed(why) => Verdict::Failed(why),
+        }
+    }
+}
+
+impl Engine for ConicEngine<'_> {
+    fn stand(&mut self, loads: &Wrenches) -> Verdict {
+        self.share(loads, None, true)
+    }
+
+    fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Verdict {
+        self.share(fixed, Some(varying), true)
+    }
+
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+        let force = match self.problem.magnitude(fixed) {
+            0.0 => self.unit(varying),
+            magnitude => magnitude,
+        };
+        let unit = force / self.unit(varying);
+        let system = System::new(
+            self.problem,
+            &Loads {
+                constant: Some(fixed),
+                varying: (varying, unit),
+                free: None,
+                cap: cap.is_finite().then_some(cap / unit),
+                strengths: true,
+                force,
+            },
+        );
+        let failed = match self.optimum(&system) {
+            Optimum::Found { pair, unique } => {
+                if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
+                    return Greatest::Capped(system.forces(&pair.x));
+                }
+                let mut motion = system.motion(&pair.equations);
+                let power: f64 = varying
+                    .iter()
+                    .zip(&motion)
+                    .map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2])
+                    .sum();
+                motion.iter_mut().flatten().for_each(|v| *v /= power);
+                return Greatest::Collapse {
+                    factor: pair.x[system.theta] * unit,
+                    field: system.forces(&pair.x),
+                    motion,
+                    unique,
+                };
+            }
+            Optimum::Unbounded => String::from("no ray confirms that the factor has no bound"),
+            Optimum::Failed(why) => why,
+        };
+        // Not bounded, or not solved: a ray settles it.
+        match self.share(varying, None, false) {
+            Verdict::Field(ray) => Greatest::Unbounded(ray),
+            _ => Greatest::Failed(failed),
+        }
+    }
+
+    fn counters(&self) -> Counters {
+        self.work.clone()
+    }
+}

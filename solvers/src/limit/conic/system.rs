@@ -1,0 +1,215 @@
+//! The program of one optimisation in scaled, sparse form.
+
+use voussoir_core::assembly::Wrenches;
+use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+use voussoir_core::strength::{StressBlock, Tangential};
+
+/// A sparse row of coefficients.
+pub type Row = Vec<(usize, f64)>;
+
+/// A joint's stress block as a constraint φ = u²/F − w ≤ 0, u = N_0 + N_1 + F_t, w = 2 N_end + F_t.
+#[derive(Debug, Clone)]
+pub struct Block {
+    /// Variables of N_0, N_1.
+    pub normal: [usize; 2],
+    /// Which end.
+    pub end: usize,
+    /// Scaled strengths.
+    pub strength: StressBlock,
+}
+
+impl Block {
+    /// (u, w) at x.
+    pub fn state(&self, x: &[f64]) -> (f64, f64) {
+        let u = x[self.normal[0]] + x[self.normal[1]] + self.strength.tension;
+        (u, 2.0 * x[self.normal[self.end]] + self.strength.tension)
+    }
+
+    /// φ at x.
+    pub fn value(&self, x: &[f64]) -> f64 {
+        let (u, w) = self.state(x);
+        u * u / self.strength.total - w
+    }
+
+    /// ∇φ at x.
+    pub fn gradient(&self, x: &[f64]) -> Row {
+        let slope = 2.0 * self.state(x).0 / self.strength.total;
+        (0..2)
+            .map(|i| {
+                (
+                    self.normal[i],
+                    slope - if i == self.end { 2.0 } else { 0.0 },
+                )
+            })
+            .collect()
+    }
+}
+
+/// Maximise x_θ subject to `equations` x = `right`, `rows` x ≤ `bounds` and blocks.
+pub struct System {
+    /// Number of variables.
+    pub variables: usize,
+    /// Index of θ, the last variable.
+    pub theta: usize,
+    /// Three per group.
+    pub equations: Vec<Row>,
+    /// Right-hand sides of the equations.
+    pub right: Vec<f64>,
+    /// Linear rows.
+    pub rows: Vec<Row>,
+    /// Their bounds.
+    pub bounds: Vec<f64>,
+    /// Index of the row θ ≤ cap, if any.
+    pub cap: Option<usize>,
+    /// Crushing.
+    pub blocks: Vec<Block>,
+    /// First variable of each joint and whether it has T.
+    joints: Vec<(usize, bool)>,
+    force: f64,
+    length: f64,
+}
+
+/// What the system is made for.
+pub struct Loads<'a> {
+    /// At factor one throughout.
+    pub constant: Option<&'a Wrenches>,
+    /// Multiplied by θ, with the factor one unit of θ stands for.
+    pub varying: (&'a Wrenches, f64),
+    /// Multiplied by a free variable.
+    pub free: Option<(&'a Wrenches, f64)>,
+    /// Upper bound of θ in its unit.
+    pub cap: Option<f64>,
+    /// With strengths, or in the recession cone.
+    pub strengths: bool,
+    /// Force scale [N].
+    pub force: f64,
+}
+
+impl System {
+    /// Builds and scales.
+    pub fn new(problem: &LimitProblem, loads: &Loads) -> Self {
+        let mut joints = Vec::with_capacity(problem.joints.len());
+        let mut variables = 0;
+        for joint in &problem.joints {
+            let shear = joint.strength.tangential() != Tangential::Free;
+            joints.push((variables, shear));
+            variables += if shear { 3 } else { 2 };
+        }
+        let free = loads.free.map(|f| {
+            variables += 1;
+            (variables - 1, f)
+        });
+        let theta = variables;
+        variables += 1;
+        let (force, length) = (loads.force, problem.length);
+        let scale = [1.0, 1.0, 1.0 / length];
+        let mut equations: Vec<Row> = vec![Row::new(); 3 * problem.groups];
+        let mut right = vec![0.0; 3 * problem.groups];
+        let (mut rows, mut bounds, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
+        for (joint, &(first, shear)) in problem.joints.iter().zip(&joints) {
+            let wrenches = joint.wrenches(problem.pole);
+            for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+                let Some(group) = group else { continue };
+                for (k, wrench) in wrenches.iter().enumerate().take(if shear { 3 } else { 2 }) {
+                    for i in 0..3 {
+                        if wrench[i] != 0.0 {
+                            equations[3 * group + i].push((first + k, sign * wrench[i] * scale[i]));
+                        }
+                    }
+                }
+            }
+            for row in &joint.strength.rows {
+                let entries: Row = (0..if shear { 3 } else { 2 })
+                    .filter(|&k| row.normal[k] != 0.0)
+                    .map(|k| (first + k, row.normal[k]))
+                    .collect();
+                if !entries.is_empty() {
+                    rows.push(entries);
+                    bounds.push(if loads.strengths {
+                        row.bound / force
+                    } else {
+                        0.0
+                    });
+                }
+            }
+            match joint.strength.block {
+                Some(block) if loads.strengths => {
+                    let strength = StressBlock {
+                        tension: block.tension / force,
+                        total: block.total / force,
+                    };
+                    blocks.extend((0..2).map(|end| Block {
+                        normal: [first, first + 1],
+                        end,
+                        strength,
+                    }));
+                }
+                Some(_) => {
+                    // A bounded normal force has no direction to grow in.
+                    for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                        rows.push(vec![(first + k, sign)]);
+                        bounds.push(0.0);
+                    }
+                }
+                None => {}
+            }
+        }
+        for group in 0..problem.groups {
+            for i in 0..3 {
+                let index = 3 * group + i;
+                if let Some(constant) = loads.constant {
+                    right[index] = -constant[group][i] * scale[i] / force;
+                }
+                let mut add = |variable: usize, (wrenches, unit): (&Wrenches, f64)| {
+                    let value = wrenches[group][i] * scale[i] * unit / force;
+                    if value != 0.0 {
+                        equations[index].push((variable, value));
+                    }
+                };
+                add(theta, loads.varying);
+                if let Some((variable, load)) = free {
+                    add(variable, load);
+                }
+            }
+        }
+        let cap = loads.cap.map(|cap| {
+            rows.push(vec![(theta, 1.0)]);
+            bounds.push(cap);
+            rows.len() - 1
+        });
+        System {
+            variables,
+            theta,
+            equations,
+            right,
+            rows,
+            bounds,
+            cap,
+            blocks,
+            joints,
+            force,
+            length,
+        }
+    }
+
+    /// Joint forces [N].
+    pub fn forces(&self, x: &[f64]) -> Vec<JointForce> {
+        let force = |&(first, shear): &(usize, bool)| JointForce {
+            normal: [x[first] * self.force, x[first + 1] * self.force],
+            shear: if shear {
+                x[first + 2] * self.force
+            } else {
+                0.0
+            },
+        };
+        self.joints.iter().map(force).collect()
+    }
+
+    /// Velocities about the pole from the multipliers of equilibrium, up to a common factor.
+    pub fn motion(&self, multipliers: &[f64]) -> Vec<Velocity> {
+        multipliers
+            .chunks(3)
+            .map(|q| [q[0], q[1], q[2] / self.length])
+            .collect()
+    }
+}
