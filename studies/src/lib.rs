@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod results;
+pub mod scenes;
 
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;
