@@ -4,6 +4,7 @@
 //! nothing) and reads study files, expands them into cases, answers them and writes results.
 #![forbid(unsafe_code)]
 
+pub mod loads;
 pub mod results;
 pub mod scenes;
 
