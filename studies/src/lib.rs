@@ -5,7 +5,11 @@
 #![forbid(unsafe_code)]
 
 pub mod answer;
+pub mod figures;
+pub mod loads;
 pub mod results;
+pub mod scenes;
+pub mod writers;
 
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;

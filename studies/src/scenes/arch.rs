@@ -1,0 +1,229 @@
+//! `arch`: a ring of voussoirs between two supports.
+#![doc = include_str!("arch.md")]
+
+use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
+use super::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
+use serde::{Deserialize, Serialize};
+use voussoir_core::assembly::{ArchLayout, Assembly, Body, Bond, Catalogue, Joint};
+use voussoir_core::card::{Card, check_as};
+use voussoir_core::contact::find_joints;
+use voussoir_core::geometry::bounding_box;
+use voussoir_core::issue::Issue;
+use voussoir_core::scene::Scene;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+
+/// How the ring meets its supports.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ends {
+    /// The springing faces move with the supports.
+    Bonded,
+    /// The springing joints follow the interface law.
+    #[default]
+    Jointed,
+}
+
+/// Mesh of each voussoir, where it deforms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// Elements along the ring, across it.
+    #[serde(default = "Mesh::default_elements")]
+    pub elements: [usize; 2],
+    /// Order of the elements, 1 or 2.
+    #[serde(default = "Mesh::default_order")]
+    pub order: usize,
+    /// Ratio of element sizes; more than 1 is finer towards the joint's ends.
+    #[serde(default = "Mesh::default_grading")]
+    pub grading: f64,
+}
+
+impl Mesh {
+    fn default_elements() -> [usize; 2] {
+        [4, 6]
+    }
+
+    fn default_order() -> usize {
+        2
+    }
+
+    fn default_grading() -> f64 {
+        1.0
+    }
+}
+
+const MAX_ELEMENTS: usize = 1000;
+const MAX_VOUSSOIRS: usize = 100_000;
+const GRADING: Range = Range::new(0.0, true, 100.0, false);
+
+/// A ring of voussoirs between two supports.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Arch {
+    /// Shape of the intrados.
+    pub profile: Profile,
+    /// Of the ring, along the joints [m]; not for `points`.
+    pub thickness: Option<f64>,
+    /// Out of plane [m].
+    pub width: f64,
+    /// Stress state of deformable voussoirs.
+    #[serde(default)]
+    pub plane: PlaneState,
+    /// Their number; may be left out for `points`.
+    pub voussoirs: Option<usize>,
+    /// How the ring meets its supports.
+    #[serde(default)]
+    pub ends: Ends,
+    /// Inclination of the support planes \[deg\].
+    pub springing: Option<Springing>,
+    /// Material of the voussoirs.
+    pub material: String,
+    /// Interface law of the joints.
+    pub joint: String,
+    /// Mesh of deformable voussoirs.
+    pub mesh: Option<Mesh>,
+}
+
+impl Arch {
+    /// The ring, or every mistake in the geometry, with paths from the scene's table.
+    pub fn ring(&self) -> Result<Ring, Vec<Issue>> {
+        let mut issues = Vec::new();
+        issues.extend(out_of_range("width", self.width, Range::POSITIVE));
+        if let Some(mesh) = &self.mesh {
+            for (i, &count) in mesh.elements.iter().enumerate().filter(|&(_, n)| !(1..=MAX_ELEMENTS).contains(n)) {
+                issues.push(Issue::new(format!("mesh.elements.{i}"), format!("{count} must be from 1 to {MAX_ELEMENTS}")));
+            }
+            if !(1..=2).contains(&mesh.order) {
+                issues.push(Issue::new("mesh.order", format!("{} must be 1 or 2", mesh.order)));
+            }
+            issues.extend(out_of_range("mesh.grading", mesh.grading, GRADING));
+        }
+        if self.voussoirs.is_some_and(|n| n > MAX_VOUSSOIRS) {
+            issues.push(Issue::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));
+            return Err(issues);
+        }
+        match self.profile.ring(self.thickness, self.voussoirs, self.springing) {
+            Ok(ring) => {
+                issues.extend(self.overlap(&ring));
+                if issues.is_empty() { Ok(ring) } else { Err(issues) }
+            }
+            Err(mut wrong) => {
+                issues.append(&mut wrong);
+                Err(issues)
+            }
+        }
+    }
+
+    /// A ring may close on itself: nearly a full circle, or ends that a springing draws together.
+    fn overlap(&self, ring: &Ring) -> Option<Issue> {
+        let bodies: Vec<_> = (0..ring.voussoirs()).map(|k| voussoir(ring, k, 0)).collect();
+        let (low, high) = bounding_box(ring.intrados.iter().chain(&ring.extrados));
+        let (_, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Bonded, 0.0));
+        let worst = overlaps.into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+        let [a, b] = worst.bodies;
+        let key = if self.springing.is_some() { "springing" } else { "profile" };
+        Some(Issue::new(key, format!("voussoirs {a} and {b} overlap by {:.3e} m: the ring runs into itself", worst.depth)))
+    }
+
+    fn validate(&self) -> Vec<(String, String)> {
+        self.ring().err().map(pairs_of).unwrap_or_default()
+    }
+}
+
+fn voussoir(ring: &Ring, k: usize, material: usize) -> Body {
+    Body { name: k.to_string(), vertices: ring.voussoir(k), material, fixed: false }
+}
+
+#[typetag::serde(name = "arch")]
+impl Scene for Arch {
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Issue>> {
+        let mut issues = Vec::new();
+        let material = take(material(catalogue, &self.material, "material"), &mut issues);
+        let law = take(law(catalogue, &self.joint, "joint"), &mut issues);
+        let ring = self.ring().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+        let (Some(material), Some(law), Some(ring)) = (material, law, ring) else {
+            return Err(from_root(issues));
+        };
+        let count = ring.voussoirs();
+        let support = |name: &str| Body { name: name.into(), vertices: Vec::new(), material, fixed: true };
+        let mut bodies = vec![support("left")];
+        bodies.extend((0..count).map(|k| voussoir(&ring, k, material)));
+        bodies.push(support("right"));
+        let joint = |k: usize| Joint {
+            minus: k,
+            plus: k + 1,
+            ends: [ring.intrados[k], ring.extrados[k]],
+            bond: if self.ends == Ends::Bonded && (k == 0 || k == count) { Bond::Bonded } else { Bond::Law(law) },
+            gap: 0.0,
+        };
+        Ok(Assembly {
+            catalogue: catalogue.clone(),
+            joints: (0..=count).map(joint).collect(),
+            bodies,
+            width: self.width,
+            plane: self.plane.into(),
+            arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),
+        })
+    }
+}
+
+const MESH: &[Parameter] = &[
+    Parameter {
+        name: "elements",
+        doc: "elements along the ring, across it",
+        shape: Shape::List { of: &Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 }, min: 2, max: 2 },
+        need: Need::Default("[4, 6]"),
+    },
+    Parameter {
+        name: "order",
+        doc: "order of the elements",
+        shape: Shape::Integer { min: 1, max: 2 },
+        need: Need::Default("2"),
+    },
+    Parameter::number("grading", Quantity::Ratio, GRADING, "more than 1 is finer towards the joint's ends").default("1.0"),
+];
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter { name: "profile", doc: "shape of the intrados", shape: PROFILE, need: Need::Required },
+    Parameter::number("thickness", Quantity::Length, Range::POSITIVE, "of the ring, along the joints")
+        .optional("the profile is a list of points"),
+    WIDTH,
+    PLANE,
+    Parameter {
+        name: "voussoirs",
+        doc: "their number",
+        shape: Shape::Integer { min: 1, max: MAX_VOUSSOIRS as i64 },
+        need: Need::Optional("the profile is a list of points"),
+    },
+    Parameter {
+        name: "ends",
+        doc: "bonded: the springing faces move with the supports; jointed: they follow the interface law",
+        shape: Shape::Choice(&["bonded", "jointed"]),
+        need: Need::Default("\"jointed\""),
+    },
+    Parameter {
+        name: "springing",
+        doc: "inclination of the support plane above the horizontal, rising outwards; one number or [left, right]",
+        shape: SPRINGING,
+        need: Need::Optional("the end joints are normal to the intrados"),
+    },
+    MATERIAL,
+    JOINT,
+    Parameter { name: "mesh", doc: "mesh of deformable voussoirs", shape: Shape::Table(MESH), need: Need::Optional("the defaults of its keys") },
+];
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::Scene,
+        tag: "arch",
+        summary: "a ring of voussoirs between two supports",
+        parameters: PARAMETERS,
+        provides: &[],
+        requires: &[],
+        sources: &["Heyman 1982, The Masonry Arch"],
+        file: file!(),
+        page: include_str!("arch.md"),
+        check: |value| check_as::<Arch>(value, Arch::validate),
+    }
+}

@@ -1,0 +1,347 @@
+//! `blocks`: a free assembly of polygonal blocks.
+#![doc = include_str!("blocks.md")]
+
+use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take, unknown};
+use serde::{Deserialize, Serialize};
+use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Joint};
+use voussoir_core::card::{Card, check_as};
+use voussoir_core::contact::{Interpenetration, find_joints};
+use voussoir_core::geometry::{Vec2, area_and_centroid, bounding_box, cross, crosses_itself};
+use voussoir_core::issue::Issue;
+use voussoir_core::scene::Scene;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+
+/// One block.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Block {
+    /// Unique.
+    pub name: String,
+    /// In either sense [m].
+    pub vertices: Vec<[f64; 2]>,
+    /// Held by the ground.
+    #[serde(default)]
+    pub fixed: bool,
+    /// Instead of the scene's.
+    pub material: Option<String>,
+    /// Law of its joints, instead of the scene's.
+    pub joint: Option<String>,
+}
+
+/// What is special about the joints between two blocks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pair {
+    /// Names of the two blocks, in either order.
+    pub between: [String; 2],
+    /// Law of their joints.
+    pub joint: Option<String>,
+    /// Initial opening [m].
+    #[serde(default)]
+    pub gap: f64,
+}
+
+/// A free assembly.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Blocks {
+    /// Out of plane [m].
+    pub width: f64,
+    /// Stress state of deformable blocks.
+    #[serde(default)]
+    pub plane: PlaneState,
+    /// Material of blocks that name none.
+    pub material: Option<String>,
+    /// Law of joints for which none is named.
+    pub joint: Option<String>,
+    /// The blocks.
+    pub blocks: Vec<Block>,
+    /// Joints with a law or gap of their own.
+    #[serde(default)]
+    pub pairs: Vec<Pair>,
+}
+
+/// The polygon of a list of vertices, anticlockwise and beginning at the same vertex.
+fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
+    let mut polygon: Vec<_> = vertices.iter().map(|&[x, y]| Vec2::new(x, y)).collect();
+    if polygon.len() < 3 {
+        return Err(format!("{} vertices make no block: at least three", polygon.len()));
+    }
+    if let Some(i) = polygon.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
+        return Err(format!("vertex {i} is not finite"));
+    }
+    let (low, high) = bounding_box(&polygon);
+    let size = (high - low).norm();
+    let n = polygon.len();
+    if let Some(i) = (0..n).find(|&i| (polygon[(i + 1) % n] - polygon[i]).norm() <= 1e-12 * size) {
+        return Err(format!("vertices {i} and {} coincide", (i + 1) % n));
+    }
+    let (area, _) = area_and_centroid(&polygon);
+    let flat = area.abs() <= 1e-12 * size * size;
+    // Two edges that fold back on each other touch as neighbours, which the test of crossing leaves out.
+    let folds = |i: usize| {
+        let (one, other) = (polygon[(i + 1) % n] - polygon[i], polygon[(i + 2) % n] - polygon[(i + 1) % n]);
+        cross(one, other).abs() <= 1e-12 * one.norm() * other.norm() && one.dot(&other) < 0.0
+    };
+    if crosses_itself(&polygon) {
+        return Err("the outline crosses or touches itself".into());
+    }
+    if flat {
+        return Err("the block has no area".into());
+    }
+    if let Some(i) = (0..n).find(|&i| folds(i)) {
+        return Err(format!("the outline folds back on itself at vertex {}", (i + 1) % n));
+    }
+    if area < 0.0 {
+        polygon[1..].reverse();
+    }
+    Ok(polygon)
+}
+
+impl Blocks {
+    /// Polygons, and every mistake that needs no catalogue, with paths from the scene's table.
+    fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Issue>) {
+        let mut issues = Vec::new();
+        issues.extend(out_of_range("width", self.width, Range::POSITIVE));
+        if self.blocks.is_empty() {
+            issues.push(Issue::new("blocks", "there is no block"));
+        } else if self.blocks.iter().all(|block| !block.fixed) {
+            issues.push(Issue::new("blocks", "nothing is fixed").help("give fixed = true to the blocks that are held"));
+        } else if self.blocks.iter().all(|block| block.fixed) {
+            issues.push(Issue::new("blocks", "every block is fixed: nothing can move"));
+        }
+        for (i, block) in self.blocks.iter().enumerate() {
+            let key = format!("blocks.{i}.name");
+            if block.name.trim().is_empty() {
+                issues.push(Issue::new(&key, "is empty"));
+            }
+            if let Some(first) = self.blocks[..i].iter().position(|other| other.name == block.name) {
+                let message = format!("\"{}\" is already the name of block {first} of the list", block.name);
+                issues.push(Issue::new(&key, message));
+            }
+            if !block.fixed && matches!(block.name.as_str(), "left" | "right") {
+                let message = format!("\"{}\" is the name of a support, but this block is not fixed", block.name);
+                issues.push(Issue::new(&key, message));
+            }
+        }
+        let shapes = self.blocks.iter().enumerate().map(|(i, block)| {
+            let wrong = |message| Issue::new(format!("blocks.{i}.vertices"), format!("block \"{}\": {message}", block.name));
+            take(polygon(&block.vertices).map_err(wrong), &mut issues)
+        });
+        let shapes = shapes.collect();
+        self.check_pairs(&mut issues);
+        (shapes, issues)
+    }
+
+    fn check_pairs(&self, issues: &mut Vec<Issue>) {
+        for (i, pair) in self.pairs.iter().enumerate() {
+            for (end, name) in pair.between.iter().enumerate() {
+                if self.position(name).is_none() {
+                    let names = self.blocks.iter().map(|block| block.name.as_str());
+                    issues.push(unknown(&format!("pairs.{i}.between.{end}"), "block", name, names));
+                }
+            }
+            issues.extend(out_of_range(&format!("pairs.{i}.gap"), pair.gap, Range::NON_NEGATIVE));
+            let key = format!("pairs.{i}.between");
+            if pair.between[0] == pair.between[1] {
+                issues.push(Issue::new(&key, "names one block twice"));
+            }
+            let same = |other: &Pair| pair.is_between(&other.between[0], &other.between[1]);
+            if let Some(first) = self.pairs[..i].iter().position(same) {
+                issues.push(Issue::new(&key, format!("is already pair {first} of the list")));
+            }
+        }
+    }
+
+    fn position(&self, name: &str) -> Option<usize> {
+        self.blocks.iter().position(|block| block.name == name)
+    }
+
+    /// The pair of two blocks, with its index.
+    fn pair(&self, a: usize, b: usize) -> Option<(usize, &Pair)> {
+        let (a, b) = (&self.blocks[a].name, &self.blocks[b].name);
+        self.pairs.iter().enumerate().find(|(_, pair)| pair.is_between(a, b))
+    }
+
+    /// The name of the law between two blocks, and the key that gives it.
+    fn law_name(&self, a: usize, b: usize) -> Result<(&str, String), Issue> {
+        if let Some((i, pair)) = self.pair(a, b)
+            && let Some(name) = &pair.joint
+        {
+            return Ok((name, format!("pairs.{i}.joint")));
+        }
+        match [a, b].map(|i| self.blocks[i].joint.as_deref().map(|name| (name, format!("blocks.{i}.joint")))) {
+            [Some(one), Some(other)] if one.0 != other.0 => {
+                let (first, second) = (&self.blocks[a].name, &self.blocks[b].name);
+                let message =
+                    format!("blocks \"{first}\" and \"{second}\" touch and name different joint laws, \"{}\" and \"{}\"", one.0, other.0);
+                let help = format!("decide by pairs = [{{ between = [\"{first}\", \"{second}\"], joint = … }}]");
+                Err(Issue::new(other.1, message).help(help))
+            }
+            [Some(one), _] | [None, Some(one)] => Ok(one),
+            [None, None] => match &self.joint {
+                Some(name) => Ok((name, "joint".into())),
+                None => Err(Issue::new("joint", "is missing: the interface law of joints for which none is named")),
+            },
+        }
+    }
+
+    fn validate(&self) -> Vec<(String, String)> {
+        let (shapes, mut issues) = self.shapes();
+        if issues.is_empty() {
+            let bodies = self.bodies(shapes, &vec![0; self.blocks.len()]);
+            issues.extend(self.joints(&bodies, |_, _| Bond::Bonded).err().into_iter().flatten());
+        }
+        pairs_of(issues)
+    }
+
+    fn bodies(&self, shapes: Vec<Option<Vec<Vec2>>>, materials: &[usize]) -> Vec<Body> {
+        let body = |((block, shape), &material): ((&Block, Option<Vec<Vec2>>), &usize)| Body {
+            name: block.name.clone(),
+            vertices: shape.unwrap_or_default(),
+            material,
+            fixed: block.fixed,
+        };
+        self.blocks.iter().zip(shapes).zip(materials).map(body).collect()
+    }
+
+    /// Joints of sound bodies; overlaps, and pairs that share no joint, are mistakes.
+    fn joints(&self, bodies: &[Body], bond: impl Fn(usize, usize) -> Bond) -> Result<Vec<Joint>, Vec<Issue>> {
+        let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
+        let gap = |a, b| self.pair(a, b).map_or(0.0, |(_, pair)| pair.gap);
+        let (joints, overlaps) = find_joints(bodies, (high - low).norm(), |a, b| (bond(a, b), gap(a, b)));
+        let mut issues: Vec<_> = overlaps.iter().map(|overlap| self.overlap(overlap)).collect();
+        for (i, pair) in self.pairs.iter().enumerate() {
+            let [Some(a), Some(b)] = [0, 1].map(|end| self.position(&pair.between[end])) else { continue };
+            let overlap = overlaps.iter().any(|overlap| overlap.bodies == [a.min(b), a.max(b)]);
+            if !overlap && !joints.iter().any(|joint| [joint.minus, joint.plus] == [a.min(b), a.max(b)]) {
+                let reason = if bodies[a].fixed && bodies[b].fixed { "are both fixed" } else { "share no joint" };
+                let message = format!("blocks \"{}\" and \"{}\" {reason}", pair.between[0], pair.between[1]);
+                issues.push(Issue::new(format!("pairs.{i}.between"), message));
+            }
+        }
+        if issues.is_empty() { Ok(joints) } else { Err(issues) }
+    }
+
+    fn overlap(&self, overlap: &Interpenetration) -> Issue {
+        let [a, b] = overlap.bodies;
+        let (first, second) = (&self.blocks[a].name, &self.blocks[b].name);
+        let message = format!("blocks \"{first}\" and \"{second}\" overlap, {:.3e} m deep", overlap.depth);
+        Issue::new(format!("blocks.{b}.vertices"), message)
+    }
+}
+
+impl Pair {
+    fn is_between(&self, a: &str, b: &str) -> bool {
+        let [one, other] = &self.between;
+        (one == a && other == b) || (one == b && other == a)
+    }
+}
+
+#[typetag::serde(name = "blocks")]
+impl Scene for Blocks {
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Issue>> {
+        let (shapes, mut issues) = self.shapes();
+        let mut missing = false;
+        let material_of = |(i, block): (usize, &Block)| match (&block.material, &self.material) {
+            (Some(name), _) => take(material(catalogue, name, &format!("blocks.{i}.material")), &mut issues),
+            (None, Some(name)) => catalogue.material(name),
+            (None, None) => {
+                missing = true;
+                None
+            }
+        };
+        let materials: Option<Vec<_>> = self.blocks.iter().enumerate().map(material_of).collect();
+        if missing {
+            issues.push(Issue::new("material", "is missing: the material of blocks that name none"));
+        }
+        // Names are checked whether or not a joint uses them.
+        if let Some(name) = &self.material {
+            issues.extend(material(catalogue, name, "material").err());
+        }
+        if let Some(name) = &self.joint {
+            issues.extend(law(catalogue, name, "joint").err());
+        }
+        for (i, name) in self.blocks.iter().enumerate().filter_map(|(i, block)| Some((i, block.joint.as_ref()?))) {
+            issues.extend(law(catalogue, name, &format!("blocks.{i}.joint")).err());
+        }
+        for (i, name) in self.pairs.iter().enumerate().filter_map(|(i, pair)| Some((i, pair.joint.as_ref()?))) {
+            issues.extend(law(catalogue, name, &format!("pairs.{i}.joint")).err());
+        }
+        let Some(materials) = materials.filter(|_| issues.is_empty()) else { return Err(from_root(issues)) };
+        let bodies = self.bodies(shapes, &materials);
+        let mut joints = self.joints(&bodies, |_, _| Bond::Bonded).map_err(from_root)?;
+        for joint in &mut joints {
+            let index = self.law_name(joint.minus, joint.plus).and_then(|(name, key)| law(catalogue, name, &key));
+            match index {
+                Ok(index) => joint.bond = Bond::Law(index),
+                Err(issue) if issues.contains(&issue) => {}
+                Err(issue) => issues.push(issue),
+            }
+        }
+        if !issues.is_empty() {
+            return Err(from_root(issues));
+        }
+        let (width, plane) = (self.width, self.plane.into());
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, arch: None })
+    }
+}
+
+const BLOCK: &[Parameter] = &[
+    Parameter { name: "name", doc: "unique", shape: Shape::Text, need: Need::Required },
+    Parameter {
+        name: "vertices",
+        doc: "in either sense",
+        shape: Shape::List { of: &POINT, min: 3, max: usize::MAX },
+        need: Need::Required,
+    },
+    Parameter { name: "fixed", doc: "held by the ground", shape: Shape::Boolean, need: Need::Default("false") },
+    MATERIAL.optional("the scene's"),
+    JOINT.optional("the scene's"),
+];
+
+const PAIR: &[Parameter] = &[
+    Parameter {
+        name: "between",
+        doc: "names of two blocks",
+        shape: Shape::List { of: &Shape::Text, min: 2, max: 2 },
+        need: Need::Required,
+    },
+    JOINT.optional("that of the blocks, or the scene's"),
+    Parameter::number("gap", Quantity::Length, Range::NON_NEGATIVE, "initial opening").default("0.0"),
+];
+
+const PARAMETERS: &[Parameter] = &[
+    WIDTH,
+    PLANE,
+    MATERIAL.optional("every block names its own"),
+    JOINT.optional("every joint has a law from its blocks or its pair"),
+    Parameter {
+        name: "blocks",
+        doc: "the blocks",
+        shape: Shape::List { of: &Shape::Table(BLOCK), min: 1, max: usize::MAX },
+        need: Need::Required,
+    },
+    Parameter {
+        name: "pairs",
+        doc: "joints with a law or gap of their own",
+        shape: Shape::List { of: &Shape::Table(PAIR), min: 0, max: usize::MAX },
+        need: Need::Default("[]"),
+    },
+];
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::Scene,
+        tag: "blocks",
+        summary: "any assembly of polygonal blocks",
+        parameters: PARAMETERS,
+        provides: &[],
+        requires: &[],
+        sources: &["Livesley 1978, Int. J. Numer. Methods Eng. 12"],
+        file: file!(),
+        page: include_str!("blocks.md"),
+        check: |value| check_as::<Blocks>(value, Blocks::validate),
+    }
+}

@@ -1,0 +1,374 @@
+//! The profile of an arch: its intrados, and from it the vertices of a ring of straight-sided
+//! voussoirs. x = 0 at midspan, y = 0 at the intrados springings.
+//!
+//! Joints are normal to the intrados at equal arc length (on a segmental arch at equal angles, the
+//! same thing), the thickness is measured along them. At the apex of a pointed arch, where the
+//! intrados has no normal, the joint is upright. Sources: plane geometry; the catenary after
+//! Bernoulli, Huygens and Leibniz (1691).
+
+use super::curve::Curve;
+use super::out_of_range;
+use serde::{Deserialize, Serialize};
+use voussoir_core::geometry::{Vec2, area_and_centroid, bounding_box, crosses_itself};
+use voussoir_core::issue::Issue;
+use voussoir_core::schema::{Need, Parameter, Range, Shape, Variant};
+use voussoir_core::units::Quantity;
+
+/// `profile = { shape = …, … }`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "shape", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Profile {
+    /// Circular arc; rise > span/2 is more than a half circle.
+    Segmental {
+        /// Clear span [m].
+        span: f64,
+        /// Rise of the intrados [m].
+        rise: f64,
+    },
+    /// Half ellipse.
+    Elliptical {
+        /// Clear span [m].
+        span: f64,
+        /// Rise of the intrados [m].
+        rise: f64,
+    },
+    /// Parabola.
+    Parabolic {
+        /// Clear span [m].
+        span: f64,
+        /// Rise of the intrados [m].
+        rise: f64,
+    },
+    /// Hanging chain, turned over.
+    Catenary {
+        /// Clear span [m].
+        span: f64,
+        /// Rise of the intrados [m].
+        rise: f64,
+    },
+    /// Two arcs with centres on the springing line.
+    Pointed {
+        /// Clear span [m].
+        span: f64,
+        /// Rise of the intrados [m], at least span/2.
+        rise: f64,
+    },
+    /// A crown arc between two side arcs that are upright at the springings.
+    ThreeCentred {
+        /// Clear span [m].
+        span: f64,
+        /// Rise of the intrados [m], less than span/2.
+        rise: f64,
+        /// Radius of the crown arc [m].
+        crown_radius: f64,
+    },
+    /// Vertices joint by joint, from left to right.
+    Points {
+        /// Intrados end of each joint [m].
+        intrados: Vec<[f64; 2]>,
+        /// Extrados end of each joint [m].
+        extrados: Vec<[f64; 2]>,
+    },
+}
+
+const SPAN: Parameter = Parameter::number("span", Quantity::Length, Range::POSITIVE, "clear span of the intrados");
+const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSITIVE, "rise of the intrados");
+const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
+
+const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
+
+/// What a profile may hold.
+pub const PROFILE: Shape = Shape::Tagged {
+    key: "shape",
+    variants: &[
+        Variant { tag: "segmental", doc: "circular arc; rise > span/2 is more than a half circle", parameters: SPAN_RISE },
+        Variant { tag: "elliptical", doc: "half ellipse", parameters: SPAN_RISE },
+        Variant { tag: "parabolic", doc: "parabola", parameters: SPAN_RISE },
+        Variant { tag: "catenary", doc: "hanging chain turned over", parameters: SPAN_RISE },
+        Variant { tag: "pointed", doc: "two arcs with centres on the springing line, rise ≥ span/2", parameters: SPAN_RISE },
+        Variant {
+            tag: "three_centred",
+            doc: "crown arc between two side arcs, upright at the springings, rise < span/2",
+            parameters: &[
+                SPAN,
+                RISE,
+                Parameter::number(
+                    "crown_radius",
+                    Quantity::Length,
+                    Range::POSITIVE,
+                    "radius of the crown arc, more than that of the segmental arc of this span and rise",
+                ),
+            ],
+        },
+        Variant {
+            tag: "points",
+            doc: "vertices joint by joint, from left to right",
+            parameters: &[
+                Parameter { name: "intrados", doc: "intrados end of each joint", shape: VERTICES, need: Need::Required },
+                Parameter { name: "extrados", doc: "extrados end of each joint", shape: VERTICES, need: Need::Required },
+            ],
+        },
+    ],
+};
+
+/// `springing`: inclination of the support planes above the horizontal, rising outwards \[deg\].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Springing {
+    /// The same on both sides.
+    Both(f64),
+    /// Left, right.
+    Each([f64; 2]),
+}
+
+const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
+const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
+
+/// What `springing` may hold.
+pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::List { of: &DEGREES, min: 2, max: 2 }]);
+
+impl Springing {
+    /// [left, right] \[deg\], each with its key.
+    fn sides(self) -> [(f64, &'static str); 2] {
+        match self {
+            Springing::Both(angle) => [(angle, "springing"); 2],
+            Springing::Each([left, right]) => [(left, "springing.0"), (right, "springing.1")],
+        }
+    }
+}
+
+/// Vertices of a ring of voussoirs, joint by joint from left to right [m].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ring {
+    /// Intrados ends of the N + 1 joints.
+    pub intrados: Vec<Vec2>,
+    /// Extrados ends of the N + 1 joints.
+    pub extrados: Vec<Vec2>,
+    /// Horizontal distance of the intrados springings.
+    pub span: f64,
+    /// Height of the highest intrados point above the middle of the springings.
+    pub rise: f64,
+}
+
+impl Ring {
+    /// Voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
+    pub fn voussoir(&self, k: usize) -> Vec<Vec2> {
+        vec![self.intrados[k], self.intrados[k + 1], self.extrados[k + 1], self.extrados[k]]
+    }
+
+    /// Number of voussoirs.
+    pub fn voussoirs(&self) -> usize {
+        self.intrados.len() - 1
+    }
+}
+
+impl Profile {
+    /// The ring of `voussoirs` voussoirs, `thickness` [m] thick. Both must be given, except for
+    /// `points`, which hold them. Issues have paths from the scene's table.
+    pub fn ring(
+        &self,
+        thickness: Option<f64>,
+        voussoirs: Option<usize>,
+        springing: Option<Springing>,
+    ) -> Result<Ring, Vec<Issue>> {
+        if let Profile::Points { intrados, extrados } = self {
+            return ring_of_points(intrados, extrados, thickness, voussoirs, springing);
+        }
+        let mut issues = Vec::new();
+        match thickness {
+            None => issues.push(Issue::new("thickness", "is missing: the thickness of the ring [m]")),
+            Some(thickness) => issues.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
+        }
+        match voussoirs {
+            None => issues.push(Issue::new("voussoirs", "is missing: the number of voussoirs")),
+            Some(0) => issues.push(Issue::new("voussoirs", "there must be at least one")),
+            Some(_) => {}
+        }
+        if let Some(springing) = springing {
+            let sides = springing.sides();
+            let sides = if sides[0] == sides[1] { &sides[..1] } else { &sides[..] };
+            issues.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
+        }
+        let curve = self.curve().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+        let (Some(curve), Some(thickness), Some(voussoirs)) = (curve, thickness, voussoirs) else {
+            return Err(issues);
+        };
+        if !issues.is_empty() {
+            return Err(issues);
+        }
+        let mut ring = ring_on(&curve, thickness, voussoirs);
+        if let Some(springing) = springing {
+            move_springings(&mut ring, &curve, thickness, springing)?;
+        }
+        check_voussoirs(&ring, springing)?;
+        Ok(ring)
+    }
+
+    /// The intrados, unless it cannot exist.
+    fn curve(&self) -> Result<Curve, Vec<Issue>> {
+        let (span, rise) = match *self {
+            Profile::Segmental { span, rise }
+            | Profile::Elliptical { span, rise }
+            | Profile::Parabolic { span, rise }
+            | Profile::Catenary { span, rise }
+            | Profile::Pointed { span, rise }
+            | Profile::ThreeCentred { span, rise, .. } => (span, rise),
+            Profile::Points { .. } => unreachable!("a list of points is no curve"),
+        };
+        let mut issues = Vec::new();
+        issues.extend(out_of_range("profile.span", span, Range::POSITIVE));
+        issues.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
+        if issues.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
+            let message = format!("{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span");
+            issues.push(Issue::new("profile.rise", message));
+        }
+        if !issues.is_empty() {
+            return Err(issues);
+        }
+        match *self {
+            Profile::Segmental { .. } => Ok(Curve::segmental(span, rise)),
+            Profile::Elliptical { .. } => Ok(Curve::elliptical(span, rise)),
+            Profile::Parabolic { .. } => Ok(Curve::parabolic(span, rise)),
+            Profile::Catenary { .. } => Ok(Curve::catenary(span, rise)),
+            Profile::Pointed { .. } if rise < span / 2.0 => Err(vec![
+                Issue::new(
+                    "profile.rise",
+                    format!("{rise} m is too low for a pointed arch: at least half the span, {} m", span / 2.0),
+                )
+                .help("a lower pointed arch needs centres below the springings; give its points"),
+            ]),
+            Profile::Pointed { .. } => Ok(Curve::pointed(span, rise)),
+            Profile::ThreeCentred { crown_radius, .. } => three_centred(span, rise, crown_radius).map_err(|i| vec![i]),
+            Profile::Points { .. } => unreachable!("returned above"),
+        }
+    }
+}
+
+/// With rise < span/2 the side radius lies between 0 and the crown radius exactly where the crown
+/// radius exceeds that of the segmental arc; with more rise the crown arc would turn beyond the upright.
+fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Issue> {
+    if rise >= span / 2.0 {
+        let message = format!("{rise} m is too high for a three-centred arch: less than half the span, {} m", span / 2.0);
+        return Err(Issue::new("profile.rise", message));
+    }
+    let least = (span * span / 4.0 + rise * rise) / (2.0 * rise);
+    let curve = Curve::three_centred(span, rise, crown);
+    match curve {
+        Curve::ThreeCentred { side, .. } if crown > least && side > 0.0 && side < crown && crown.is_finite() => Ok(curve),
+        _ => Err(Issue::new(
+            "profile.crown_radius",
+            format!("{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"),
+        )),
+    }
+}
+
+/// Joints normal to the curve at equal arc length. Joint N − k is the exact mirror image of joint k.
+fn ring_on(curve: &Curve, thickness: f64, voussoirs: usize) -> Ring {
+    let (mut intrados, mut extrados) = (Vec::new(), Vec::new());
+    for k in 0..=voussoirs {
+        let from_crown = (2 * k).abs_diff(voussoirs);
+        let (point, normal) = curve.at_share(from_crown, voussoirs);
+        let outer = point + normal * thickness;
+        let left = 2 * k < voussoirs;
+        intrados.push(if left { mirrored(point) } else { point });
+        extrados.push(if left { mirrored(outer) } else { outer });
+    }
+    Ring { intrados, extrados, span: 2.0 * curve.half_span(), rise: curve.rise() }
+}
+
+fn mirrored(p: Vec2) -> Vec2 {
+    Vec2::new(-p.x, p.y)
+}
+
+/// Moves the end vertices of the extrados along the offset curve onto the support planes.
+fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Springing) -> Result<(), Vec<Issue>> {
+    let last = ring.voussoirs();
+    let mut issues = Vec::new();
+    for (side, (degrees, key)) in springing.sides().into_iter().enumerate() {
+        match curve.offset_on_plane(thickness, degrees.to_radians()) {
+            Some(point) if side == 0 => ring.extrados[0] = mirrored(point),
+            Some(point) => ring.extrados[last] = point,
+            None if issues.is_empty() || key != "springing" => issues.push(Issue::new(
+                key,
+                format!("a plane at {degrees} deg through the springing never meets the extrados on its side of the crown"),
+            )),
+            None => {}
+        }
+    }
+    if issues.is_empty() { Ok(()) } else { Err(issues) }
+}
+
+/// Every voussoir must have an area and not cross itself.
+fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<Issue>> {
+    let last = ring.voussoirs() - 1;
+    let sound = |k: usize| is_sound(&ring.voussoir(k));
+    let mut issues = Vec::new();
+    for k in (0..=last).filter(|&k| !sound(k)) {
+        issues.push(match springing {
+            Some(springing) if k == 0 || k == last => {
+                let (degrees, key) = springing.sides()[usize::from(k == last)];
+                let message = format!("a springing at {degrees} deg cuts voussoir {k} away: it has no area or crosses itself");
+                Issue::new(key, message)
+            }
+            _ => Issue::new("voussoirs", format!("voussoir {k} has no area or crosses itself")).help("use more voussoirs"),
+        });
+    }
+    issues.dedup_by(|a, b| a.path == b.path);
+    if issues.is_empty() { Ok(()) } else { Err(issues) }
+}
+
+/// Whether an anticlockwise polygon has an area beyond rounding and does not cross itself.
+fn is_sound(vertices: &[Vec2]) -> bool {
+    let (low, high) = bounding_box(vertices);
+    area_and_centroid(vertices).0 > 1e-12 * (high - low).norm_squared() && !crosses_itself(vertices)
+}
+
+fn ring_of_points(
+    intrados: &[[f64; 2]],
+    extrados: &[[f64; 2]],
+    thickness: Option<f64>,
+    voussoirs: Option<usize>,
+    springing: Option<Springing>,
+) -> Result<Ring, Vec<Issue>> {
+    let mut issues = Vec::new();
+    if thickness.is_some() {
+        issues.push(Issue::new("thickness", "the points of the profile already fix it").help("remove this key"));
+    }
+    if springing.is_some() {
+        issues.push(Issue::new("springing", "the points of the profile already fix it").help("remove this key"));
+    }
+    if intrados.len() != extrados.len() {
+        let message = format!("{} points, but the intrados has {}", extrados.len(), intrados.len());
+        issues.push(Issue::new("profile.extrados", message).help("give both ends of every joint"));
+    }
+    if intrados.len() < 2 {
+        issues.push(Issue::new("profile.intrados", "at least two points: the springings"));
+    }
+    if let Some(voussoirs) = voussoirs
+        && voussoirs + 1 != intrados.len()
+    {
+        let message = format!("{voussoirs}, but {} points make {}", intrados.len(), intrados.len().saturating_sub(1));
+        issues.push(Issue::new("voussoirs", message).help("remove this key"));
+    }
+    for (key, points) in [("intrados", intrados), ("extrados", extrados)] {
+        for (i, point) in points.iter().enumerate().filter(|(_, p)| !p.iter().all(|x| x.is_finite())) {
+            issues.push(Issue::new(format!("profile.{key}.{i}"), format!("{point:?} is not finite")));
+        }
+    }
+    if !issues.is_empty() {
+        return Err(issues);
+    }
+    let vectors = |points: &[[f64; 2]]| points.iter().map(|&[x, y]| Vec2::new(x, y)).collect::<Vec<_>>();
+    let (intrados, extrados) = (vectors(intrados), vectors(extrados));
+    let (first, last) = (intrados[0], intrados[intrados.len() - 1]);
+    let crown = intrados.iter().fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
+    let ring = Ring { span: last.x - first.x, rise: crown - (first.y + last.y) / 2.0, intrados, extrados };
+    if ring.span <= 0.0 {
+        issues.push(Issue::new("profile.intrados", "the last point must lie to the right of the first"));
+    }
+    for k in (0..ring.voussoirs()).filter(|&k| !is_sound(&ring.voussoir(k))) {
+        let message = format!("voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over", k + 1);
+        issues.push(Issue::new(format!("profile.intrados.{k}"), message).help("list both from left to right"));
+    }
+    if issues.is_empty() { Ok(ring) } else { Err(issues) }
+}

@@ -1,0 +1,287 @@
+//! `wall`: bricks in running bond on the ground.
+#![doc = include_str!("wall.md")]
+
+use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
+use serde::{Deserialize, Serialize};
+use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue};
+use voussoir_core::card::{Card, check_as};
+use voussoir_core::contact::find_joints;
+use voussoir_core::geometry::{Vec2, bounding_box};
+use voussoir_core::issue::Issue;
+use voussoir_core::scene::Scene;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+
+/// How courses are staggered.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BondPattern {
+    /// By half a brick.
+    #[default]
+    Running,
+}
+
+/// A rectangle without bricks.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Opening {
+    /// Lower left corner [m].
+    pub from: [f64; 2],
+    /// Upper right corner [m].
+    pub to: [f64; 2],
+}
+
+/// A brick wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wall {
+    /// Out of plane [m].
+    pub width: f64,
+    /// Stress state of deformable bricks.
+    #[serde(default)]
+    pub plane: PlaneState,
+    /// Material of the bricks.
+    pub material: String,
+    /// Law of all joints.
+    pub joint: String,
+    /// Length and height of a brick [m].
+    pub brick: [f64; 2],
+    /// How courses are staggered.
+    #[serde(default)]
+    pub bond: BondPattern,
+    /// Number of courses.
+    pub courses: Option<usize>,
+    /// Whole bricks in an even course.
+    pub bricks: Option<usize>,
+    /// Instead of courses and bricks: widths in brick lengths, < 0 an opening, from the bottom.
+    pub rows: Option<Vec<Vec<f64>>>,
+    /// Rectangles cut out.
+    #[serde(default)]
+    pub openings: Vec<Opening>,
+}
+
+const MAX_BRICKS: usize = 1000;
+/// Cuts closer to a brick's side than this share of its length coincide with it.
+const SNAP: f64 = 1e-6;
+
+/// Sides of the bricks of a course, from the left [m].
+type Course = Vec<[f64; 2]>;
+
+impl Wall {
+    /// Widths in brick lengths, from the bottom; each mistake with a path from the scene's table.
+    fn widths(&self, issues: &mut Vec<Issue>) -> Vec<Vec<f64>> {
+        if let Some(rows) = &self.rows {
+            for (key, given) in [("courses", self.courses), ("bricks", self.bricks)] {
+                if given.is_some() {
+                    issues.push(Issue::new(key, "given besides rows; give one of the two"));
+                }
+            }
+            if rows.is_empty() {
+                issues.push(Issue::new("rows", "there is no row"));
+            }
+            for (i, row) in rows.iter().enumerate() {
+                if !row.iter().any(|&width| width > 0.0) {
+                    issues.push(Issue::new(format!("rows.{i}"), "there is no brick in this row"));
+                }
+                for (j, width) in row.iter().enumerate().filter(|(_, w)| !w.is_finite() || w.abs() <= SNAP) {
+                    let message = format!("{width} is no width: > 0 a brick, < 0 an opening");
+                    issues.push(Issue::new(format!("rows.{i}.{j}"), message));
+                }
+            }
+            return rows.clone();
+        }
+        for (key, given) in [("courses", self.courses), ("bricks", self.bricks)] {
+            match given {
+                None => issues.push(Issue::new(key, "is missing; give courses and bricks, or rows")),
+                Some(count) if !(1..=MAX_BRICKS).contains(&count) => {
+                    issues.push(Issue::new(key, format!("{count} must be from 1 to {MAX_BRICKS}")));
+                }
+                Some(_) => {}
+            }
+        }
+        let (Some(courses), Some(bricks)) = (self.courses, self.bricks) else { return Vec::new() };
+        if !issues.is_empty() {
+            return Vec::new();
+        }
+        let odd: Vec<_> = std::iter::once(0.5).chain(vec![1.0; bricks - 1]).chain([0.5]).collect();
+        (0..courses).map(|course| if course % 2 == 0 { vec![1.0; bricks] } else { odd.clone() }).collect()
+    }
+
+    /// Sides of the bricks, course by course from the bottom.
+    fn courses(&self) -> Result<Vec<Course>, Vec<Issue>> {
+        let mut issues = Vec::new();
+        issues.extend(out_of_range("width", self.width, Range::POSITIVE));
+        for (i, &side) in self.brick.iter().enumerate() {
+            issues.extend(out_of_range(&format!("brick.{i}"), side, Range::POSITIVE));
+        }
+        let widths = self.widths(&mut issues);
+        if !issues.is_empty() {
+            return Err(issues);
+        }
+        let mut courses: Vec<_> = widths.iter().map(|row| course(row, self.brick[0])).collect();
+        for (i, opening) in self.openings.iter().enumerate() {
+            if let Err(mut wrong) = self.cut(&mut courses, opening, &format!("openings.{i}")) {
+                issues.append(&mut wrong);
+            }
+        }
+        if issues.is_empty() && courses.iter().all(|course| course.is_empty()) {
+            issues.push(Issue::new("openings", "no brick is left"));
+        }
+        if issues.is_empty() { Ok(courses) } else { Err(issues) }
+    }
+
+    fn cut(&self, courses: &mut [Course], opening: &Opening, path: &str) -> Result<(), Vec<Issue>> {
+        let ([left, bottom], [right, top]) = (opening.from, opening.to);
+        if !(opening.from.iter().chain(&opening.to).all(|x| x.is_finite()) && left < right && bottom < top) {
+            return Err(vec![Issue::new(path, "from must be the lower left corner, to the upper right one")]);
+        }
+        let height = self.brick[1];
+        let mut issues = Vec::new();
+        let mut bed = |key: &str, y: f64| {
+            let number = (y / height).round();
+            if (y / height - number).abs() > SNAP {
+                let message = format!("y = {y} m lies between bed joints, which are {height} m apart");
+                let near = format!("the nearest is y = {}", number * height);
+                issues.push(Issue::new(format!("{path}.{key}.1"), message).help(near));
+            }
+            number.clamp(0.0, courses.len() as f64) as usize
+        };
+        let (first, last) = (bed("from", bottom), bed("to", top));
+        if !issues.is_empty() {
+            return Err(issues);
+        }
+        let snap = SNAP * self.brick[0];
+        let mut any = false;
+        for course in &mut courses[first..last] {
+            let whole = std::mem::take(course);
+            for [start, end] in whole {
+                if end <= left + snap || start >= right - snap {
+                    course.push([start, end]);
+                    continue;
+                }
+                any = true;
+                if start < left - snap {
+                    course.push([start, left]);
+                }
+                if end > right + snap {
+                    course.push([right, end]);
+                }
+            }
+        }
+        if any { Ok(()) } else { Err(vec![Issue::new(path, "the opening cuts no brick")]) }
+    }
+
+    fn validate(&self) -> Vec<(String, String)> {
+        self.courses().err().map(pairs_of).unwrap_or_default()
+    }
+}
+
+/// Sides of the bricks of a row. Widths are summed in brick lengths, where halves are exact, so that
+/// sides one above the other are the same numbers.
+fn course(row: &[f64], length: f64) -> Course {
+    let mut sum = 0.0;
+    let mut course = Vec::new();
+    for &width in row {
+        let start = sum;
+        sum += width.abs();
+        if width > 0.0 {
+            course.push([start * length, sum * length]);
+        }
+    }
+    course
+}
+
+fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<Vec2> {
+    vec![Vec2::new(low[0], low[1]), Vec2::new(high[0], low[1]), Vec2::new(high[0], high[1]), Vec2::new(low[0], high[1])]
+}
+
+#[typetag::serde(name = "wall")]
+impl Scene for Wall {
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Issue>> {
+        let mut issues = Vec::new();
+        let material = take(material(catalogue, &self.material, "material"), &mut issues);
+        let law = take(law(catalogue, &self.joint, "joint"), &mut issues);
+        let courses = self.courses().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+        let (Some(material), Some(law), Some(courses)) = (material, law, courses) else {
+            return Err(from_root(issues));
+        };
+        let [length, height] = self.brick;
+        let end = courses.iter().flatten().fold(0.0, |end: f64, brick| end.max(brick[1]));
+        let ground = rectangle([-length, -height], [end + length, 0.0]);
+        let mut bodies = vec![Body { name: "ground".into(), vertices: ground, material, fixed: true }];
+        for (i, course) in courses.iter().enumerate() {
+            let (low, high) = (i as f64 * height, (i + 1) as f64 * height);
+            for (j, &[start, end]) in course.iter().enumerate() {
+                let vertices = rectangle([start, low], [end, high]);
+                bodies.push(Body { name: format!("{i}.{j}"), vertices, material, fixed: false });
+            }
+        }
+        let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
+        let (joints, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), 0.0));
+        debug_assert!(overlaps.is_empty(), "bricks of a wall overlap: {overlaps:?}");
+        let (width, plane) = (self.width, self.plane.into());
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, arch: None })
+    }
+}
+
+const SIDE: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
+const COUNT: Shape = Shape::Integer { min: 1, max: MAX_BRICKS as i64 };
+const ROW: Shape = Shape::List { of: &Shape::Number(Quantity::Ratio, Range::ANY), min: 1, max: MAX_BRICKS };
+
+const OPENING: &[Parameter] = &[
+    Parameter { name: "from", doc: "lower left corner", shape: POINT, need: Need::Required },
+    Parameter { name: "to", doc: "upper right corner", shape: POINT, need: Need::Required },
+];
+
+const PARAMETERS: &[Parameter] = &[
+    WIDTH,
+    PLANE,
+    MATERIAL,
+    JOINT,
+    Parameter {
+        name: "brick",
+        doc: "length and height of a brick",
+        shape: Shape::List { of: &SIDE, min: 2, max: 2 },
+        need: Need::Required,
+    },
+    Parameter {
+        name: "bond",
+        doc: "how courses are staggered: running, by half a brick",
+        shape: Shape::Choice(&["running"]),
+        need: Need::Default("\"running\""),
+    },
+    Parameter { name: "courses", doc: "number of courses", shape: COUNT, need: Need::Optional("rows is given") },
+    Parameter {
+        name: "bricks",
+        doc: "whole bricks in an even course, counted from 0 at the bottom; odd ones begin and end with a half",
+        shape: COUNT,
+        need: Need::Optional("rows is given"),
+    },
+    Parameter {
+        name: "rows",
+        doc: "from the bottom, widths in brick lengths from the left; a negative number is an opening",
+        shape: Shape::List { of: &ROW, min: 1, max: MAX_BRICKS },
+        need: Need::Optional("courses and bricks are given"),
+    },
+    Parameter {
+        name: "openings",
+        doc: "rectangles cut out, between bed joints",
+        shape: Shape::List { of: &Shape::Table(OPENING), min: 0, max: usize::MAX },
+        need: Need::Default("[]"),
+    },
+];
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::Scene,
+        tag: "wall",
+        summary: "bricks in running bond on the ground, with openings",
+        parameters: PARAMETERS,
+        provides: &[],
+        requires: &[],
+        sources: &["Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43 (walls given by rows)"],
+        file: file!(),
+        page: include_str!("wall.md"),
+        check: |value| check_as::<Wall>(value, Wall::validate),
+    }
+}
