@@ -4,7 +4,9 @@
 //! nothing) and reads study files, expands them into cases, answers them and writes results.
 #![forbid(unsafe_code)]
 
+pub mod figures;
 pub mod results;
+pub mod writers;
 
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;
