@@ -1,0 +1,158 @@
+//! A scene with what its answer says of it: blocks, supports, loads, thrust line or joint forces,
+//! hinges, sliding and crushing joints.
+
+use super::format::{case_title, format_force, headline};
+use super::loads::Loads;
+use super::marks::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
+use super::sheet::Sheet;
+use super::thrust::{resultants, strut_lines, thrust_pieces};
+use crate::results::CaseResult;
+use voussoir_core::assembly::{Assembly, Stage};
+use voussoir_core::geometry::{Vec2, bounding_box, turned};
+use voussoir_core::limit::Status;
+
+type Legend = Vec<(Symbol, String)>;
+
+/// The drawing of a case, as SVG. `study` is the study's name, `stages` its stages in order.
+pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> String {
+    let (low, high) = extent(assembly, &[]);
+    let reached = result.load_factor.or_else(|| match result.status {
+        Status::Stands => result.stages.last().and_then(|stage| stage.factor),
+        _ => None,
+    });
+    let loads = Loads::new(assembly, stages, reached);
+    let titles = [case_title(study, result), headline(result, stages)];
+    let mut sheet = Sheet::new(low, high, loads.margins(low, high), &titles);
+    let mut legend = Legend::new();
+    blocks(&mut sheet, assembly);
+    if assembly.bodies.iter().any(|body| body.fixed) {
+        legend.push((Symbol::Ground, "support".into()));
+    }
+    if result.status == Status::Unbounded && result.ray.is_some() {
+        strut(&mut sheet, assembly, stages, result, &mut legend);
+    } else {
+        forces(&mut sheet, assembly, result, &mut legend);
+    }
+    loads.draw(&mut sheet);
+    if loads.has_arrows() {
+        let meaning = if reached.is_some() { "load at this factor" } else { "load, λ is its factor" };
+        legend.push((Symbol::Load, meaning.into()));
+    }
+    if let Some(mechanism) = &result.mechanism {
+        legend.extend(mark(&mut sheet, assembly, mechanism, false, |_, point| point));
+    }
+    loads.label(&mut sheet);
+    let mut caption = loads.sentences().to_vec();
+    if result.mechanism.as_ref().is_some_and(|m| m.unique == Some(false)) {
+        caption.push("The mechanism is not the only one with this load factor.".into());
+    }
+    sheet.finish(&legend, &caption)
+}
+
+/// Corners of the box around everything [m], with further points.
+pub(super) fn extent(assembly: &Assembly, further: &[Vec2]) -> (Vec2, Vec2) {
+    let vertices = assembly.bodies.iter().flat_map(|body| &body.vertices);
+    let points: Vec<&Vec2> =
+        vertices.chain(assembly.joints.iter().flat_map(|joint| &joint.ends)).chain(further).collect();
+    if points.is_empty() { (Vec2::zeros(), Vec2::repeat(1.0)) } else { bounding_box(points) }
+}
+
+/// Width of a block's outline [px]: thin where blocks are small.
+pub(super) fn outline_width(sheet: &Sheet, assembly: &Assembly) -> f64 {
+    let free = assembly.bodies.iter().filter(|body| !body.fixed && !body.vertices.is_empty());
+    let mut sizes: Vec<f64> = free
+        .map(|body| {
+            let (low, high) = bounding_box(&body.vertices);
+            (high - low).norm() * sheet.scale()
+        })
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    let crowd = 300.0 / sizes.len().max(1) as f64;
+    sizes.get(sizes.len() / 2).map_or(1.0, |size| (0.03 * size).min(crowd).clamp(0.05, 1.2))
+}
+
+fn blocks(sheet: &mut Sheet, assembly: &Assembly) {
+    let width = outline_width(sheet, assembly);
+    let shapes =
+        |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
+    sheet.outlines(shapes(true), "url(#ground)", OUTLINE, 1.0, "");
+    sheet.outlines(shapes(false), STONE, OUTLINE, width, "");
+    supports(sheet, assembly);
+}
+
+/// Hatching along the joints of supports that have no shape.
+pub(super) fn supports(sheet: &mut Sheet, assembly: &Assembly) {
+    for joint in &assembly.joints {
+        let shapeless = |body: usize| assembly.bodies[body].fixed && assembly.bodies[body].vertices.is_empty();
+        let towards_ground = match (shapeless(joint.minus), shapeless(joint.plus)) {
+            (true, false) => -joint.frame().0,
+            (false, true) => joint.frame().0,
+            _ => continue,
+        };
+        let along = joint.frame().1;
+        let depth = 11.0 / sheet.scale();
+        let reach = along * (8.0 / sheet.scale());
+        let (from, to) = (joint.ends[0] - reach, joint.ends[1] + reach);
+        let face = [sheet.at(from), sheet.at(to)];
+        sheet.line(&face, OUTLINE, 2.2, "");
+        let strokes = (((to - from).norm() * sheet.scale()) / 7.0).ceil().max(2.0) as usize;
+        let slant = turned(towards_ground) * 0.6;
+        for i in 0..=strokes {
+            let foot = from + (to - from) * (i as f64 / strokes as f64);
+            let stroke = [sheet.at(foot), sheet.at(foot + (towards_ground + slant) * depth)];
+            sheet.line(&stroke, "#777777", 1.2, "");
+        }
+    }
+}
+
+fn forces(sheet: &mut Sheet, assembly: &Assembly, result: &CaseResult, legend: &mut Legend) {
+    let joint_forces = result.field.as_ref().map(|field| resultants(assembly, field));
+    if let Some(points) = &result.thrust_line {
+        let points: Vec<Option<Vec2>> = points.iter().map(|point| point.map(Vec2::from)).collect();
+        let pieces = thrust_pieces(assembly, &points, joint_forces.as_deref().unwrap_or(&[]));
+        for piece in &pieces {
+            let spots: Vec<_> = piece.iter().map(|&point| sheet.at(point)).collect();
+            sheet.line(&spots, THRUST, 2.0, "");
+        }
+        if !pieces.is_empty() {
+            legend.push((Symbol::Thrust, "thrust line".into()));
+        }
+        return;
+    }
+    let Some(joint_forces) = joint_forces else { return };
+    let strongest = joint_forces.iter().flatten().map(|r| r.force.norm()).fold(0.0, f64::max);
+    if strongest <= 0.0 {
+        return;
+    }
+    let mut heights: Vec<f64> = assembly.joints.iter().map(|joint| joint.height() * sheet.scale()).collect();
+    heights.sort_by(f64::total_cmp);
+    let length = (0.6 * heights[heights.len() / 2]).clamp(5.0, 40.0);
+    for resultant in joint_forces.iter().flatten() {
+        let force = resultant.force.norm();
+        let half = resultant.force / force * (length / 2.0);
+        let [x, y] = sheet.at(resultant.point);
+        let width = (0.3 * length).min(7.0) * force / strongest;
+        if width > 0.05 {
+            sheet.line(&[[x - half.x, y + half.y], [x + half.x, y - half.y]], THRUST, width, "");
+        }
+    }
+    legend
+        .push((Symbol::Force, format!("joint force, as wide as it is great (widest {})", format_force(strongest))));
+}
+
+fn strut(sheet: &mut Sheet, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {
+    let ray = resultants(assembly, result.ray.as_deref().unwrap_or(&[]));
+    let lines: Vec<Vec<Vec2>> = if assembly.arch.is_some() {
+        let points: Vec<_> = ray.iter().map(|r| r.map(|r| r.point)).collect();
+        thrust_pieces(assembly, &points, &ray)
+    } else {
+        let loads: Vec<_> =
+            stages.last().map_or(Vec::new(), |s| s.forces.iter().map(|f| (f.body, f.point)).collect());
+        strut_lines(assembly, &ray, &loads).into_iter().map(Vec::from).collect()
+    };
+    for line in &lines {
+        let spots: Vec<_> = line.iter().map(|&point| sheet.at(point)).collect();
+        sheet.line(&spots, STRUT, 3.0, "9 5");
+    }
+    legend.push((Symbol::Strut, "weightless strut that carries the load alone".into()));
+}

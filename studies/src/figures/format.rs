@@ -1,0 +1,205 @@
+//! How numbers, units and results are written in words, for figures, tables and reports alike.
+
+use crate::results::CaseResult;
+use voussoir_core::assembly::Stage;
+use voussoir_core::card::cards;
+use voussoir_core::geometry::Vec2;
+use voussoir_core::limit::Status;
+use voussoir_core::mechanism::MechanismKind;
+use voussoir_core::schema::{Parameter, Shape};
+
+/// `x` with so many significant digits; powers of ten only below 1e-4 and from 1e7.
+pub fn format_number(x: f64, digits: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{x}");
+    }
+    let scientific = format!("{:.*e}", digits.saturating_sub(1), x);
+    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    if !(-4..7).contains(&exponent) {
+        return scientific;
+    }
+    format!("{:.*}", (digits as i32 - 1 - exponent).max(0) as usize, x)
+}
+
+/// `x` in the shortest form that has at most so many significant digits.
+pub fn format_short(x: f64, digits: usize) -> String {
+    let text = format_number(x, digits);
+    if text.contains('e') || !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+fn scaled(x: f64, steps: &[(f64, &str)]) -> String {
+    let (unit, name) = steps.iter().find(|(unit, _)| x.abs() >= 0.999_95 * unit).unwrap_or(&steps[steps.len() - 1]);
+    format!("{} {name}", format_number(x / unit, 4))
+}
+
+/// A force [N] with four digits, in N, kN or MN.
+pub fn format_force(newtons: f64) -> String {
+    scaled(newtons, &[(1e6, "MN"), (1e3, "kN"), (1.0, "N")])
+}
+
+/// A length [m], short, in m or mm.
+pub fn format_length(metres: f64) -> String {
+    if metres.abs() < 0.1 && metres != 0.0 {
+        return format!("{} mm", format_short(metres * 1e3, 4));
+    }
+    format!("{} m", format_short(metres, 4))
+}
+
+/// A time [s] with three digits, in s, ms or µs.
+pub fn format_seconds(seconds: f64) -> String {
+    let (unit, name) = match seconds {
+        s if s >= 1.0 => (1.0, "s"),
+        s if s >= 1e-3 => (1e-3, "ms"),
+        _ => (1e-6, "µs"),
+    };
+    format!("{} {name}", format_short(seconds / unit, 3))
+}
+
+/// A JSON value of a swept key: text bare, numbers short.
+pub fn format_value(value: &serde_json::Value) -> String {
+    match value {
+        serde_json::Value::String(text) => text.clone(),
+        serde_json::Value::Number(number) => number.to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// For XML and HTML: `&`, `<`, `>` and quotes as entities.
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+        .replace('\'', "&#39;")
+}
+
+/// A status as it stands in results.json.
+pub fn status_word(status: Status) -> &'static str {
+    match status {
+        Status::Stands => "stands",
+        Status::Collapse => "collapse",
+        Status::Unbounded => "unbounded",
+        Status::NoEquilibrium => "no_equilibrium",
+        Status::LimitPoint => "limit_point",
+        Status::Stalled => "stalled",
+    }
+}
+
+/// A status in a sentence.
+pub fn status_meaning(status: Status) -> &'static str {
+    match status {
+        Status::Stands => "every stage reached its factor",
+        Status::Collapse => "collapses at this load factor; both bounds enclose it",
+        Status::Unbounded => "carries any multiple of the load: a strut proves it",
+        Status::NoEquilibrium => "cannot carry the loads present before the stage begins",
+        Status::LimitPoint => "no equilibrium path with a growing load factor",
+        Status::Stalled => "not proven; the notes say why",
+    }
+}
+
+/// A mechanism's kind as it stands in results.json.
+pub fn kind_word(kind: MechanismKind) -> &'static str {
+    match kind {
+        MechanismKind::ThreeHinge => "three_hinge",
+        MechanismKind::FourHinge => "four_hinge",
+        MechanismKind::FiveHinge => "five_hinge",
+        MechanismKind::Rocking => "rocking",
+        MechanismKind::Sliding => "sliding",
+        MechanismKind::Crushing => "crushing",
+        MechanismKind::Mixed => "mixed",
+    }
+}
+
+/// A mechanism's kind in words.
+pub fn kind_words(kind: MechanismKind) -> &'static str {
+    match kind {
+        MechanismKind::ThreeHinge => "three hinges",
+        MechanismKind::FourHinge => "four hinges",
+        MechanismKind::FiveHinge => "five hinges",
+        MechanismKind::Rocking => "rocking",
+        MechanismKind::Sliding => "sliding",
+        MechanismKind::Crushing => "crushing",
+        MechanismKind::Mixed => "mixed mechanism",
+    }
+}
+
+/// Unit of a study file's key, from the cards of all plug-ins by the key's last name; `None` where
+/// no card knows it, or it is a pure number.
+pub fn unit_of_key(key: &str) -> Option<&'static str> {
+    fn in_shape(shape: &Shape, name: &str) -> Option<&'static str> {
+        match shape {
+            Shape::List { of, .. } | Shape::Map(of) => in_shape(of, name),
+            Shape::Table(parameters) => in_table(parameters, name),
+            Shape::Tagged { variants, .. } => variants.iter().find_map(|v| in_table(v.parameters, name)),
+            Shape::Either(shapes) => shapes.iter().find_map(|s| in_shape(s, name)),
+            _ => None,
+        }
+    }
+    fn number(shape: &Shape) -> Option<&'static str> {
+        match shape {
+            Shape::Number(quantity, _) => Some(quantity.unit()),
+            Shape::List { of, .. } => number(of),
+            Shape::Either(shapes) => shapes.iter().find_map(number),
+            _ => None,
+        }
+    }
+    fn in_table(parameters: &[Parameter], name: &str) -> Option<&'static str> {
+        let here = parameters.iter().find(|p| p.name == name).and_then(|p| number(&p.shape));
+        here.or_else(|| parameters.iter().find_map(|p| in_shape(&p.shape, name)))
+    }
+    let name = key.rsplit('.').next()?;
+    cards().iter().find_map(|card| in_table(card.parameters, name)).filter(|unit| !unit.is_empty())
+}
+
+/// `key [unit]`, or the key where no unit is known.
+pub fn key_with_unit(key: &str) -> String {
+    unit_of_key(key).map_or_else(|| key.to_string(), |unit| format!("{key} [{unit}]"))
+}
+
+/// The swept values of a case: `rise = 2.99 m, friction = 0.6`; empty where nothing is swept.
+/// A key is cut to its last name where that is enough to tell it from the others.
+pub fn parameters_text(result: &CaseResult) -> String {
+    let last = |key: &str| key.rsplit('.').next().unwrap_or("").to_string();
+    let entries = result.parameters.iter().map(|(key, value)| {
+        let short = last(key);
+        let alone = result.parameters.keys().filter(|other| last(other) == short).count() == 1;
+        let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
+        format!("{} = {}{unit}", if alone { &short } else { key }, format_value(value))
+    });
+    entries.collect::<Vec<_>>().join(", ")
+}
+
+/// The resultant of a stage's forces at factor 1 [N]; `None` where the last stage has none, they
+/// cancel, or it also has accelerations.
+pub fn unit_load(stages: &[Stage]) -> Option<f64> {
+    let stage = stages.last().filter(|stage| stage.accelerations.is_empty() && !stage.forces.is_empty())?;
+    let sum = stage.forces.iter().fold(Vec2::zeros(), |sum, f| sum + f.force).norm();
+    let largest = stage.forces.iter().map(|f| f.force.norm()).fold(0.0, f64::max);
+    (sum > 1e-9 * largest).then_some(sum)
+}
+
+/// What a case came to, in one line: `collapse, λ = 698.0 (load 698.0 kN)`.
+pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
+    let load = |factor: f64| match unit_load(stages) {
+        Some(unit) => format!("λ = {} (load {})", format_number(factor, 4), format_force(factor * unit)),
+        None => format!("λ = {}", format_number(factor, 4)),
+    };
+    match (result.status, result.load_factor) {
+        (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
+        (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),
+        (Status::Stands, None) => "stands: every stage reached its factor".into(),
+        (status, Some(factor)) => format!("{}, {}", status_word(status).replace('_', " "), load(factor)),
+        (status, None) => status_word(status).replace('_', " "),
+    }
+}
+
+/// Where a case stands in its study: `strathmashie, case 3, associated, rise = 2.99 m`.
+pub fn case_title(study: &str, result: &CaseResult) -> String {
+    let mut parts = vec![study.to_string(), format!("case {}", result.id)];
+    parts.extend(result.variant.clone());
+    parts.extend(Some(parameters_text(result)).filter(|text| !text.is_empty()));
+    parts.join(", ")
+}

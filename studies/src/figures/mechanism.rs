@@ -1,0 +1,46 @@
+//! A mechanism: where its blocks go.
+
+use super::displaced::displaced;
+use super::drawing::{extent, outline_width, supports};
+use super::format::{case_title, format_short, kind_words};
+use super::marks::{OUTLINE, STONE, Symbol, mark};
+use super::sheet::Sheet;
+use crate::results::CaseResult;
+use voussoir_core::assembly::Assembly;
+use voussoir_core::geometry::Vec2;
+
+/// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
+pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
+    let (mechanism, motion) = (result.mechanism.as_ref()?, result.motion.as_ref()?);
+    let (placements, scale) = displaced(assembly, motion)?;
+    let moved: Vec<Vec<Vec2>> = assembly
+        .bodies
+        .iter()
+        .zip(&placements)
+        .map(|(body, placement)| body.vertices.iter().map(|&vertex| placement.of(vertex)).collect())
+        .collect();
+    let further: Vec<Vec2> = moved.iter().flatten().copied().collect();
+    let (low, high) = extent(assembly, &further);
+    let titles = [case_title(study, result), format!("mechanism: {}", kind_words(mechanism.kind))];
+    let mut sheet = Sheet::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
+    let width = outline_width(&sheet, assembly);
+    let free = |body: usize| !assembly.bodies[body].fixed;
+    let ground = assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
+    sheet.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
+    let before = assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.vertices.as_slice());
+    sheet.outlines(before, "none", "#999999", width.min(0.9), "4 3");
+    let after = moved.iter().enumerate().filter(|(body, _)| free(*body)).map(|(_, shape)| shape.as_slice());
+    sheet.outlines(after, STONE, OUTLINE, width, "");
+    supports(&mut sheet, assembly);
+    let mut legend =
+        vec![(Symbol::Block, "blocks as they move".to_string()), (Symbol::Before, "where they were".to_string())];
+    legend.extend(mark(&mut sheet, assembly, mechanism, true, |joint, point| {
+        (placements[joint.minus].of(point) + placements[joint.plus].of(point)) / 2.0
+    }));
+    let caption = [format!(
+        "Displacements are exaggerated: the motion of the mechanism (scaled to unit work of the load) times {}. \
+         Only directions and ratios mean something, not the size.",
+        format_short(scale, 3)
+    )];
+    Some(sheet.finish(&legend, &caption))
+}

@@ -1,0 +1,24 @@
+//! Drawings of scenes and mechanisms, charts of sweeps, and how numbers are written in them.
+//!
+//! Everything here is a pure function from results to text (SVG). No file is touched.
+
+pub mod chart;
+pub mod displaced;
+pub mod drawing;
+pub mod format;
+pub mod loads;
+pub mod marks;
+pub mod mechanism;
+pub mod sheet;
+pub mod sweep;
+pub mod thrust;
+
+#[cfg(test)]
+pub(crate) mod sample;
+#[cfg(test)]
+mod tests;
+
+pub use chart::{Series, chart_svg};
+pub use drawing::scene_svg;
+pub use mechanism::mechanism_svg;
+pub use sweep::{sweep_axis, sweep_chart};

@@ -1,0 +1,261 @@
+//! Figures of hand-made scenes: well-formed, finite, escaped, labels apart.
+
+use super::sample::*;
+use super::sheet::Area;
+use super::sweep::{study_chart, sweep_chart};
+use super::*;
+use crate::results::{CaseResult, StudyResults};
+use crate::writers::{StudyOutput, writers};
+use voussoir_core::assembly::{Assembly, PointForce, Stage};
+use voussoir_core::geometry::Vec2;
+use voussoir_core::limit::Status;
+
+struct Scene {
+    name: &'static str,
+    assembly: Assembly,
+    stages: Vec<Stage>,
+    answer: CaseResult,
+}
+
+fn scenes() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    for (name, span, rise, voussoirs) in
+        [("strathmashie", 9.42, 2.99, 15), ("flat", 9.42, 0.8, 40), ("ring", 9.42, 4.71, 10_000)]
+    {
+        let assembly = arch(span, rise, voussoirs);
+        let stages = arch_stages(&assembly);
+        let answer = arch_answer(&assembly, &stages);
+        scenes.push(Scene { name, assembly, stages, answer });
+    }
+    let assembly = arch(9.42, 2.0, 15);
+    let stages = arch_stages(&assembly);
+    let answer = arch_unbounded(&assembly, &stages);
+    scenes.push(Scene { name: "unbounded", assembly, stages, answer });
+    let assembly = arch(9.42, 2.99, 15);
+    let mut stages = arch_stages(&assembly);
+    let failed = CaseResult {
+        status: Status::NoEquilibrium,
+        load_factor: None,
+        field: None,
+        thrust_line: None,
+        ..arch_answer(&assembly, &stages)
+    };
+    let strip = assembly.joints[1..9].iter().enumerate().map(|(k, joint)| PointForce {
+        body: k + 1,
+        point: joint.ends[1],
+        force: Vec2::new(0.0, -250.0),
+    });
+    stages[1].forces = strip.collect();
+    stages[1].accelerations = vec![Vec2::new(1.0, 0.0)];
+    scenes.push(Scene { name: "no equilibrium", assembly, stages, answer: failed });
+    for (name, courses, bricks) in [("small wall", 6, 4), ("wall of 400", 20, 20)] {
+        let (assembly, stages, answer) = wall(courses, bricks);
+        scenes.push(Scene { name, assembly, stages, answer });
+    }
+    scenes
+}
+
+/// Tags open and close in order.
+fn assert_balanced(text: &str, what: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    for piece in text.split('<').skip(1) {
+        let (tag, _) = piece.split_once('>').unwrap_or_else(|| panic!("{what}: a tag without end: {piece}"));
+        if tag.starts_with(['?', '!']) {
+            continue;
+        }
+        if let Some(closed) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(closed.trim()), "{what}");
+        } else if !tag.trim_end().ends_with('/') && !tag.starts_with("meta") {
+            open.push(tag.split_whitespace().next().unwrap_or(""));
+        }
+    }
+    assert!(open.is_empty(), "{what}: never closed: {open:?}");
+}
+
+fn attribute<'a>(tag: &'a str, name: &str) -> &'a str {
+    tag.split_once(&format!(" {name}=\"")).and_then(|(_, rest)| rest.split_once('"')).map_or("", |(value, _)| value)
+}
+
+/// Boxes of all texts of a drawing, and its size.
+fn texts(svg: &str) -> Vec<(String, Area)> {
+    svg.split("<text ")
+        .skip(1)
+        .map(|piece| {
+            let (tag, rest) = piece.split_once('>').expect("a tag ends");
+            let tag = format!(" {tag}");
+            let number = |name: &str| attribute(&tag, name).parse::<f64>().expect("a number");
+            let words = rest.split('<').next().unwrap_or("").trim().to_string();
+            let area = Area::of_text(
+                [number("x"), number("y")],
+                attribute(&tag, "text-anchor"),
+                number("font-size"),
+                &words,
+            );
+            (words, area)
+        })
+        .collect()
+}
+
+fn drawings() -> Vec<(String, String)> {
+    let mut all = Vec::new();
+    for scene in scenes() {
+        all.push((
+            format!("{} scene", scene.name),
+            scene_svg(scene.name, &scene.assembly, &scene.stages, &scene.answer),
+        ));
+        let mechanism = mechanism_svg(scene.name, &scene.assembly, &scene.answer);
+        all.extend(mechanism.map(|svg| (format!("{} mechanism", scene.name), svg)));
+    }
+    all
+}
+
+#[test]
+fn drawings_are_well_formed_and_finite() {
+    for (name, svg) in drawings() {
+        assert_balanced(&svg, &name);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: a coordinate is not finite");
+    }
+}
+
+#[test]
+fn labels_do_not_overlap_and_stay_on_the_sheet() {
+    for (name, svg) in drawings() {
+        let size: Vec<f64> = attribute(&svg, "viewBox").split(' ').map(|x| x.parse().expect("a number")).collect();
+        let texts = texts(&svg);
+        assert!(texts.len() > 3, "{name}");
+        for (i, (words, area)) in texts.iter().enumerate() {
+            assert!(
+                area.low[0] >= 0.0 && area.low[1] >= 0.0 && area.high[0] <= size[2] && area.high[1] <= size[3],
+                "{name}: \"{words}\" leaves the sheet"
+            );
+            for (other, covered) in &texts[i + 1..] {
+                assert!(area.shared(covered) < 1.0, "{name}: \"{words}\" overlaps \"{other}\"");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ring_of_ten_thousand_stays_a_small_file() {
+    let scene = scenes().swap_remove(2);
+    let svg = scene_svg("ring", &scene.assembly, &scene.stages, &scene.answer);
+    assert!(svg.len() < 2_000_000 && svg.matches("<text").count() < 30);
+}
+
+#[test]
+fn special_characters_are_escaped() {
+    let mut scene = scenes().swap_remove(0);
+    scene.answer.variant = Some("μ < 0.6 & \"dry\"".into());
+    let svg = scene_svg("a<b>&c", &scene.assembly, &scene.stages, &scene.answer);
+    assert!(svg.contains("a&lt;b&gt;&amp;c") && svg.contains("μ &lt; 0.6 &amp;"));
+    let series = Series { name: "<&>".into(), points: vec![(1.0, 2.0), (2.0, 3.0)], open_points: vec![] };
+    let chart = chart_svg("a<b&c", "x", "y", &[series], &["<note>".into()]);
+    assert_balanced(&chart, "chart");
+    assert!(!chart.contains("<note>") && !chart.contains("a<b&c"));
+}
+
+/// A sweep over the rise with two variants, the flattest cases unbounded.
+fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
+    let (mut assemblies, mut stages, mut cases) = (Vec::new(), Vec::new(), Vec::new());
+    for variant in ["coulomb", "associated"] {
+        for step in 0..12 {
+            let rise = 4.71 - 0.35 * f64::from(step);
+            let assembly = arch(9.42, rise, 15);
+            let steps = arch_stages(&assembly);
+            let mut case =
+                if rise < 1.2 { arch_unbounded(&assembly, &steps) } else { arch_answer(&assembly, &steps) };
+            case.id = cases.len();
+            case.variant = Some(variant.into());
+            case.parameters.insert("scene.profile.rise".into(), serde_json::json!((rise * 1e6).round() / 1e6));
+            case.load_factor = case.load_factor.map(|f| f * if variant == "coulomb" { 1.0 } else { 1.12 });
+            if step == 3 {
+                case.notes.push("flow read as associated".into());
+            }
+            assemblies.push(assembly);
+            stages.push(steps);
+            cases.push(case);
+        }
+    }
+    (assemblies, stages, StudyResults { study: "rise".into(), version: "0.1.0".into(), cases })
+}
+
+fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
+    let (assemblies, stages, results) = sweep();
+    let assemblies: Vec<&Assembly> = assemblies.iter().collect();
+    let stages: Vec<&[Stage]> = stages.iter().map(Vec::as_slice).collect();
+    let keys = ["scene.profile.rise".to_string()];
+    then(&StudyOutput {
+        name: "rise & <fall>",
+        results: &results,
+        assemblies: &assemblies,
+        stages: &stages,
+        sweep_keys: &keys,
+        figures,
+    })
+}
+
+#[test]
+fn a_sweep_of_the_rise_is_drawn_over_span_by_rise() {
+    with_output(true, |study| {
+        let chart = study_chart(study).expect("one axis of numbers");
+        assert_balanced(&chart, "chart");
+        assert!(chart.contains("span / rise") && chart.contains("unbounded") && chart.contains("[kN]"));
+        let two = ["a".to_string(), "b".to_string()];
+        assert!(study_chart(&StudyOutput { sweep_keys: &two, ..*study }).is_none());
+    });
+}
+
+#[test]
+fn a_chart_of_one_point_or_none() {
+    let case = blank(0, Status::Stalled);
+    assert!(sweep_chart("s", &[(&case, 1.0)], "x", None).is_none());
+    let one = Series { name: "a".into(), points: vec![(1.0, 5.0)], open_points: vec![] };
+    assert_balanced(&chart_svg("t", "x", "y", &[one], &[]), "one point");
+    assert_balanced(&chart_svg("t", "x", "y", &[], &[]), "no point");
+}
+
+#[test]
+fn every_writer_gives_its_files_and_they_need_nothing_else() {
+    with_output(true, |study| {
+        let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
+        assert_eq!(tags, ["figures", "report", "results_csv", "results_json"]);
+        for entry in writers() {
+            for (name, text) in entry.writer.files(study) {
+                if name.ends_with("html") || name.ends_with("svg") {
+                    assert_balanced(&text, &name);
+                    assert!(!text.contains("src=") && !text.contains("href="), "{name}");
+                }
+            }
+        }
+        let csv = crate::writers::csv::results_csv(study);
+        assert_eq!(csv.lines().count(), 25);
+        assert!(csv.starts_with("id,variant,scene.profile.rise"));
+        let report = crate::writers::report::report_html(study);
+        assert!(report.contains("rise &amp; &lt;fall&gt;") && report.matches("<details").count() == 24);
+        let table = crate::writers::table::results_table(study);
+        assert!(table.contains("[1] flow read as associated (cases 3, 15)") && table.contains("unbounded"));
+    });
+    with_output(false, |study| {
+        assert!(crate::writers::figures::Figures.files(study).is_empty());
+        assert!(!crate::writers::report::report_html(study).contains("<svg"));
+    });
+}
+
+use crate::writers::Writer;
+
+/// Writes the hand-made scenes for looking at: `cargo test -p voussoir -- --ignored pictures`.
+#[test]
+#[ignore = "writes pictures to the folder of temporary files, for looking at them"]
+fn pictures() {
+    let folder = std::env::temp_dir().join("voussoir-pictures");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for (name, svg) in drawings() {
+        std::fs::write(folder.join(format!("{}.svg", name.replace(' ', "-"))), svg).expect("a file");
+    }
+    with_output(true, |study| {
+        std::fs::write(folder.join("chart.svg"), study_chart(study).expect("a chart")).expect("a file");
+        std::fs::write(folder.join("report.html"), crate::writers::report::report_html(study)).expect("a file");
+        std::fs::write(folder.join("table.txt"), crate::writers::table::results_table(study)).expect("a file");
+        std::fs::write(folder.join("results.csv"), crate::writers::csv::results_csv(study)).expect("a file");
+    });
+}

@@ -1,0 +1,86 @@
+//! `results.csv`: one row per case, units in the names of columns.
+
+use super::{StudyOutput, Writer, register};
+use crate::figures::format::{format_value, key_with_unit, kind_word, status_word};
+use crate::results::CaseResult;
+
+/// Writes `results.csv`.
+#[derive(Debug)]
+pub struct ResultsCsv;
+
+impl Writer for ResultsCsv {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+        vec![("results.csv".into(), results_csv(study))]
+    }
+}
+
+const BEFORE: [&str; 2] = ["id", "variant"];
+const AFTER: [&str; 17] = [
+    "status",
+    "load_factor [-]",
+    "lower_bound [-]",
+    "upper_bound [-]",
+    "associated_load_factor [-]",
+    "kind",
+    "hinge_count",
+    "hinge_joints",
+    "sliding_joints",
+    "crushing_joints",
+    "unique",
+    "flow_read_as",
+    "certificate_passed",
+    "largest_residual [-]",
+    "solver",
+    "seconds [s]",
+    "notes",
+];
+
+/// The table of a study: a cell is empty where a case has no such value; lists are separated by
+/// blanks, notes by ` | `.
+pub fn results_csv(study: &StudyOutput) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let keys = study.sweep_keys.iter().map(|key| key_with_unit(key));
+    let header = BEFORE.iter().map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string()));
+    writer.write_record(header).expect("writing to memory does not fail");
+    for case in &study.results.cases {
+        writer.write_record(row(case, study.sweep_keys)).expect("every row is as long as the header");
+    }
+    let bytes = writer.into_inner().expect("writing to memory does not fail");
+    String::from_utf8(bytes).expect("every cell is text")
+}
+
+fn row(case: &CaseResult, keys: &[String]) -> Vec<String> {
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+    let joints = |list: Vec<usize>| list.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+    let mechanism = case.mechanism.as_ref();
+    let residual = case.certificate.residuals.values().copied().fold(f64::NAN, f64::max);
+    let mut row = vec![case.id.to_string(), case.variant.clone().unwrap_or_default()];
+    row.extend(keys.iter().map(|key| case.parameters.get(key).map(format_value).unwrap_or_default()));
+    row.extend([
+        status_word(case.status).to_string(),
+        number(case.load_factor),
+        number(case.bounds.map(|b| b[0])),
+        number(case.bounds.map(|b| b[1])),
+        number(case.associated_load_factor),
+        mechanism.map_or(String::new(), |m| kind_word(m.kind).into()),
+        mechanism.map_or(String::new(), |m| m.hinge_count.to_string()),
+        mechanism.map_or(String::new(), |m| joints(m.hinges.iter().map(|h| h.joint).collect())),
+        mechanism.map_or(String::new(), |m| joints(m.sliding.iter().map(|s| s.joint).collect())),
+        mechanism.map_or(String::new(), |m| joints(m.crushing.iter().map(|c| c.joint).collect())),
+        mechanism.and_then(|m| m.unique).map_or(String::new(), |unique| unique.to_string()),
+        case.flow_read_as.clone().unwrap_or_default(),
+        case.certificate.passed.to_string(),
+        number(Some(residual).filter(|r| !r.is_nan())),
+        case.solver.clone(),
+        case.seconds.to_string(),
+        case.notes.join(" | "),
+    ]);
+    row
+}
+
+register!(
+    "results_csv",
+    ResultsCsv,
+    "results.csv: one row per case, units in the column names",
+    "# `results_csv`\n\nWrites `results.csv`: one row per case. Empty cells have no value; joints are separated by blanks.\n"
+);

@@ -1,0 +1,215 @@
+//! `report.html`: one self-contained page for reading and printing.
+
+use super::page::{self, STYLE};
+use super::table::{distinct_notes, id_list};
+use super::{StudyOutput, Writer, register};
+use crate::figures::format::{
+    case_title, escape, format_force, format_number, format_seconds, headline, key_with_unit, kind_words,
+    status_meaning, status_word, unit_load,
+};
+use crate::figures::sweep::study_chart;
+use crate::figures::{mechanism_svg, scene_svg};
+use crate::results::CaseResult;
+use voussoir_core::limit::Status;
+
+/// More cases than this are not drawn.
+const DRAWN: usize = 40;
+
+/// Writes `report.html`.
+#[derive(Debug)]
+pub struct Report;
+
+impl Writer for Report {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+        vec![("report.html".into(), report_html(study))]
+    }
+}
+
+/// The whole page.
+pub fn report_html(study: &StudyOutput) -> String {
+    let cases = &study.results.cases;
+    let mut body = format!("<h1>{}</h1>\n", escape(study.name));
+    body += &summary(study);
+    if study.figures
+        && let Some(chart) = study_chart(study)
+    {
+        body += "<h2>The sweep</h2>\n<figure>";
+        body += &chart;
+        body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
+                 lines only join neighbouring cases.</figcaption></figure>\n";
+    }
+    body += "<h2>Cases</h2>\n";
+    body += &case_table(study);
+    body += &notes(cases);
+    if study.figures {
+        body += &figures(study);
+    }
+    body += &certificates(cases);
+    body += &format!(
+        "<footer>Written by Voussoir {}. SI units; forces in N, kN or MN as marked. The numbers to the last bit are in \
+         results.json and results.csv beside this page.</footer>\n",
+        escape(&study.results.version)
+    );
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
+        escape(study.name)
+    )
+}
+
+/// What came out, in plain words.
+fn summary(study: &StudyOutput) -> String {
+    let cases = &study.results.cases;
+    let mut text = String::from("<p class=\"summary\">");
+    if let [case] = cases.as_slice() {
+        let stages = study.scene(0).map_or(&[][..], |(_, stages)| stages);
+        text += &format!("The scene: <strong>{}</strong>.", escape(&headline(case, stages)));
+        if let Some(mechanism) = &case.mechanism {
+            text += &format!(" Mechanism: {}.", kind_words(mechanism.kind));
+        }
+    } else {
+        text += &format!("{} cases.", cases.len());
+        for status in page::STATUSES {
+            let count = cases.iter().filter(|case| case.status == status).count();
+            if count > 0 {
+                text += &format!(
+                    " <strong>{count} {}</strong> ({}).",
+                    status_word(status).replace('_', " "),
+                    status_meaning(status)
+                );
+            }
+        }
+        let factors: Vec<f64> =
+            cases.iter().filter(|c| c.status == Status::Collapse).filter_map(|c| c.load_factor).collect();
+        if factors.len() > 1 {
+            let (low, high) =
+                factors.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &f| (l.min(f), h.max(f)));
+            text += &format!(
+                " Load factors at collapse run from {} to {}.",
+                format_number(low, 4),
+                format_number(high, 4)
+            );
+        }
+    }
+    let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.id).collect();
+    text += &if failed.is_empty() {
+        " Every answer passed its certificate: equilibrium, strengths and, at collapse, both bounds were recomputed from the \
+         scene alone."
+            .to_string()
+    } else {
+        format!(
+            " <strong class=\"bad\">The certificate failed for {}: do not rely on them.</strong>",
+            id_list(&failed, cases.len())
+        )
+    };
+    text + "</p>\n"
+}
+
+fn case_table(study: &StudyOutput) -> String {
+    let cases = &study.results.cases;
+    let variants = cases.iter().any(|case| case.variant.is_some());
+    let loads: Vec<Option<f64>> =
+        (0..cases.len()).map(|i| study.scene(i).and_then(|(_, stages)| unit_load(stages))).collect();
+    let with_load = loads.iter().any(Option::is_some);
+    let mut header = vec!["id".to_string()];
+    header.extend(variants.then(|| "variant".into()));
+    header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
+    header.extend(["status".to_string(), "load factor".into()]);
+    header.extend(with_load.then(|| "load".into()));
+    header.extend(["bounds", "mechanism", "hinges at joints", "certificate", "time"].map(String::from));
+    let rows = cases.iter().zip(&loads).map(|(case, load)| {
+        let mut row = vec![case.id.to_string()];
+        row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
+        row.extend(
+            study.sweep_keys.iter().map(|key| case.parameters.get(key).map(page::value).unwrap_or_default()),
+        );
+        row.push(status_word(case.status).replace('_', " "));
+        row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));
+        let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
+        row.extend(with_load.then_some(force));
+        row.push(
+            case.bounds
+                .map_or(String::new(), |[a, b]| format!("{} … {}", format_number(a, 7), format_number(b, 7))),
+        );
+        row.push(case.mechanism.as_ref().map_or(String::new(), |m| {
+            format!("{}{}", kind_words(m.kind), if m.unique == Some(false) { ", not unique" } else { "" })
+        }));
+        let joints = case.mechanism.iter().flat_map(|m| &m.hinges).map(|h| h.joint.to_string()).collect::<Vec<_>>();
+        row.push(if joints.len() > 12 { format!("{} joints", joints.len()) } else { joints.join(", ") });
+        row.push(if case.certificate.passed { "passed" } else { "failed" }.into());
+        row.push(format_seconds(case.seconds));
+        row
+    });
+    page::table(&header, rows)
+}
+
+fn notes(cases: &[CaseResult]) -> String {
+    let notes = distinct_notes(cases);
+    if notes.is_empty() {
+        return String::new();
+    }
+    let items = notes.iter().map(|(note, ids)| {
+        format!("<li>{} <span class=\"quiet\">({})</span></li>\n", escape(note), id_list(ids, cases.len()))
+    });
+    format!("<h2>Notes</h2>\n<ul>\n{}</ul>\n", items.collect::<String>())
+}
+
+fn figures(study: &StudyOutput) -> String {
+    let cases = &study.results.cases;
+    let mut text = format!("<h2>Figures</h2>\n{}", page::MEANING);
+    if cases.len() > DRAWN {
+        text += &format!("<p>{} cases: the first {DRAWN} are drawn here.</p>\n", cases.len());
+    }
+    for (place, case) in cases.iter().take(DRAWN).enumerate() {
+        let Some((assembly, stages)) = study.scene(place) else { continue };
+        let open = if place == 0 && cases.len() <= DRAWN { " open" } else { "" };
+        let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
+        text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
+        let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.id));
+        text += &format!(
+            "<figure>{scene}<figcaption>The scene with its loads, forces and joints that move.</figcaption></figure>\n"
+        );
+        if let Some(svg) = mechanism_svg(study.name, assembly, case) {
+            let svg = page::own_ids(&svg, &format!("mechanism-{}", case.id));
+            text += &format!(
+                "<figure>{svg}<figcaption>How it collapses; displacements are exaggerated.</figcaption></figure>\n"
+            );
+        }
+        text += "</details>\n";
+    }
+    text
+}
+
+fn certificates(cases: &[CaseResult]) -> String {
+    let mut names: Vec<&String> = cases.iter().flat_map(|case| case.certificate.residuals.keys()).collect();
+    names.sort();
+    names.dedup();
+    if names.is_empty() {
+        return String::new();
+    }
+    let mut header = vec!["id".to_string()];
+    header.extend(names.iter().map(|name| name.replace('_', " ")));
+    header.push("verdict".into());
+    let rows = cases.iter().map(|case| {
+        let mut row = vec![case.id.to_string()];
+        row.extend(
+            names
+                .iter()
+                .map(|name| case.certificate.residuals.get(*name).map_or(String::new(), |r| format!("{r:.1e}"))),
+        );
+        row.push(if case.certificate.passed { "passed" } else { "failed" }.into());
+        row
+    });
+    format!(
+        "<h2>Certificates</h2>\n<p>Relative residuals, recomputed from the scene by code that shares nothing with the solver; \
+         0 is perfect.</p>\n{}",
+        page::table(&header, rows)
+    )
+}
+
+register!(
+    "report",
+    Report,
+    "report.html: one self-contained page with tables, figures and certificates",
+    "# `report`\n\nWrites `report.html`, one page without external resources. At most 40 cases are drawn in it.\n"
+);

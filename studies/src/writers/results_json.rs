@@ -1,0 +1,22 @@
+//! `results.json`: everything, to the last bit.
+
+use super::{StudyOutput, Writer, register};
+
+/// Writes `results.json`.
+#[derive(Debug)]
+pub struct ResultsJson;
+
+impl Writer for ResultsJson {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+        let text =
+            serde_json::to_string_pretty(study.results).expect("results hold no map with other keys than text");
+        vec![("results.json".into(), text + "\n")]
+    }
+}
+
+register!(
+    "results_json",
+    ResultsJson,
+    "results.json: every number of every case, with what proves it",
+    "# `results_json`\n\nWrites `results.json`. Numbers read back to the last bit; `null` is no number.\n"
+);

@@ -1,0 +1,116 @@
+//! The table on the terminal.
+
+use super::StudyOutput;
+use crate::figures::format::{format_number, format_value, key_with_unit, kind_word, status_word};
+use crate::results::CaseResult;
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use voussoir_core::limit::Status;
+
+/// One row per case, then each distinct note once with the cases it belongs to.
+pub fn results_table(study: &StudyOutput) -> String {
+    let cases = &study.results.cases;
+    let variants = cases.iter().any(|case| case.variant.is_some());
+    let mut header = vec!["id".to_string()];
+    header.extend(variants.then(|| "variant".to_string()));
+    header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
+    let factor_column = header.len() + 1;
+    header.extend(["status", "load factor", "kind", "hinges", "certificate", "notes"].map(String::from));
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
+    let notes = distinct_notes(cases);
+    let factors = aligned(&cases.iter().map(factor).collect::<Vec<_>>());
+    let swept: Vec<Vec<String>> = study
+        .sweep_keys
+        .iter()
+        .map(|key| {
+            aligned(&cases.iter().map(|c| c.parameters.get(key).map(cell).unwrap_or_default()).collect::<Vec<_>>())
+        })
+        .collect();
+    for (place, case) in cases.iter().enumerate() {
+        let mut row = vec![case.id.to_string()];
+        row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
+        row.extend(swept.iter().map(|column| column[place].clone()));
+        row.push(status_word(case.status).into());
+        row.push(factors[place].clone());
+        row.push(case.mechanism.as_ref().map_or(String::new(), |m| kind_word(m.kind).into()));
+        row.push(hinges(case));
+        row.push(if case.certificate.passed { "ok" } else { "FAILED" }.into());
+        let marks = notes
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, ids))| ids.contains(&case.id))
+            .map(|(i, _)| format!("[{}]", i + 1));
+        row.push(marks.collect());
+        table.add_row(row);
+    }
+    for (index, column) in table.column_iter_mut().enumerate() {
+        let text = index != 0
+            && !(factor_column - 1 - study.sweep_keys.len()..factor_column - 1).contains(&index)
+            && index != factor_column;
+        column.set_cell_alignment(if text { CellAlignment::Left } else { CellAlignment::Right });
+    }
+    let mut text: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
+    for (i, (note, ids)) in notes.iter().enumerate() {
+        text.push_str(&format!("[{}] {note} ({})\n", i + 1, id_list(ids, cases.len())));
+    }
+    text
+}
+
+fn cell(value: &serde_json::Value) -> String {
+    value.as_f64().map_or_else(|| format_value(value), |x| crate::figures::format::format_short(x, 7))
+}
+
+fn factor(case: &CaseResult) -> String {
+    match (case.status, case.load_factor) {
+        (Status::Unbounded, _) => "unbounded".into(),
+        (_, Some(factor)) => format_number(factor, 7),
+        (_, None) => "-".into(),
+    }
+}
+
+fn hinges(case: &CaseResult) -> String {
+    let Some(mechanism) = &case.mechanism else { return String::new() };
+    let joints: Vec<String> = mechanism.hinges.iter().map(|h| h.joint.to_string()).collect();
+    if joints.len() > 8 { format!("{} joints", joints.len()) } else { joints.join(" ") }
+}
+
+/// Numbers padded behind so that their points stand under each other when aligned right.
+fn aligned(cells: &[String]) -> Vec<String> {
+    let behind = |cell: &str| cell.find('.').map_or(0, |dot| cell.len() - dot);
+    let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+    let longest = cells.iter().filter(|cell| is_number(cell)).map(|cell| behind(cell)).max().unwrap_or(0);
+    let pad = |cell: &String| {
+        if is_number(cell) { format!("{cell}{}", " ".repeat(longest - behind(cell))) } else { cell.clone() }
+    };
+    cells.iter().map(pad).collect()
+}
+
+/// Each distinct note with the ids of its cases, in order of appearance.
+pub(super) fn distinct_notes(cases: &[CaseResult]) -> Vec<(String, Vec<usize>)> {
+    let mut notes: Vec<(String, Vec<usize>)> = Vec::new();
+    for case in cases {
+        for note in case.notes.iter().chain(&case.certificate.failures) {
+            match notes.iter_mut().find(|(text, _)| text == note) {
+                Some((_, ids)) => ids.push(case.id),
+                None => notes.push((note.clone(), vec![case.id])),
+            }
+        }
+    }
+    notes
+}
+
+/// `case 3`, `cases 0-4, 7`, `all cases`.
+pub(super) fn id_list(ids: &[usize], count: usize) -> String {
+    if ids.len() == count && count > 1 {
+        return "all cases".into();
+    }
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
+    for &id in ids {
+        match ranges.last_mut() {
+            Some((_, last)) if *last == id || *last + 1 == id => *last = id,
+            _ => ranges.push((id, id)),
+        }
+    }
+    let words = ranges.iter().map(|(a, b)| if a == b { a.to_string() } else { format!("{a}-{b}") });
+    format!("{} {}", if ids.len() == 1 { "case" } else { "cases" }, words.collect::<Vec<_>>().join(", "))
+}
