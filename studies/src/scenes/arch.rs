@@ -115,7 +115,7 @@ impl Arch {
         }
     }
 
-    /// A ring may close on itself: nearly a full circle, or ends that a springing draws together.
+    /// A ring given by points may run into itself, as nearly a full circle does.
     fn overlap(&self, ring: &Ring) -> Option<Issue> {
         let bodies: Vec<_> = (0..ring.voussoirs()).map(|k| voussoir(ring, k, 0)).collect();
         let (low, high) = bounding_box(ring.intrados.iter().chain(&ring.extrados));
@@ -225,5 +225,93 @@ voussoir_core::inventory::submit! {
         file: file!(),
         page: include_str!("arch.md"),
         check: |value| check_as::<Arch>(value, Arch::validate),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::tests::catalogue;
+    use serde_json::{Value, json};
+
+    fn arch(extra: Value) -> Result<Assembly, Vec<Issue>> {
+        let mut scene = json!({
+            "scene": "arch", "profile": { "shape": "segmental", "span": 9.42, "rise": 2.99 }, "thickness": 0.6,
+            "width": 5.81, "voussoirs": 15, "material": "stone", "joint": "dry",
+        });
+        for (key, value) in extra.as_object().unwrap() {
+            scene[key] = value.clone();
+        }
+        serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue())
+    }
+
+    #[test]
+    fn bodies_and_joints_run_from_left_to_right_with_normals_into_the_next_body() {
+        let arch = arch(json!({ "ends": "bonded" })).unwrap();
+        assert_eq!(arch.bodies.len(), 17);
+        assert_eq!(arch.bodies[0].name, "left");
+        assert_eq!(arch.bodies[16].name, "right");
+        assert_eq!(arch.bodies[15].name, "14");
+        assert_eq!(arch.joints.len(), 16);
+        for (k, joint) in arch.joints.iter().enumerate() {
+            assert_eq!((joint.minus, joint.plus), (k, k + 1));
+            assert_eq!(joint.bond == Bond::Bonded, k == 0 || k == 15);
+            assert!((joint.height() - 0.6).abs() < 1e-14);
+            if (1..15).contains(&k) {
+                assert!((arch.inertia(k + 1).centroid - joint.middle()).dot(&joint.frame().0) > 0.0);
+            }
+        }
+        assert_eq!(arch.arch.as_ref().map(|layout| (layout.first, layout.voussoirs)), Some((1, 15)));
+    }
+
+    #[test]
+    fn joints_found_from_the_polygons_are_those_of_the_ring() {
+        let arch = arch(json!({})).unwrap();
+        let (found, overlaps) = find_joints(&arch.bodies[1..16], arch.size(), |_, _| (Bond::Law(0), 0.0));
+        assert!(overlaps.is_empty());
+        assert_eq!(found.len(), 14);
+        for (found, joint) in found.iter().zip(&arch.joints[1..]) {
+            assert_eq!(found.ends, joint.ends);
+        }
+    }
+
+    #[test]
+    fn mistakes_are_reported_together_each_at_its_key() {
+        let wrong = arch(json!({
+            "material": "ston", "joint": "damp", "width": 0.0, "thickness": -1.0, "springing": 100.0,
+            "mesh": { "elements": [0, 4], "order": 3, "grading": 0.0 },
+            "profile": { "shape": "pointed", "span": 4.0, "rise": 1.0 },
+        }));
+        let mut paths: Vec<_> = wrong.unwrap_err().into_iter().map(|issue| issue.path).collect();
+        paths.sort();
+        let keys =
+            ["joint", "material", "mesh.elements.0", "mesh.grading", "mesh.order", "profile.rise", "springing", "thickness", "width"];
+        assert_eq!(paths, keys.map(|key| format!("scene.{key}")));
+    }
+
+    #[test]
+    fn a_nearly_closed_ring_with_a_gap_at_the_springings_is_accepted() {
+        let profile = json!({ "shape": "segmental", "span": 0.2, "rise": 2.0 });
+        assert!(arch(json!({ "profile": profile, "thickness": 0.3, "voussoirs": 24, "springing": -89.0 })).is_ok());
+    }
+
+    #[test]
+    fn a_ring_whose_ends_run_into_each_other_is_refused() {
+        let points = json!({
+            "profile": {
+                "shape": "points",
+                "intrados": [[-0.1, 0.0], [-1.0, 1.0], [0.0, 2.0], [1.0, 1.0], [0.1, 0.0]],
+                "extrados": [[0.2, -0.5], [-1.5, 1.0], [0.0, 2.5], [1.5, 1.0], [-0.2, -0.5]],
+            },
+            "thickness": null, "voussoirs": null,
+        });
+        let wrong = arch(points).unwrap_err();
+        assert!(wrong[0].path == "scene.profile" && wrong[0].message.contains("overlap"), "{wrong:?}");
+    }
+
+    #[test]
+    fn unknown_keys_are_refused() {
+        let value = json!({ "shape": "segmental", "span": 1.0, "rise": 0.4, "crown": 1.0 });
+        assert!(serde_json::from_value::<Profile>(value).is_err());
     }
 }

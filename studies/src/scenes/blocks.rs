@@ -345,3 +345,78 @@ voussoir_core::inventory::submit! {
         check: |value| check_as::<Blocks>(value, Blocks::validate),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::tests::catalogue;
+    use serde_json::{Value, json};
+
+    fn build(blocks: Value, extra: Value) -> Result<Assembly, Vec<Issue>> {
+        let mut scene = json!({ "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry", "blocks": blocks });
+        for (key, value) in extra.as_object().unwrap() {
+            scene[key] = value.clone();
+        }
+        serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue())
+    }
+
+    fn box_at(name: &str, x: f64, y: f64) -> Value {
+        json!({ "name": name, "vertices": [[x, y], [x, y + 1.0], [x + 1.0, y + 1.0], [x + 1.0, y]] })
+    }
+
+    fn ground() -> Value {
+        json!({ "name": "ground", "vertices": [[-1, -1], [5, -1], [5, 0], [-1, 0]], "fixed": true })
+    }
+
+    #[test]
+    fn clockwise_vertices_are_turned_round_from_the_same_first_vertex() {
+        let scene = build(json!([ground(), box_at("a", 0.0, 0.0)]), json!({})).unwrap();
+        let expected = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from);
+        assert_eq!(scene.bodies[1].vertices, expected);
+        assert_eq!(scene.joints.len(), 1);
+        let joint = &scene.joints[0];
+        assert_eq!((joint.minus, joint.plus, joint.frame().0), (0, 1, Vec2::new(0.0, 1.0)));
+    }
+
+    #[test]
+    fn a_pair_decides_before_a_block_and_a_block_before_the_scene() {
+        let mut b = box_at("b", 1.0, 0.0);
+        b["joint"] = json!("wet");
+        let blocks = json!([ground(), box_at("a", 0.0, 0.0), b]);
+        let pairs = json!({ "pairs": [{ "between": ["b", "a"], "joint": "dry", "gap": 0.001 }] });
+        let scene = build(blocks, pairs).unwrap();
+        let bonds: Vec<_> = scene.joints.iter().map(|j| (j.minus, j.plus, j.bond, j.gap)).collect();
+        let expected = [(0, 1, Bond::Law(0), 0.0), (0, 2, Bond::Law(1), 0.0), (1, 2, Bond::Law(0), 0.001)];
+        assert_eq!(bonds, expected);
+    }
+
+    #[test]
+    fn a_block_with_two_level_tops_or_a_vertex_within_an_edge_does_not_cross_itself() {
+        let u = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [2.0, 2.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        assert!(polygon(&u).is_ok());
+        assert!(polygon(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]]).is_ok());
+    }
+
+    #[test]
+    fn mistakes_are_refused_at_their_key() {
+        let path = |blocks: Value, extra: Value| build(blocks, extra).unwrap_err()[0].path.clone();
+        let a = || box_at("a", 0.0, 0.0);
+        let none = || json!({});
+        let shape = |vertices: Value| json!([ground(), { "name": "a", "vertices": vertices }]);
+        assert_eq!(path(shape(json!([[0, 0], [1, 0]])), none()), "scene.blocks.1.vertices");
+        assert_eq!(path(shape(json!([[0, 0], [1, 0], [2, 0]])), none()), "scene.blocks.1.vertices");
+        assert_eq!(path(shape(json!([[0, 0], [1, 1], [1, 0], [0, 1]])), none()), "scene.blocks.1.vertices");
+        assert_eq!(path(json!([ground(), a(), a()]), none()), "scene.blocks.2.name");
+        assert_eq!(path(json!([ground(), box_at("left", 0.0, 0.0)]), none()), "scene.blocks.1.name");
+        assert_eq!(path(json!([a()]), none()), "scene.blocks");
+        let pair = |one: &str, other: &str| json!({ "pairs": [{ "between": [one, other] }] });
+        assert_eq!(path(json!([ground(), a()]), pair("a", "b")), "scene.pairs.0.between.1");
+        let far = || json!([ground(), a(), box_at("b", 3.0, 0.0)]);
+        assert_eq!(path(far(), pair("a", "b")), "scene.pairs.0.between");
+        assert_eq!(path(far(), json!({ "joint": null })), "scene.joint");
+        assert_eq!(path(far(), json!({ "material": null })), "scene.material");
+        let overlap = build(json!([ground(), a(), box_at("b", 0.5, 0.0)]), none()).unwrap_err();
+        assert_eq!(overlap[0].path, "scene.blocks.2.vertices");
+        assert!(overlap[0].message.starts_with("blocks \"a\" and \"b\" overlap, 3.333e-1 m deep"), "{}", overlap[0].message);
+    }
+}

@@ -154,7 +154,7 @@ impl Curve {
 
     /// Where the curve `thickness` outside of this one meets the plane that leaves the right
     /// springing at `inclination` \[rad\] above the horizontal, rising outwards. `None` where it
-    /// does not, on this side of the crown.
+    /// does not, on this side of the crown, or where the plane leaves the springing into the opening.
     ///
     /// Along the offset curve the distance from the plane changes at the rate
     /// −(ρ + thickness) sin(φ + inclination), so there is at most one such point with
@@ -162,6 +162,9 @@ impl Curve {
     pub fn offset_on_plane(&self, thickness: f64, inclination: f64) -> Option<Vec2> {
         let (sine, cosine) = inclination.sin_cos();
         let along = Vec2::new(cosine, sine);
+        if self.springing_normal().dot(&along) <= 0.0 {
+            return None;
+        }
         let springing = Vec2::new(self.half_span(), 0.0);
         let offset = |angle: f64| self.point(angle) + direction(angle) * thickness - springing;
         let (first, last) = self.angles();

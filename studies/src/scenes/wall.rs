@@ -285,3 +285,67 @@ voussoir_core::inventory::submit! {
         check: |value| check_as::<Wall>(value, Wall::validate),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::tests::catalogue;
+    use serde_json::{Value, json};
+
+    fn wall(extra: Value) -> Result<Assembly, Vec<Issue>> {
+        let mut scene = json!({ "scene": "wall", "width": 1.0, "material": "stone", "joint": "dry", "brick": [0.4, 0.175] });
+        for (key, value) in extra.as_object().unwrap() {
+            scene[key] = value.clone();
+        }
+        serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue())
+    }
+
+    fn counts(extra: Value) -> (usize, usize) {
+        let wall = wall(extra).unwrap();
+        (wall.bodies.len() - 1, wall.joints.len())
+    }
+
+    #[test]
+    fn the_walls_of_ferris_and_tin_loi_have_their_published_numbers_of_blocks_and_contacts() {
+        let (a, b) = (json!([0.5, 1, 1, 1, 1, 0.5]), json!([1, 1, 1, 1, 1]));
+        assert_eq!(counts(json!({ "rows": [a, b, a, b, a, b] })), (33, 83));
+        let sequence = |fe: &Value, fu: &Value, we: &Value, wu: &Value| json!({ "rows": [fe, fu, fe, wu, we, wu, we, wu, fe, fu, fe] });
+        let three = sequence(
+            &json!([1, 1, 1, 1]),
+            &json!([0.5, 1, 1, 1, 0.5]),
+            &json!([1, 0.5, -1, 0.5, 1]),
+            &json!([0.5, 1, -1, 1, 0.5]),
+        );
+        assert_eq!(counts(three), (46, 102));
+        let four = sequence(&a, &b, &json!([0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5]), &json!([1, -1, 1, -1, 1]));
+        assert_eq!(counts(four), (55, 116));
+    }
+
+    #[test]
+    fn courses_and_openings_give_the_wall_that_rows_give() {
+        let (even, odd) = (json!([1, 1, 1, 1]), json!([0.5, 1, 1, 1, 0.5]));
+        assert_eq!(counts(json!({ "courses": 3, "bricks": 4 })), counts(json!({ "rows": [even, odd, even] })));
+        let by_rows = wall(json!({ "rows": [even, [0.5, 1, -1, 1, 0.5], [1, 0.5, -1, 0.5, 1], odd, even] })).unwrap();
+        let opening = json!({ "from": [0.6, 0.175], "to": [1.0, 0.35] });
+        let by_cutting = wall(json!({ "courses": 5, "bricks": 4, "openings": [opening, { "from": [0.6, 0.35], "to": [1.0, 0.525] }] })).unwrap();
+        assert_eq!(by_rows.joints.len(), by_cutting.joints.len());
+        for (one, other) in by_rows.bodies.iter().zip(&by_cutting.bodies) {
+            assert_eq!(one.name, other.name);
+            assert!(one.vertices.iter().zip(&other.vertices).all(|(a, b)| (a - b).norm() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn mistakes_are_refused_at_their_key() {
+        let path = |extra| wall(extra).unwrap_err()[0].path.clone();
+        assert_eq!(path(json!({ "courses": 2 })), "scene.bricks");
+        assert_eq!(path(json!({ "rows": [[1, 0.0]] })), "scene.rows.0.1");
+        assert_eq!(path(json!({ "rows": [[-1]] })), "scene.rows.0");
+        assert_eq!(path(json!({ "rows": [[1]], "courses": 1 })), "scene.courses");
+        assert_eq!(path(json!({ "courses": 2, "bricks": 2, "brick": [0.4, 0.0] })), "scene.brick.1");
+        let cut = |from: [f64; 2], to: [f64; 2]| json!({ "courses": 4, "bricks": 4, "openings": [{ "from": from, "to": to }] });
+        assert_eq!(path(cut([0.4, 0.1], [0.8, 0.35])), "scene.openings.0.from.1");
+        assert_eq!(path(cut([0.4, 0.35], [0.8, 0.175])), "scene.openings.0");
+        assert_eq!(path(cut([4.0, 0.0], [5.0, 0.175])), "scene.openings.0");
+    }
+}
