@@ -20,72 +20,106 @@ use voussoir_core::units::Quantity;
 pub enum Profile {
     /// Circular arc; rise > span/2 is more than a half circle.
     Segmental {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Half ellipse.
     Elliptical {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Parabola.
     Parabolic {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Hanging chain, turned over.
     Catenary {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Two arcs with centres on the springing line.
     Pointed {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m], at least span/2.
+        /// Rise of the intrados \[m\], at least span/2.
         rise: f64,
     },
     /// A crown arc between two side arcs that are upright at the springings.
     ThreeCentred {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m], less than span/2.
+        /// Rise of the intrados \[m\], less than span/2.
         rise: f64,
-        /// Radius of the crown arc [m].
+        /// Radius of the crown arc \[m\].
         crown_radius: f64,
     },
     /// Vertices joint by joint, from left to right.
     Points {
-        /// Intrados end of each joint [m].
+        /// Intrados end of each joint \[m\].
         intrados: Vec<[f64; 2]>,
-        /// Extrados end of each joint [m].
+        /// Extrados end of each joint \[m\].
         extrados: Vec<[f64; 2]>,
     },
 }
 
-const SPAN: Parameter = Parameter::number("span", Quantity::Length, Range::POSITIVE, "clear span of the intrados");
-const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSITIVE, "rise of the intrados");
+const SPAN: Parameter = Parameter::number(
+    "span",
+    Quantity::Length,
+    Range::POSITIVE,
+    "clear span of the intrados",
+);
+const RISE: Parameter = Parameter::number(
+    "rise",
+    Quantity::Length,
+    Range::POSITIVE,
+    "rise of the intrados",
+);
 const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
 
-const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
+const VERTICES: Shape = Shape::List {
+    of: &super::POINT,
+    min: 2,
+    max: usize::MAX,
+};
 
 /// What a profile may hold.
 pub const PROFILE: Shape = Shape::Tagged {
     key: "shape",
     variants: &[
-        Variant { tag: "segmental", doc: "circular arc; rise > span/2 is more than a half circle", parameters: SPAN_RISE },
-        Variant { tag: "elliptical", doc: "half ellipse", parameters: SPAN_RISE },
-        Variant { tag: "parabolic", doc: "parabola", parameters: SPAN_RISE },
-        Variant { tag: "catenary", doc: "hanging chain turned over", parameters: SPAN_RISE },
-        Variant { tag: "pointed", doc: "two arcs with centres on the springing line, rise ≥ span/2", parameters: SPAN_RISE },
+        Variant {
+            tag: "segmental",
+            doc: "circular arc; rise > span/2 is more than a half circle",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "elliptical",
+            doc: "half ellipse",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "parabolic",
+            doc: "parabola",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "catenary",
+            doc: "hanging chain turned over",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "pointed",
+            doc: "two arcs with centres on the springing line, rise ≥ span/2",
+            parameters: SPAN_RISE,
+        },
         Variant {
             tag: "three_centred",
             doc: "crown arc between two side arcs, upright at the springings, rise < span/2",
@@ -104,8 +138,18 @@ pub const PROFILE: Shape = Shape::Tagged {
             tag: "points",
             doc: "vertices joint by joint, from left to right",
             parameters: &[
-                Parameter { name: "intrados", doc: "intrados end of each joint", shape: VERTICES, need: Need::Required },
-                Parameter { name: "extrados", doc: "extrados end of each joint", shape: VERTICES, need: Need::Required },
+                Parameter {
+                    name: "intrados",
+                    doc: "intrados end of each joint",
+                    shape: VERTICES,
+                    need: Need::Required,
+                },
+                Parameter {
+                    name: "extrados",
+                    doc: "extrados end of each joint",
+                    shape: VERTICES,
+                    need: Need::Required,
+                },
             ],
         },
     ],
@@ -125,7 +169,14 @@ const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
 const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
 
 /// What `springing` may hold.
-pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::List { of: &DEGREES, min: 2, max: 2 }]);
+pub const SPRINGING: Shape = Shape::Either(&[
+    DEGREES,
+    Shape::List {
+        of: &DEGREES,
+        min: 2,
+        max: 2,
+    },
+]);
 
 impl Springing {
     /// [left, right] \[deg\], each with its key.
@@ -137,7 +188,7 @@ impl Springing {
     }
 }
 
-/// Vertices of a ring of voussoirs, joint by joint from left to right [m].
+/// Vertices of a ring of voussoirs, joint by joint from left to right \[m\].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ring {
     /// Intrados ends of the N + 1 joints.
@@ -153,7 +204,12 @@ pub struct Ring {
 impl Ring {
     /// Voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
     pub fn voussoir(&self, k: usize) -> Vec<Vec2> {
-        vec![self.intrados[k], self.intrados[k + 1], self.extrados[k + 1], self.extrados[k]]
+        vec![
+            self.intrados[k],
+            self.intrados[k + 1],
+            self.extrados[k + 1],
+            self.extrados[k],
+        ]
     }
 
     /// Number of voussoirs.
@@ -163,7 +219,7 @@ impl Ring {
 }
 
 impl Profile {
-    /// The ring of `voussoirs` voussoirs, `thickness` [m] thick. Both must be given, except for
+    /// The ring of `voussoirs` voussoirs, `thickness` \[m\] thick. Both must be given, except for
     /// `points`, which hold them. Issues have paths from the scene's table.
     pub fn ring(
         &self,
@@ -176,20 +232,37 @@ impl Profile {
         }
         let mut issues = Vec::new();
         match thickness {
-            None => issues.push(Issue::new("thickness", "is missing: the thickness of the ring [m]")),
+            None => issues.push(Issue::new(
+                "thickness",
+                "is missing: the thickness of the ring [m]",
+            )),
             Some(thickness) => issues.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
         }
         match voussoirs {
-            None => issues.push(Issue::new("voussoirs", "is missing: the number of voussoirs")),
+            None => issues.push(Issue::new(
+                "voussoirs",
+                "is missing: the number of voussoirs",
+            )),
             Some(0) => issues.push(Issue::new("voussoirs", "there must be at least one")),
             Some(_) => {}
         }
         if let Some(springing) = springing {
             let sides = springing.sides();
-            let sides = if sides[0] == sides[1] { &sides[..1] } else { &sides[..] };
-            issues.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
+            let sides = if sides[0] == sides[1] {
+                &sides[..1]
+            } else {
+                &sides[..]
+            };
+            issues.extend(
+                sides
+                    .iter()
+                    .filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)),
+            );
         }
-        let curve = self.curve().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+        let curve = self
+            .curve()
+            .map_err(|mut wrong| issues.append(&mut wrong))
+            .ok();
         let (Some(curve), Some(thickness), Some(voussoirs)) = (curve, thickness, voussoirs) else {
             return Err(issues);
         };
@@ -219,7 +292,9 @@ impl Profile {
         issues.extend(out_of_range("profile.span", span, Range::POSITIVE));
         issues.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
         if issues.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
-            let message = format!("{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span");
+            let message = format!(
+                "{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span"
+            );
             issues.push(Issue::new("profile.rise", message));
         }
         if !issues.is_empty() {
@@ -233,12 +308,17 @@ impl Profile {
             Profile::Pointed { .. } if rise < span / 2.0 => Err(vec![
                 Issue::new(
                     "profile.rise",
-                    format!("{rise} m is too low for a pointed arch: at least half the span, {} m", span / 2.0),
+                    format!(
+                        "{rise} m is too low for a pointed arch: at least half the span, {} m",
+                        span / 2.0
+                    ),
                 )
                 .help("a lower pointed arch needs centres below the springings; give its points"),
             ]),
             Profile::Pointed { .. } => Ok(Curve::pointed(span, rise)),
-            Profile::ThreeCentred { crown_radius, .. } => three_centred(span, rise, crown_radius).map_err(|i| vec![i]),
+            Profile::ThreeCentred { crown_radius, .. } => {
+                three_centred(span, rise, crown_radius).map_err(|i| vec![i])
+            }
             Profile::Points { .. } => unreachable!("returned above"),
         }
     }
@@ -248,16 +328,25 @@ impl Profile {
 /// radius exceeds that of the segmental arc; with more rise the crown arc would turn beyond the upright.
 fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Issue> {
     if rise >= span / 2.0 {
-        let message = format!("{rise} m is too high for a three-centred arch: less than half the span, {} m", span / 2.0);
+        let message = format!(
+            "{rise} m is too high for a three-centred arch: less than half the span, {} m",
+            span / 2.0
+        );
         return Err(Issue::new("profile.rise", message));
     }
     let least = (span * span / 4.0 + rise * rise) / (2.0 * rise);
     let curve = Curve::three_centred(span, rise, crown);
     match curve {
-        Curve::ThreeCentred { side, .. } if crown > least && side > 0.0 && side < crown && crown.is_finite() => Ok(curve),
+        Curve::ThreeCentred { side, .. }
+            if crown > least && side > 0.0 && side < crown && crown.is_finite() =>
+        {
+            Ok(curve)
+        }
         _ => Err(Issue::new(
             "profile.crown_radius",
-            format!("{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"),
+            format!(
+                "{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"
+            ),
         )),
     }
 }
@@ -273,7 +362,12 @@ fn ring_on(curve: &Curve, thickness: f64, voussoirs: usize) -> Ring {
         intrados.push(if left { mirrored(point) } else { point });
         extrados.push(if left { mirrored(outer) } else { outer });
     }
-    Ring { intrados, extrados, span: 2.0 * curve.half_span(), rise: curve.rise() }
+    Ring {
+        intrados,
+        extrados,
+        span: 2.0 * curve.half_span(),
+        rise: curve.rise(),
+    }
 }
 
 fn mirrored(p: Vec2) -> Vec2 {
@@ -281,7 +375,12 @@ fn mirrored(p: Vec2) -> Vec2 {
 }
 
 /// Moves the end vertices of the extrados along the offset curve onto the support planes.
-fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Springing) -> Result<(), Vec<Issue>> {
+fn move_springings(
+    ring: &mut Ring,
+    curve: &Curve,
+    thickness: f64,
+    springing: Springing,
+) -> Result<(), Vec<Issue>> {
     let last = ring.voussoirs();
     let mut issues = Vec::new();
     for (side, (degrees, key)) in springing.sides().into_iter().enumerate() {
@@ -295,7 +394,11 @@ fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Sp
             None => {}
         }
     }
-    if issues.is_empty() { Ok(()) } else { Err(issues) }
+    if issues.is_empty() {
+        Ok(())
+    } else {
+        Err(issues)
+    }
 }
 
 /// Every voussoir must have an area and not cross itself.
@@ -314,7 +417,11 @@ fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<
         });
     }
     issues.dedup_by(|a, b| a.path == b.path);
-    if issues.is_empty() { Ok(()) } else { Err(issues) }
+    if issues.is_empty() {
+        Ok(())
+    } else {
+        Err(issues)
+    }
 }
 
 /// Whether an anticlockwise polygon has an area beyond rounding and does not cross itself.
@@ -332,255 +439,95 @@ fn ring_of_points(
 ) -> Result<Ring, Vec<Issue>> {
     let mut issues = Vec::new();
     if thickness.is_some() {
-        issues.push(Issue::new("thickness", "the points of the profile already fix it").help("remove this key"));
+        issues.push(
+            Issue::new("thickness", "the points of the profile already fix it")
+                .help("remove this key"),
+        );
     }
     if springing.is_some() {
-        issues.push(Issue::new("springing", "the points of the profile already fix it").help("remove this key"));
+        issues.push(
+            Issue::new("springing", "the points of the profile already fix it")
+                .help("remove this key"),
+        );
     }
     if intrados.len() != extrados.len() {
-        let message = format!("{} points, but the intrados has {}", extrados.len(), intrados.len());
+        let message = format!(
+            "{} points, but the intrados has {}",
+            extrados.len(),
+            intrados.len()
+        );
         issues.push(Issue::new("profile.extrados", message).help("give both ends of every joint"));
     }
     if intrados.len() < 2 {
-        issues.push(Issue::new("profile.intrados", "at least two points: the springings"));
+        issues.push(Issue::new(
+            "profile.intrados",
+            "at least two points: the springings",
+        ));
     }
     if let Some(voussoirs) = voussoirs
         && voussoirs + 1 != intrados.len()
     {
-        let message = format!("{voussoirs}, but {} points make {}", intrados.len(), intrados.len().saturating_sub(1));
+        let message = format!(
+            "{voussoirs}, but {} points make {}",
+            intrados.len(),
+            intrados.len().saturating_sub(1)
+        );
         issues.push(Issue::new("voussoirs", message).help("remove this key"));
     }
     for (key, points) in [("intrados", intrados), ("extrados", extrados)] {
-        for (i, point) in points.iter().enumerate().filter(|(_, p)| !p.iter().all(|x| x.is_finite())) {
-            issues.push(Issue::new(format!("profile.{key}.{i}"), format!("{point:?} is not finite")));
+        for (i, point) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| !p.iter().all(|x| x.is_finite()))
+        {
+            issues.push(Issue::new(
+                format!("profile.{key}.{i}"),
+                format!("{point:?} is not finite"),
+            ));
         }
     }
     if !issues.is_empty() {
         return Err(issues);
     }
-    let vectors = |points: &[[f64; 2]]| points.iter().map(|&[x, y]| Vec2::new(x, y)).collect::<Vec<_>>();
+    let vectors = |points: &[[f64; 2]]| {
+        points
+            .iter()
+            .map(|&[x, y]| Vec2::new(x, y))
+            .collect::<Vec<_>>()
+    };
     let (intrados, extrados) = (vectors(intrados), vectors(extrados));
     let (first, last) = (intrados[0], intrados[intrados.len() - 1]);
-    let crown = intrados.iter().fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
-    let ring = Ring { span: last.x - first.x, rise: crown - (first.y + last.y) / 2.0, intrados, extrados };
+    let crown = intrados
+        .iter()
+        .fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
+    let ring = Ring {
+        span: last.x - first.x,
+        rise: crown - (first.y + last.y) / 2.0,
+        intrados,
+        extrados,
+    };
     if ring.span <= 0.0 {
-        issues.push(Issue::new("profile.intrados", "the last point must lie to the right of the first"));
+        issues.push(Issue::new(
+            "profile.intrados",
+            "the last point must lie to the right of the first",
+        ));
     }
     for k in (0..ring.voussoirs()).filter(|&k| !is_sound(&ring.voussoir(k))) {
-        let message = format!("voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over", k + 1);
-        issues.push(Issue::new(format!("profile.intrados.{k}"), message).help("list both from left to right"));
+        let message = format!(
+            "voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over",
+            k + 1
+        );
+        issues.push(
+            Issue::new(format!("profile.intrados.{k}"), message)
+                .help("list both from left to right"),
+        );
     }
-    if issues.is_empty() { Ok(ring) } else { Err(issues) }
+    if issues.is_empty() {
+        Ok(ring)
+    } else {
+        Err(issues)
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use voussoir_core::geometry::cross;
-
-    fn profiles() -> Vec<Profile> {
-        vec![
-            Profile::Segmental { span: 9.42, rise: 2.99 },
-            Profile::Segmental { span: 2.0, rise: 1.0 },
-            Profile::Segmental { span: 2.0, rise: 1.7 },
-            Profile::Elliptical { span: 8.0, rise: 1.5 },
-            Profile::Elliptical { span: 3.0, rise: 4.0 },
-            Profile::Parabolic { span: 6.0, rise: 2.0 },
-            Profile::Parabolic { span: 6.0, rise: 0.01 },
-            Profile::Catenary { span: 6.0, rise: 2.0 },
-            Profile::Catenary { span: 2.0, rise: 9.0 },
-            Profile::Pointed { span: 4.0, rise: 3.0 },
-            Profile::Pointed { span: 4.0, rise: 2.0 },
-            Profile::ThreeCentred { span: 10.0, rise: 3.0, crown_radius: 8.0 },
-        ]
-    }
-
-    fn ring(profile: &Profile, voussoirs: usize) -> Ring {
-        profile.ring(Some(0.3), Some(voussoirs), None).unwrap()
-    }
-
-    #[test]
-    fn segmental_vertices_lie_on_both_circles_at_equal_angles() {
-        for (span, rise) in [(9.42_f64, 2.99_f64), (2.0, 1.0), (2.0, 1.7)] {
-            let ring = ring(&Profile::Segmental { span, rise }, 15);
-            let radius = (span * span / 4.0 + rise * rise) / (2.0 * rise);
-            let centre = Vec2::new(0.0, rise - radius);
-            let half = 2.0 * (2.0 * rise / span).atan();
-            for k in 0..=15 {
-                let angle = half * (2.0 * k as f64 / 15.0 - 1.0);
-                for (point, r) in [(ring.intrados[k], radius), (ring.extrados[k], radius + 0.3)] {
-                    assert!((point - centre - Vec2::new(angle.sin(), angle.cos()) * r).norm() < 4e-15 * r, "{k}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn more_rise_than_half_the_span_is_more_than_a_half_circle() {
-        let ring = ring(&Profile::Segmental { span: 2.0, rise: 1.7 }, 20);
-        let widest = ring.intrados.iter().fold(0.0, |w: f64, p| w.max(p.x));
-        assert!(widest > 1.1 && ring.extrados[0].y < 0.0);
-        assert_eq!((ring.intrados[20], ring.rise), (Vec2::new(1.0, 0.0), 1.7));
-    }
-
-    /// y of the intrados at x ≥ 0 from its textbook equation, upper branch.
-    fn height(profile: &Profile, x: f64) -> f64 {
-        match *profile {
-            Profile::Elliptical { span, rise } => rise * (1.0 - 4.0 * x * x / (span * span)).max(0.0).sqrt(),
-            Profile::Parabolic { span, rise } => rise * (1.0 - 4.0 * x * x / (span * span)),
-            Profile::Catenary { span, rise } => {
-                let (mut low, mut high) = (1e-3, 1e4);
-                for _ in 0..200 {
-                    let c: f64 = (low + high) / 2.0;
-                    if c * ((span / (2.0 * c)).cosh() - 1.0) > rise { low = c } else { high = c }
-                }
-                rise - low * ((x / low).cosh() - 1.0)
-            }
-            Profile::Pointed { span, rise } => {
-                let radius = (rise * rise + span * span / 4.0) / span;
-                (radius * radius - (x - span / 2.0 + radius).powi(2)).max(0.0).sqrt()
-            }
-            Profile::ThreeCentred { span, rise, crown_radius: big } => {
-                let small = (2.0 * big * rise - rise * rise - span * span / 4.0) / (2.0 * big - span);
-                let centre = span / 2.0 - small;
-                let contact = centre * big / (big - small);
-                if x < contact {
-                    rise - big + (big * big - x * x).sqrt()
-                } else {
-                    (small * small - (x - centre).powi(2)).max(0.0).sqrt()
-                }
-            }
-            _ => unreachable!(),
-        }
-    }
-
-    #[test]
-    fn joints_lie_on_the_curve_at_equal_arc_length_of_an_independent_fine_polyline() {
-        for profile in profiles().into_iter().filter(|p| !matches!(p, Profile::Segmental { .. })) {
-            let (n, steps) = (12, 20_000);
-            let ring = ring(&profile, n);
-            let half = ring.span / 2.0;
-            // x = half sin t crowds points where the curve is upright.
-            let point = |i: usize| {
-                let x = half * (std::f64::consts::FRAC_PI_2 * i as f64 / steps as f64).sin();
-                Vec2::new(x, height(&profile, x))
-            };
-            let mut lengths = vec![0.0];
-            for i in 0..steps {
-                lengths.push(lengths[i] + (point(i + 1) - point(i)).norm());
-            }
-            for k in n / 2..=n {
-                let vertex = ring.intrados[k];
-                assert!((vertex.y - height(&profile, vertex.x)).abs() < 1e-7, "{profile:?} {k}");
-                let place = (vertex.x / half).min(1.0).asin() / std::f64::consts::FRAC_PI_2 * steps as f64;
-                let index = (place.floor() as usize).min(steps - 1);
-                let length = lengths[index] + (place - index as f64) * (lengths[index + 1] - lengths[index]);
-                let share = (2 * k - n) as f64 / n as f64;
-                assert!((length / lengths[steps] - share).abs() < 1e-7, "{profile:?} joint {k}: {length}");
-            }
-        }
-    }
-
-    #[test]
-    fn joints_are_perpendicular_to_the_curve_and_as_long_as_the_ring_is_thick() {
-        for profile in profiles() {
-            let fine = ring(&profile, 12_000);
-            for k in (500..12_000).step_by(500).filter(|&k| k != 6000) {
-                let tangent = (fine.intrados[k + 1] - fine.intrados[k - 1]).normalize();
-                let joint = fine.extrados[k] - fine.intrados[k];
-                assert!((joint.norm() - 0.3).abs() < 1e-14, "{profile:?}");
-                assert!(tangent.dot(&joint).abs() < 1e-6 && cross(tangent, joint) > 0.0, "{profile:?} {k}");
-            }
-        }
-    }
-
-    #[test]
-    fn rings_are_exact_mirror_images_with_the_crown_at_zero() {
-        for profile in profiles() {
-            for n in [1, 2, 7, 10, 33].into_iter().filter(|&n| n > 2 || profile.ring(Some(0.3), Some(n), None).is_ok()) {
-                let ring = ring(&profile, n);
-                for points in [&ring.intrados, &ring.extrados] {
-                    for k in 0..=n {
-                        assert_eq!((points[k].x, points[k].y), (-points[n - k].x, points[n - k].y));
-                    }
-                }
-                assert_eq!(ring.intrados[n], Vec2::new(ring.span / 2.0, 0.0));
-            }
-        }
-    }
-
-    #[test]
-    fn a_springing_at_the_radial_angle_reproduces_the_default() {
-        for profile in profiles() {
-            let default = ring(&profile, 16);
-            let joint = default.extrados[16] - default.intrados[16];
-            let degrees = joint.y.atan2(joint.x).to_degrees();
-            for springing in [Springing::Both(degrees), Springing::Each([degrees, degrees])] {
-                let moved = profile.ring(Some(0.3), Some(16), Some(springing)).unwrap();
-                for (a, b) in default.extrados.iter().zip(&moved.extrados) {
-                    assert!((a - b).norm() < 1e-14 * default.span.max(default.rise), "{profile:?} {a} {b}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_springing_puts_the_end_vertex_on_the_plane_and_on_the_extrados_circle() {
-        let (span, rise) = (9.42, 2.99);
-        let radius: f64 = (span * span / 4.0 + rise * rise) / (2.0 * rise);
-        let ring = Profile::Segmental { span, rise }.ring(Some(0.6), Some(15), Some(Springing::Each([0.0, 60.0]))).unwrap();
-        let centre = Vec2::new(0.0, rise - radius);
-        let (left, right) = (ring.extrados[0], ring.extrados[15]);
-        assert_eq!(left.y, 0.0);
-        for end in [left, right] {
-            assert!(((end - centre).norm() - radius - 0.6).abs() < 1e-14);
-        }
-        let plane = right - ring.intrados[15];
-        assert!((plane.y / plane.x - 60.0_f64.to_radians().tan()).abs() < 1e-13);
-    }
-
-    fn path(profile: Profile, springing: Option<Springing>) -> String {
-        profile.ring(Some(0.3), Some(60), springing).unwrap_err()[0].path.clone()
-    }
-
-    #[test]
-    fn impossible_profiles_are_refused_at_their_key() {
-        assert_eq!(path(Profile::Segmental { span: 2.0, rise: 0.0 }, None), "profile.rise");
-        assert_eq!(path(Profile::Segmental { span: f64::NAN, rise: 1.0 }, None), "profile.span");
-        assert_eq!(path(Profile::Pointed { span: 4.0, rise: 1.9 }, None), "profile.rise");
-        for crown_radius in [5.0, 5.6, -1.0] {
-            assert_eq!(path(Profile::ThreeCentred { span: 10.0, rise: 3.0, crown_radius }, None), "profile.crown_radius");
-        }
-        assert_eq!(path(Profile::ThreeCentred { span: 4.0, rise: 3.0, crown_radius: 8.0 }, None), "profile.rise");
-        let points = |extrados: &[[f64; 2]]| Profile::Points { intrados: vec![[0.0, 0.0], [1.0, 0.0]], extrados: extrados.to_vec() };
-        let only = |profile: Profile| profile.ring(None, None, None);
-        assert_eq!(only(points(&[[0.0, 1.0]])).unwrap_err()[0].path, "profile.extrados");
-        assert_eq!(only(points(&[[1.0, 1.0], [0.0, 1.0]])).unwrap_err()[0].path, "profile.intrados.0");
-        assert!(only(points(&[[0.0, 1.0], [1.0, 1.0]])).is_ok());
-        assert_eq!(points(&[[0.0, 1.0], [1.0, 1.0]]).ring(None, Some(2), None).unwrap_err()[0].path, "voussoirs");
-    }
-
-    #[test]
-    fn impossible_springings_are_refused() {
-        let flat = Profile::Segmental { span: 9.42, rise: 2.99 };
-        assert_eq!(path(flat.clone(), Some(Springing::Both(89.0))), "springing");
-        assert_eq!(path(flat.clone(), Some(Springing::Each([20.0, 89.0]))), "springing.1");
-        assert_eq!(path(flat, Some(Springing::Both(120.0))), "springing");
-        // A plane that falls steeper than the legs of the arch would leave the voussoir below it hollow.
-        assert_eq!(path(Profile::Parabolic { span: 4.0, rise: 1.0 }, Some(Springing::Both(-89.0))), "springing");
-    }
-
-    #[test]
-    fn a_fine_segmental_ring_tends_to_the_annulus_sector() {
-        let (span, rise, t) = (9.42_f64, 2.99_f64, 0.6);
-        let radius = (span * span / 4.0 + rise * rise) / (2.0 * rise);
-        let sector = 2.0 * (2.0 * rise / span).atan() * ((radius + t).powi(2) - radius * radius);
-        let error = |n: usize| {
-            let ring = Profile::Segmental { span, rise }.ring(Some(t), Some(n), None).unwrap();
-            let area: f64 = (0..n).map(|k| area_and_centroid(&ring.voussoir(k)).0).sum();
-            (area / sector - 1.0).abs()
-        };
-        assert!(error(2000) < 1e-6);
-        assert!((error(100) / error(200) - 4.0).abs() < 0.01);
-    }
-}
+mod tests;
