@@ -72,6 +72,11 @@ pub fn crosses_itself(vertices: &[Vec2]) -> bool {
     (0..n).any(|i| {
         (i + 2..n).filter(|&j| (j + 1) % n != i).any(|j| {
             let ((a, b), (c, d)) = (segment(i), segment(j));
+            // Edges on one line cross only where their boxes meet.
+            let apart = |i: usize| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]);
+            if apart(0) || apart(1) {
+                return false;
+            }
             let side = |p, q, r| cross(q - p, r - p);
             side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
         })
@@ -210,6 +215,14 @@ mod tests {
             (1.0, 1.0),
             (0.0, 1.0)
         ])));
+    }
+
+    #[test]
+    fn edges_on_one_line_do_not_cross_unless_they_overlap() {
+        let legs = [(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+        assert!(!crosses_itself(&polygon(&legs)));
+        assert!(!crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (0.0, 1.0)])));
+        assert!(crosses_itself(&polygon(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (3.0, 0.0), (1.0, 0.0), (0.0, 1.0)])));
     }
 
     #[test]

@@ -20,72 +20,106 @@ use voussoir_core::units::Quantity;
 pub enum Profile {
     /// Circular arc; rise > span/2 is more than a half circle.
     Segmental {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Half ellipse.
     Elliptical {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Parabola.
     Parabolic {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Hanging chain, turned over.
     Catenary {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m].
+        /// Rise of the intrados \[m\].
         rise: f64,
     },
     /// Two arcs with centres on the springing line.
     Pointed {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m], at least span/2.
+        /// Rise of the intrados \[m\], at least span/2.
         rise: f64,
     },
     /// A crown arc between two side arcs that are upright at the springings.
     ThreeCentred {
-        /// Clear span [m].
+        /// Clear span \[m\].
         span: f64,
-        /// Rise of the intrados [m], less than span/2.
+        /// Rise of the intrados \[m\], less than span/2.
         rise: f64,
-        /// Radius of the crown arc [m].
+        /// Radius of the crown arc \[m\].
         crown_radius: f64,
     },
     /// Vertices joint by joint, from left to right.
     Points {
-        /// Intrados end of each joint [m].
+        /// Intrados end of each joint \[m\].
         intrados: Vec<[f64; 2]>,
-        /// Extrados end of each joint [m].
+        /// Extrados end of each joint \[m\].
         extrados: Vec<[f64; 2]>,
     },
 }
 
-const SPAN: Parameter = Parameter::number("span", Quantity::Length, Range::POSITIVE, "clear span of the intrados");
-const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSITIVE, "rise of the intrados");
+const SPAN: Parameter = Parameter::number(
+    "span",
+    Quantity::Length,
+    Range::POSITIVE,
+    "clear span of the intrados",
+);
+const RISE: Parameter = Parameter::number(
+    "rise",
+    Quantity::Length,
+    Range::POSITIVE,
+    "rise of the intrados",
+);
 const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
 
-const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
+const VERTICES: Shape = Shape::List {
+    of: &super::POINT,
+    min: 2,
+    max: usize::MAX,
+};
 
 /// What a profile may hold.
 pub const PROFILE: Shape = Shape::Tagged {
     key: "shape",
     variants: &[
-        Variant { tag: "segmental", doc: "circular arc; rise > span/2 is more than a half circle", parameters: SPAN_RISE },
-        Variant { tag: "elliptical", doc: "half ellipse", parameters: SPAN_RISE },
-        Variant { tag: "parabolic", doc: "parabola", parameters: SPAN_RISE },
-        Variant { tag: "catenary", doc: "hanging chain turned over", parameters: SPAN_RISE },
-        Variant { tag: "pointed", doc: "two arcs with centres on the springing line, rise ≥ span/2", parameters: SPAN_RISE },
+        Variant {
+            tag: "segmental",
+            doc: "circular arc; rise > span/2 is more than a half circle",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "elliptical",
+            doc: "half ellipse",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "parabolic",
+            doc: "parabola",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "catenary",
+            doc: "hanging chain turned over",
+            parameters: SPAN_RISE,
+        },
+        Variant {
+            tag: "pointed",
+            doc: "two arcs with centres on the springing line, rise ≥ span/2",
+            parameters: SPAN_RISE,
+        },
         Variant {
             tag: "three_centred",
             doc: "crown arc between two side arcs, upright at the springings, rise < span/2",
@@ -104,8 +138,18 @@ pub const PROFILE: Shape = Shape::Tagged {
             tag: "points",
             doc: "vertices joint by joint, from left to right",
             parameters: &[
-                Parameter { name: "intrados", doc: "intrados end of each joint", shape: VERTICES, need: Need::Required },
-                Parameter { name: "extrados", doc: "extrados end of each joint", shape: VERTICES, need: Need::Required },
+                Parameter {
+                    name: "intrados",
+                    doc: "intrados end of each joint",
+                    shape: VERTICES,
+                    need: Need::Required,
+                },
+                Parameter {
+                    name: "extrados",
+                    doc: "extrados end of each joint",
+                    shape: VERTICES,
+                    need: Need::Required,
+                },
             ],
         },
     ],
@@ -125,7 +169,14 @@ const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
 const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
 
 /// What `springing` may hold.
-pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::List { of: &DEGREES, min: 2, max: 2 }]);
+pub const SPRINGING: Shape = Shape::Either(&[
+    DEGREES,
+    Shape::List {
+        of: &DEGREES,
+        min: 2,
+        max: 2,
+    },
+]);
 
 impl Springing {
     /// [left, right] \[deg\], each with its key.
@@ -137,7 +188,7 @@ impl Springing {
     }
 }
 
-/// Vertices of a ring of voussoirs, joint by joint from left to right [m].
+/// Vertices of a ring of voussoirs, joint by joint from left to right \[m\].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ring {
     /// Intrados ends of the N + 1 joints.
@@ -153,7 +204,12 @@ pub struct Ring {
 impl Ring {
     /// Voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
     pub fn voussoir(&self, k: usize) -> Vec<Vec2> {
-        vec![self.intrados[k], self.intrados[k + 1], self.extrados[k + 1], self.extrados[k]]
+        vec![
+            self.intrados[k],
+            self.intrados[k + 1],
+            self.extrados[k + 1],
+            self.extrados[k],
+        ]
     }
 
     /// Number of voussoirs.
@@ -163,7 +219,7 @@ impl Ring {
 }
 
 impl Profile {
-    /// The ring of `voussoirs` voussoirs, `thickness` [m] thick. Both must be given, except for
+    /// The ring of `voussoirs` voussoirs, `thickness` \[m\] thick. Both must be given, except for
     /// `points`, which hold them. Issues have paths from the scene's table.
     pub fn ring(
         &self,
@@ -176,20 +232,37 @@ impl Profile {
         }
         let mut issues = Vec::new();
         match thickness {
-            None => issues.push(Issue::new("thickness", "is missing: the thickness of the ring [m]")),
+            None => issues.push(Issue::new(
+                "thickness",
+                "is missing: the thickness of the ring [m]",
+            )),
             Some(thickness) => issues.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
         }
         match voussoirs {
-            None => issues.push(Issue::new("voussoirs", "is missing: the number of voussoirs")),
+            None => issues.push(Issue::new(
+                "voussoirs",
+                "is missing: the number of voussoirs",
+            )),
             Some(0) => issues.push(Issue::new("voussoirs", "there must be at least one")),
             Some(_) => {}
         }
         if let Some(springing) = springing {
             let sides = springing.sides();
-            let sides = if sides[0] == sides[1] { &sides[..1] } else { &sides[..] };
-            issues.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
+            let sides = if sides[0] == sides[1] {
+                &sides[..1]
+            } else {
+                &sides[..]
+            };
+            issues.extend(
+                sides
+                    .iter()
+                    .filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)),
+            );
         }
-        let curve = self.curve().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+        let curve = self
+            .curve()
+            .map_err(|mut wrong| issues.append(&mut wrong))
+            .ok();
         let (Some(curve), Some(thickness), Some(voussoirs)) = (curve, thickness, voussoirs) else {
             return Err(issues);
         };
@@ -219,7 +292,9 @@ impl Profile {
         issues.extend(out_of_range("profile.span", span, Range::POSITIVE));
         issues.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
         if issues.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
-            let message = format!("{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span");
+            let message = format!(
+                "{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span"
+            );
             issues.push(Issue::new("profile.rise", message));
         }
         if !issues.is_empty() {
@@ -233,12 +308,17 @@ impl Profile {
             Profile::Pointed { .. } if rise < span / 2.0 => Err(vec![
                 Issue::new(
                     "profile.rise",
-                    format!("{rise} m is too low for a pointed arch: at least half the span, {} m", span / 2.0),
+                    format!(
+                        "{rise} m is too low for a pointed arch: at least half the span, {} m",
+                        span / 2.0
+                    ),
                 )
                 .help("a lower pointed arch needs centres below the springings; give its points"),
             ]),
             Profile::Pointed { .. } => Ok(Curve::pointed(span, rise)),
-            Profile::ThreeCentred { crown_radius, .. } => three_centred(span, rise, crown_radius).map_err(|i| vec![i]),
+            Profile::ThreeCentred { crown_radius, .. } => {
+                three_centred(span, rise, crown_radius).map_err(|i| vec![i])
+            }
             Profile::Points { .. } => unreachable!("returned above"),
         }
     }
@@ -248,16 +328,25 @@ impl Profile {
 /// radius exceeds that of the segmental arc; with more rise the crown arc would turn beyond the upright.
 fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Issue> {
     if rise >= span / 2.0 {
-        let message = format!("{rise} m is too high for a three-centred arch: less than half the span, {} m", span / 2.0);
+        let message = format!(
+            "{rise} m is too high for a three-centred arch: less than half the span, {} m",
+            span / 2.0
+        );
         return Err(Issue::new("profile.rise", message));
     }
     let least = (span * span / 4.0 + rise * rise) / (2.0 * rise);
     let curve = Curve::three_centred(span, rise, crown);
     match curve {
-        Curve::ThreeCentred { side, .. } if crown > least && side > 0.0 && side < crown && crown.is_finite() => Ok(curve),
+        Curve::ThreeCentred { side, .. }
+            if crown > least && side > 0.0 && side < crown && crown.is_finite() =>
+        {
+            Ok(curve)
+        }
         _ => Err(Issue::new(
             "profile.crown_radius",
-            format!("{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"),
+            format!(
+                "{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"
+            ),
         )),
     }
 }
@@ -273,7 +362,12 @@ fn ring_on(curve: &Curve, thickness: f64, voussoirs: usize) -> Ring {
         intrados.push(if left { mirrored(point) } else { point });
         extrados.push(if left { mirrored(outer) } else { outer });
     }
-    Ring { intrados, extrados, span: 2.0 * curve.half_span(), rise: curve.rise() }
+    Ring {
+        intrados,
+        extrados,
+        span: 2.0 * curve.half_span(),
+        rise: curve.rise(),
+    }
 }
 
 fn mirrored(p: Vec2) -> Vec2 {
@@ -281,7 +375,12 @@ fn mirrored(p: Vec2) -> Vec2 {
 }
 
 /// Moves the end vertices of the extrados along the offset curve onto the support planes.
-fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Springing) -> Result<(), Vec<Issue>> {
+fn move_springings(
+    ring: &mut Ring,
+    curve: &Curve,
+    thickness: f64,
+    springing: Springing,
+) -> Result<(), Vec<Issue>> {
     let last = ring.voussoirs();
     let mut issues = Vec::new();
     for (side, (degrees, key)) in springing.sides().into_iter().enumerate() {
@@ -290,12 +389,16 @@ fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Sp
             Some(point) => ring.extrados[last] = point,
             None if issues.is_empty() || key != "springing" => issues.push(Issue::new(
                 key,
-                format!("a plane at {degrees} deg through the springing never meets the extrados on its side of the crown"),
+                format!("a plane at {degrees} deg through the springing does not meet the extrados on its side of the crown, outside of the opening"),
             )),
             None => {}
         }
     }
-    if issues.is_empty() { Ok(()) } else { Err(issues) }
+    if issues.is_empty() {
+        Ok(())
+    } else {
+        Err(issues)
+    }
 }
 
 /// Every voussoir must have an area and not cross itself.
@@ -314,7 +417,11 @@ fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<
         });
     }
     issues.dedup_by(|a, b| a.path == b.path);
-    if issues.is_empty() { Ok(()) } else { Err(issues) }
+    if issues.is_empty() {
+        Ok(())
+    } else {
+        Err(issues)
+    }
 }
 
 /// Whether an anticlockwise polygon has an area beyond rounding and does not cross itself.
@@ -332,43 +439,95 @@ fn ring_of_points(
 ) -> Result<Ring, Vec<Issue>> {
     let mut issues = Vec::new();
     if thickness.is_some() {
-        issues.push(Issue::new("thickness", "the points of the profile already fix it").help("remove this key"));
+        issues.push(
+            Issue::new("thickness", "the points of the profile already fix it")
+                .help("remove this key"),
+        );
     }
     if springing.is_some() {
-        issues.push(Issue::new("springing", "the points of the profile already fix it").help("remove this key"));
+        issues.push(
+            Issue::new("springing", "the points of the profile already fix it")
+                .help("remove this key"),
+        );
     }
     if intrados.len() != extrados.len() {
-        let message = format!("{} points, but the intrados has {}", extrados.len(), intrados.len());
+        let message = format!(
+            "{} points, but the intrados has {}",
+            extrados.len(),
+            intrados.len()
+        );
         issues.push(Issue::new("profile.extrados", message).help("give both ends of every joint"));
     }
     if intrados.len() < 2 {
-        issues.push(Issue::new("profile.intrados", "at least two points: the springings"));
+        issues.push(Issue::new(
+            "profile.intrados",
+            "at least two points: the springings",
+        ));
     }
     if let Some(voussoirs) = voussoirs
         && voussoirs + 1 != intrados.len()
     {
-        let message = format!("{voussoirs}, but {} points make {}", intrados.len(), intrados.len().saturating_sub(1));
+        let message = format!(
+            "{voussoirs}, but {} points make {}",
+            intrados.len(),
+            intrados.len().saturating_sub(1)
+        );
         issues.push(Issue::new("voussoirs", message).help("remove this key"));
     }
     for (key, points) in [("intrados", intrados), ("extrados", extrados)] {
-        for (i, point) in points.iter().enumerate().filter(|(_, p)| !p.iter().all(|x| x.is_finite())) {
-            issues.push(Issue::new(format!("profile.{key}.{i}"), format!("{point:?} is not finite")));
+        for (i, point) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| !p.iter().all(|x| x.is_finite()))
+        {
+            issues.push(Issue::new(
+                format!("profile.{key}.{i}"),
+                format!("{point:?} is not finite"),
+            ));
         }
     }
     if !issues.is_empty() {
         return Err(issues);
     }
-    let vectors = |points: &[[f64; 2]]| points.iter().map(|&[x, y]| Vec2::new(x, y)).collect::<Vec<_>>();
+    let vectors = |points: &[[f64; 2]]| {
+        points
+            .iter()
+            .map(|&[x, y]| Vec2::new(x, y))
+            .collect::<Vec<_>>()
+    };
     let (intrados, extrados) = (vectors(intrados), vectors(extrados));
     let (first, last) = (intrados[0], intrados[intrados.len() - 1]);
-    let crown = intrados.iter().fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
-    let ring = Ring { span: last.x - first.x, rise: crown - (first.y + last.y) / 2.0, intrados, extrados };
+    let crown = intrados
+        .iter()
+        .fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
+    let ring = Ring {
+        span: last.x - first.x,
+        rise: crown - (first.y + last.y) / 2.0,
+        intrados,
+        extrados,
+    };
     if ring.span <= 0.0 {
-        issues.push(Issue::new("profile.intrados", "the last point must lie to the right of the first"));
+        issues.push(Issue::new(
+            "profile.intrados",
+            "the last point must lie to the right of the first",
+        ));
     }
     for k in (0..ring.voussoirs()).filter(|&k| !is_sound(&ring.voussoir(k))) {
-        let message = format!("voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over", k + 1);
-        issues.push(Issue::new(format!("profile.intrados.{k}"), message).help("list both from left to right"));
+        let message = format!(
+            "voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over",
+            k + 1
+        );
+        issues.push(
+            Issue::new(format!("profile.intrados.{k}"), message)
+                .help("list both from left to right"),
+        );
     }
-    if issues.is_empty() { Ok(ring) } else { Err(issues) }
+    if issues.is_empty() {
+        Ok(ring)
+    } else {
+        Err(issues)
+    }
 }
+
+#[cfg(test)]
+mod tests;
