@@ -154,10 +154,21 @@ impl Check<'_> {
             .sum()
     }
 
-    /// The factor at which live and dead load have the same size.
+    /// Scale of residuals at a factor [N]: the loads there, or the varying load where there is no
+    /// other.
+    fn residual_scale(&self, factor: f64) -> f64 {
+        let dead = self.load_scale(0.0);
+        let at = self.load_scale(factor);
+        (if dead > 0.0 { at } else { at.max(self.load_scale(1.0)) }).max(f64::MIN_POSITIVE)
+    }
+
+    /// Factors below this do not change the loads that are there anyway: differences of factors
+    /// are compared with it where the factor itself is nearly zero.
     fn factor_scale(&self) -> f64 {
         let (dead, both) = (self.load_scale(0.0), self.load_scale(1.0));
-        if both > dead {
+        if dead == 0.0 {
+            1.0
+        } else if both > dead {
             1e-6 * dead / (both - dead)
         } else {
             0.0
@@ -247,7 +258,7 @@ impl Check<'_> {
             return false;
         };
         let at = claim.field_factor;
-        let scale = self.load_scale(at).max(f64::MIN_POSITIVE);
+        let scale = self.residual_scale(at);
         let balanced = self.residual(
             "equilibrium",
             self.imbalance(field, 1.0, at) / scale,
@@ -339,7 +350,7 @@ impl Check<'_> {
         self.residual("flow", impossible, ROUNDING);
         let excess = fixed + claim.start * varying - dissipated;
         let jumps = jumps(self.assembly, motion);
-        let scale = self.load_scale(claim.start) * jumps.iter().map(Jump::size).fold(0.0, f64::max);
+        let scale = self.residual_scale(claim.start) * jumps.iter().map(Jump::size).fold(0.0, f64::max);
         if !(excess > ROUNDING * scale) {
             self.fail(format!(
                 "the loads do no more work on the motion than is dissipated: excess {excess:.3e}"

@@ -182,6 +182,11 @@ fn candidates(choice: &Choice, problem: &LimitProblem) -> Vec<(String, Arc<dyn L
     }
 }
 
+/// Tag of the solver that is tried first.
+pub fn first_solver(choice: &Choice, problem: &LimitProblem) -> String {
+    candidates(choice, problem).swap_remove(0).0
+}
+
 fn solve_stage(
     question: &Question,
     stage: &Stage,
@@ -268,7 +273,10 @@ fn proven(
     };
     let (certificate, bounds) = certify(assembly, loads, &claim, question.tolerance);
     let finite = |x: f64| x.is_finite().then_some(x);
-    let _ = stage;
+    let mut notes = solved.notes;
+    if solved.status == Status::Stands && stage.target == Target::Collapse {
+        notes.push(format!("no collapse up to factor_max = {}", stage.factor_max));
+    }
     CaseResult {
         status: solved.status,
         load_factor: solved.factor,
@@ -296,7 +304,7 @@ fn proven(
         }),
         certificate,
         counters: solved.counters,
-        ..stalled_without(solved.notes)
+        ..stalled_without(notes)
     }
 }
 

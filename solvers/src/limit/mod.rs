@@ -131,6 +131,9 @@ fn collapse(
             motion,
             unique,
         } => {
+            // Rounding of a zero factor is not a factor.
+            let unit = problem.magnitude(base).max(f64::MIN_POSITIVE) / problem.magnitude(&problem.varying);
+            let factor = if factor.abs() < 1e-15 * unit.max(f64::EPSILON) { 0.0 } else { factor };
             answer.status = Status::Collapse;
             answer.factor = Some(start + factor);
             answer.field_factor = start + factor;
@@ -141,9 +144,6 @@ fn collapse(
         Greatest::Capped(field) => {
             answer.field_factor = max;
             answer.field = Some(field);
-            answer.notes.push(format!(
-                "the search ended at factor_max = {max} without collapse"
-            ));
         }
         Greatest::Unbounded(ray) => {
             answer.status = Status::Unbounded;

@@ -8,7 +8,8 @@ use super::interior_point::Pair;
 use super::sparse::{Entries, Factorised};
 use super::system::{Row, System};
 
-const DELTA: f64 = 1e-8;
+/// Regularisation; the second is tried where the first leaves no pivot.
+const DELTAS: [f64; 2] = [1e-8, 1e-6];
 
 /// A polished pair.
 pub struct Polished {
@@ -48,8 +49,12 @@ fn multiplier(pair: &Pair, item: Item) -> f64 {
     }
 }
 
-/// Polishes a pair. `None` where a factorisation fails.
+/// Polishes a pair. `None` where every factorisation fails.
 pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
+    DELTAS.iter().find_map(|&delta| polish_with(system, approximate, delta))
+}
+
+fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polished> {
     let items: Vec<Item> = (0..system.rows.len())
         .map(Item::Row)
         .chain((0..system.blocks.len()).map(Item::Block))
@@ -71,8 +76,9 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
             system,
             active: &chosen,
             pair: clipped(approximate, &items, &active),
+            delta,
         };
-        let work = newton.run()?;
+        let Some(work) = newton.run() else { break };
         factorisations += work.0;
         iterations += work.1;
         let pair = newton.pair;
@@ -96,7 +102,7 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
             }
         }
         if best.as_ref().is_none_or(|b| error < b.error) {
-            let unique = !newton_has_kernel(system, &chosen, &pair, scale).unwrap_or(true);
+            let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
             best = Some(Polished {
                 pair,
                 error,
@@ -133,6 +139,7 @@ struct Newton<'a> {
     system: &'a System,
     active: &'a [Item],
     pair: Pair,
+    delta: f64,
 }
 
 impl Newton<'_> {
@@ -187,7 +194,7 @@ impl Newton<'_> {
                 break;
             }
             if factorised.is_none() || (curved && iterations < 12) {
-                factorised = Some(Factorised::new(residual.len(), &self.matrix(&gradients))?);
+                factorised = Some(Factorised::new(residual.len(), n, &self.matrix(&gradients))?);
                 factorisations += 1;
             }
             let step = factorised.as_ref()?.solve(&residual)?;
@@ -206,7 +213,7 @@ impl Newton<'_> {
     }
 
     fn matrix(&self, gradients: &[Row]) -> Entries {
-        let mut entries = saddle(self.system, gradients);
+        let mut entries = saddle(self.system, gradients, self.delta);
         for item in self.active {
             if let Item::Block(k) = item {
                 let block = &self.system.blocks[*k];
@@ -232,11 +239,11 @@ fn gradients(system: &System, active: &[Item], x: &[f64]) -> Vec<Row> {
 }
 
 /// [δ I, Jᵀ; J, −δ I] with J the equations and the gradients.
-fn saddle(system: &System, gradients: &[Row]) -> Entries {
+fn saddle(system: &System, gradients: &[Row], delta: f64) -> Entries {
     let n = system.variables;
-    let mut entries: Entries = (0..n).map(|j| (j, j, DELTA)).collect();
+    let mut entries: Entries = (0..n).map(|j| (j, j, delta)).collect();
     for (i, row) in system.equations.iter().chain(gradients).enumerate() {
-        entries.push((n + i, n + i, -DELTA));
+        entries.push((n + i, n + i, -delta));
         for &(j, v) in row {
             entries.push((n + i, j, v));
             entries.push((j, n + i, v));
@@ -248,7 +255,7 @@ fn saddle(system: &System, gradients: &[Row]) -> Entries {
 /// Whether other multipliers (q, y) than these satisfy Eᵀ q + Σ y_i ∇c_i = e_θ with the same
 /// support: inverse iteration for the least singular value of J, whose columns are the rows with
 /// positive multipliers.
-fn newton_has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64) -> Option<bool> {
+fn has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64, delta: f64) -> Option<bool> {
     let support: Vec<Item> = active
         .iter()
         .copied()
@@ -256,7 +263,7 @@ fn newton_has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64) 
         .collect();
     let rows = gradients(system, &support, &pair.x);
     let (n, m) = (system.variables, system.equations.len() + rows.len());
-    let factorised = Factorised::new(n + m, &saddle(system, &rows))?;
+    let factorised = Factorised::new(n + m, n, &saddle(system, &rows, delta))?;
     // A fixed, irregular start: no symmetry of the scene is orthogonal to it.
     let mut v: Vec<f64> = (0..m)
         .map(|i| 1.0 + 0.37 * ((i as f64 * 0.754_877_666 + 0.1).fract() - 0.5))
@@ -270,8 +277,8 @@ fn newton_has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64) 
         v = factorised.solve(&right)?[n..].to_vec();
         // Now v = −δ (δ² + J Jᵀ)⁻¹ times the old unit vector.
         let gain = v.iter().map(|a| a * a).sum::<f64>().sqrt();
-        least = (DELTA / gain).max(0.0);
+        least = delta / gain;
     }
-    // least = δ² + σ², so a kernel shows as δ² = 1e-16.
-    Some(least < 1e-13)
+    // least = δ² + σ², so a kernel shows as δ².
+    Some(least < 1e3 * delta * delta)
 }

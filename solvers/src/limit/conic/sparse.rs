@@ -1,38 +1,77 @@
 //! The one place that factorises sparse matrices.
 
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Lu;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
 use faer::sparse::{SparseColMat, Triplet};
+use faer::{Conj, Mat, Par, Side};
 
 /// Entries (row, column, value); repeated ones add up.
 pub type Entries = Vec<(usize, usize, f64)>;
 
-/// A factorised square sparse matrix with the matrix itself.
+/// L D Lᵀ of a symmetric quasi-definite matrix, with the matrix itself. Such matrices have a
+/// factorisation in any order, so the order that keeps it sparse is free to choose, also where a
+/// variable occurs in every equation.
 pub struct Factorised {
     matrix: SparseColMat<usize, f64>,
-    lu: Lu<usize, f64>,
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
 }
 
 impl Factorised {
-    /// LU with partial pivoting; `None` where it is singular.
-    pub fn new(size: usize, entries: &Entries) -> Option<Self> {
-        let triplets: Vec<_> = entries
-            .iter()
-            .map(|&(i, j, v)| Triplet::new(i, j, v))
-            .collect();
+    /// Factorises [A, Bᵀ; B, −C], A and C positive definite, A of size `positive`. `entries` hold
+    /// both triangles. `None` where it fails.
+    pub fn new(size: usize, positive: usize, entries: &Entries) -> Option<Self> {
+        let triplets: Vec<_> = entries.iter().map(|&(i, j, v)| Triplet::new(i, j, v)).collect();
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?;
-        let lu = matrix.sp_lu().ok()?;
-        Some(Factorised { matrix, lu })
+        let symbolic = factorize_symbolic_cholesky(
+            matrix.symbolic(),
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams::default(),
+        )
+        .ok()?;
+        let signs: Vec<i8> = (0..size).map(|i| if i < positive { 1 } else { -1 }).collect();
+        let regularisation = LdltRegularization {
+            dynamic_regularization_signs: Some(&signs[..]),
+            dynamic_regularization_delta: 1e-9,
+            dynamic_regularization_epsilon: 1e-14,
+        };
+        let mut values = vec![0.0; symbolic.len_val()];
+        let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+        symbolic
+            .factorize_numeric_ldlt(
+                &mut values,
+                matrix.as_ref(),
+                Side::Lower,
+                regularisation,
+                Par::Seq,
+                MemStack::new(&mut MemBuffer::try_new(scratch).ok()?),
+                Default::default(),
+            )
+            .ok()?;
+        Some(Factorised { matrix, symbolic, values })
     }
 
-    /// Solves with two steps of iterative refinement.
+    fn solve_once(&self, x: &mut Mat<f64>) -> Option<()> {
+        let factor = LdltRef::new(&self.symbolic, &self.values);
+        let scratch = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let mut buffer = MemBuffer::try_new(scratch).ok()?;
+        factor.solve_in_place_with_conj(Conj::No, x.as_mut(), Par::Seq, MemStack::new(&mut buffer));
+        Some(())
+    }
+
+    /// Solves with iterative refinement.
     pub fn solve(&self, right: &[f64]) -> Option<Vec<f64>> {
-        let column = |values: &[f64]| faer::Mat::from_fn(values.len(), 1, |i, _| values[i]);
-        let target = column(right);
-        let mut x = self.lu.solve(&target);
-        for _ in 0..2 {
-            let residual = &target - &self.matrix * &x;
-            x += self.lu.solve(&residual);
+        let target = Mat::from_fn(right.len(), 1, |i, _| right[i]);
+        let mut x = target.clone();
+        self.solve_once(&mut x)?;
+        for _ in 0..3 {
+            let mut step = &target - &self.matrix * &x;
+            self.solve_once(&mut step)?;
+            x += step;
         }
         let x: Vec<f64> = (0..right.len()).map(|i| x[(i, 0)]).collect();
         x.iter().all(|v| v.is_finite()).then_some(x)

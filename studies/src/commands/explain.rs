@@ -1,0 +1,86 @@
+//! `voussoir list`, `explain` and `schema`.
+
+use super::{FINE, NO_ACCESS, WRONG_INPUT, files};
+use std::path::Path;
+use voussoir::core::card::{Card, cards, cards_of, nearest};
+use voussoir::core::schema::{Need, PluginKind, Shape};
+
+/// Lists plug-ins, of one kind or all.
+pub fn list(kind: Option<&str>) -> u8 {
+    let kinds: Vec<PluginKind> = match kind {
+        None => PluginKind::ALL.to_vec(),
+        Some(word) => match PluginKind::ALL.iter().find(|kind| kind.plural() == word) {
+            Some(kind) => vec![*kind],
+            None => {
+                let words = PluginKind::ALL.map(PluginKind::plural);
+                eprintln!("there are no \"{word}\" to list; list one of: {}", words.join(", "));
+                return WRONG_INPUT;
+            }
+        },
+    };
+    for kind in kinds {
+        println!("{} ({} = …)", kind.plural(), kind.tag_key());
+        for card in cards_of(kind) {
+            println!("  {:<20} {}", card.tag, card.summary);
+        }
+    }
+    FINE
+}
+
+/// Prints the JSON Schema of study files.
+pub fn schema() -> u8 {
+    println!("{:#}", voussoir::config::json_schema::json_schema());
+    FINE
+}
+
+/// Explains a plug-in by its tag, or a study file by the plan of its solution.
+pub fn explain(what: &str) -> u8 {
+    if what.ends_with(".toml") || Path::new(what).is_file() {
+        return match files::study(Path::new(what), &[]) {
+            Ok(study) => {
+                print!("{}", voussoir::plan::plan(&study));
+                FINE
+            }
+            Err(code) => code,
+        };
+    }
+    let found: Vec<&Card> = cards().into_iter().filter(|card| card.tag == what).collect();
+    if found.is_empty() {
+        let near = nearest(what, cards().into_iter().map(|card| card.tag));
+        let advice = near.map_or("see `voussoir list`".into(), |tag| format!("did you mean \"{tag}\"?"));
+        eprintln!("no plug-in is called \"{what}\"; {advice}");
+        return if what.contains('/') { NO_ACCESS } else { WRONG_INPUT };
+    }
+    found.iter().for_each(|card| print_card(card));
+    FINE
+}
+
+fn print_card(card: &Card) {
+    println!("{} — {}: {}\n", card.tag, card.kind.describe(), card.summary);
+    if !card.parameters.is_empty() {
+        println!("keys:");
+    }
+    for parameter in card.parameters {
+        let unit = match &parameter.shape {
+            Shape::Number(quantity, _) if !quantity.unit().is_empty() => format!(" [{}]", quantity.unit()),
+            _ => String::new(),
+        };
+        let need = match parameter.need {
+            Need::Required => "required".to_string(),
+            Need::Optional(otherwise) => format!("optional: otherwise {otherwise}"),
+            Need::Default(value) => format!("default {value}"),
+        };
+        println!("  {}{unit}  {} ({need})", parameter.name, parameter.doc);
+    }
+    let words = |all: &[voussoir::core::card::Capability]| {
+        all.iter().map(|capability| capability.describe()).collect::<Vec<_>>().join(", ")
+    };
+    if !card.provides.is_empty() {
+        println!("offers: {}", words(card.provides));
+    }
+    if !card.requires.is_empty() {
+        println!("asks of laws: {}", words(card.requires));
+    }
+    card.sources.iter().for_each(|source| println!("source: {source}"));
+    println!("file: {}\n\n{}", card.file, card.page);
+}

@@ -1,0 +1,16 @@
+//! What each command prints, reads and writes, and its exit code.
+
+pub mod check;
+pub mod explain;
+pub mod files;
+pub mod run;
+pub mod verify;
+
+/// All cases answered and certified.
+pub const FINE: u8 = 0;
+/// Some case stalled, failed its certificate, or was not confirmed.
+pub const NOT_PROVEN: u8 = 1;
+/// Wrong input.
+pub const WRONG_INPUT: u8 = 2;
+/// Cannot read or write.
+pub const NO_ACCESS: u8 = 3;

@@ -1,0 +1,35 @@
+//! Study kinds: what is done with the cases of a study.
+
+pub mod run;
+
+use crate::results::CaseResult;
+use crate::study::Study;
+
+/// Follows a study while it is worked on; libraries never print.
+pub trait Observer: Sync {
+    /// A case is answered.
+    fn answered(&self, case: &CaseResult);
+}
+
+/// A kind of study, chosen by `kind = …`. Instances register with
+/// `inventory::submit! { KindEntry { … } }` beside their card.
+pub trait StudyKind: Sync {
+    /// Answers the cases of a study whose ids are in `wanted`, in order of id. `jobs` cases side by
+    /// side; the results do not depend on it.
+    fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult>;
+}
+
+/// Connects a tag with a study kind.
+pub struct KindEntry {
+    /// The tag of its card.
+    pub tag: &'static str,
+    /// What answers.
+    pub kind: &'static dyn StudyKind,
+}
+
+voussoir_core::inventory::collect!(KindEntry);
+
+/// The study kind with this tag.
+pub fn kind(tag: &str) -> Option<&'static dyn StudyKind> {
+    voussoir_core::inventory::iter::<KindEntry>.into_iter().find(|entry| entry.tag == tag).map(|entry| entry.kind)
+}
