@@ -1,0 +1,60 @@
+//! Semicircular arches under self-weight: Milankovitch's thickness and the least friction.
+//! Sources: Milankovitch (1907) by Makris & Alexakis; Cocchetti & Rizzi (2020), Frattura ed Integrità
+//! Strutturale 51, doi 10.3221/IGF-ESIS.51.26.
+
+use voussoir::core::limit::Status;
+use voussoir_tests::{Arch, answered, friction};
+
+/// A semicircular ring of centreline radius 1 m with thickness `eta` m, radial joints.
+fn ring(voussoirs: usize, eta: f64, joint: &str) -> String {
+    let inner = 1.0 - eta / 2.0;
+    Arch { span: 2.0 * inner, rise: inner, thickness: eta, width: 1.0, voussoirs, ends: "jointed", joint: joint.into(), ..Arch::default() }
+        .dead_study()
+}
+
+fn stands(study: &str) -> bool {
+    let result = answered(study);
+    assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
+    match result.status {
+        Status::Stands => true,
+        Status::NoEquilibrium => false,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Bisection on the verdict of `stands`, false at `low` and true at `high`.
+fn threshold(mut low: f64, mut high: f64, stands: impl Fn(f64) -> bool) -> f64 {
+    assert!(!stands(low) && stands(high));
+    while high - low > 1e-12 {
+        let middle = (low + high) / 2.0;
+        if stands(middle) { high = middle } else { low = middle }
+    }
+    high
+}
+
+fn least_thickness(voussoirs: usize) -> f64 {
+    let stuck = "law = \"unilateral\"\ntangential = \"stuck\"";
+    threshold(0.09, 0.12, |eta| stands(&ring(voussoirs, eta, stuck)))
+}
+
+/// 10 and 20 straight-sided voussoirs: 0.10701 and 0.10735 (independent program); the limit of many
+/// is Milankovitch's 0.107478038107 for true wedge centroids.
+#[test]
+fn least_thickness_tends_to_milankovitch() {
+    assert!((least_thickness(10) - 0.10701).abs() < 5e-6);
+    assert!((least_thickness(20) - 0.10735).abs() < 5e-6);
+    let limit = 0.107_478_038_107;
+    let errors: Vec<f64> = [40, 160, 640].map(|n| (least_thickness(n) - limit).abs()).into();
+    assert!(errors[0] > 4.0 * errors[1] && errors[1] > 4.0 * errors[2], "{errors:?}");
+    assert!(errors[2] < 1e-6, "{errors:?}");
+}
+
+/// Below μ = 0.309215444330 no semicircular arch stands; a ring thick enough tends to that value.
+#[test]
+fn least_friction() {
+    let least = |voussoirs: usize| threshold(0.2, 0.5, |mu| stands(&ring(voussoirs, 0.22, &friction(mu))));
+    let limit = 0.309_215_444_330;
+    let errors: Vec<f64> = [40, 640].map(|n| (least(n) - limit).abs()).into();
+    assert!(errors[0] > 10.0 * errors[1], "{errors:?}");
+    assert!(errors[1] < 1e-5, "{errors:?}");
+}
