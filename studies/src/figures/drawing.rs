@@ -136,8 +136,7 @@ fn forces(sheet: &mut Sheet, assembly: &Assembly, result: &CaseResult, legend: &
             sheet.line(&[[x - half.x, y + half.y], [x + half.x, y - half.y]], THRUST, width, "");
         }
     }
-    legend
-        .push((Symbol::Force, format!("joint force, as wide as it is great (widest {})", format_force(strongest))));
+    legend.push((Symbol::Force, format!("joint force, width ∝ force (widest {})", format_force(strongest))));
 }
 
 fn strut(sheet: &mut Sheet, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {

@@ -171,7 +171,8 @@ pub fn mark(
     if !spots.is_empty() {
         let numbered = if spots.len() <= NUMBERED { "with its joint's number" } else { "too many to number" };
         let symbol = if senses && spots.len() <= NUMBERED { Symbol::TurningHinge } else { Symbol::Hinge };
-        let sense = if symbol == Symbol::TurningHinge { ", turning sense of the plus (higher) side" } else { "" };
+        let sense =
+            if symbol == Symbol::TurningHinge { "; arrow: how its plus side turns (right on arches)" } else { "" };
         legend.push((symbol, format!("hinge {numbered}{sense}")));
     }
     if !mechanism.sliding.is_empty() {

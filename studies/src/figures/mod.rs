@@ -3,6 +3,7 @@
 //! Everything here is a pure function from results to text (SVG). No file is touched.
 
 pub mod chart;
+pub mod closure;
 pub mod displaced;
 pub mod drawing;
 pub mod format;
