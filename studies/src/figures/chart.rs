@@ -1,6 +1,6 @@
 //! Line charts, as SVG: markers and lines, legend below the axes so that it never covers data.
 
-use super::sheet::{text_width, wrapped};
+use super::lettering::{text_width, wrapped};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -193,7 +193,7 @@ fn draw(
     }
     let base = (head + PLOT) as i32 + 14;
     for ((i, is_open, words), (x, row)) in entries.iter().zip(&places) {
-        let (y, colour) = (base + *row as i32 * ROW as i32, PALETTE[i % PALETTE.len()]);
+        let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
         if *is_open {
             mark(&root, (x + 16, y - 10), &ARROW, colour)?;
         } else {
@@ -203,7 +203,7 @@ fn draw(
         write(&root, (x + 42, y), words, 14, false)?;
     }
     for (i, line) in lines.iter().enumerate() {
-        write(&root, (70, base + ROW as i32 * (row as i32 + 1) + 20 * i as i32), line, 13, false)?;
+        write(&root, (70, base + ROW as i32 * (row + 1) + 20 * i as i32), line, 13, false)?;
     }
     root.present()?;
     Ok(())

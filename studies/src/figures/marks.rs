@@ -1,6 +1,7 @@
 //! Marks for joints: hinges, sliding, crushing; and the symbols of a legend.
 
-use super::sheet::{Area, Sheet, Spot};
+use super::lettering::{Area, Spot};
+use super::sheet::Sheet;
 use voussoir_core::assembly::{Assembly, Joint};
 use voussoir_core::geometry::Vec2;
 use voussoir_core::mechanism::Mechanism;

@@ -2,7 +2,7 @@
 
 use super::closure::closed;
 use super::displaced::displaced;
-use super::drawing::{extent, outline_width, supports};
+use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
 use super::marks::{OUTLINE, STONE, Symbol, mark};
 use super::sheet::Sheet;
@@ -34,14 +34,16 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     sheet.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
     let before = assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.vertices.as_slice());
     sheet.outlines(before, "none", "#999999", width.min(0.9), "4 3");
+    faces(&mut sheet, assembly, "#999999", |_, point| point);
     let after = moved.iter().enumerate().filter(|(body, _)| free(*body)).map(|(_, shape)| shape.as_slice());
     sheet.outlines(after, STONE, OUTLINE, width, "");
+    faces(&mut sheet, assembly, OUTLINE, |body, point| placements[body].of(point));
     supports(&mut sheet, assembly);
     let mut legend =
         vec![(Symbol::Block, "blocks as they move".to_string()), (Symbol::Before, "where they were".to_string())];
     legend.extend(mark(&mut sheet, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
     let caption = [format!(
-        "Displacements are exaggerated: the velocities of the mechanism (scaled to unit power of the load) kept for {}. \
+        "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {}. \
          Only directions and ratios mean something, not the size.",
         format_short(scale, 3)
     )];

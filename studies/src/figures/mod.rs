@@ -7,6 +7,7 @@ pub mod closure;
 pub mod displaced;
 pub mod drawing;
 pub mod format;
+pub mod lettering;
 pub mod loads;
 pub mod marks;
 pub mod mechanism;
