@@ -1,6 +1,6 @@
 //! Line charts, as SVG: markers and lines, legend below the axes so that it never covers data.
 
-use super::sheet::{text_width, wrapped};
+use super::lettering::{text_width, wrapped};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -50,10 +50,7 @@ pub fn chart_svg(title: &str, x_label: &str, y_label: &str, series: &[Series], n
 /// Offsets of a marker's corners [px].
 fn corners(kind: usize) -> Vec<(i32, i32)> {
     match kind % 5 {
-        0 => (0..20)
-            .map(|i| f64::from(i) * std::f64::consts::TAU / 20.0)
-            .map(|a| ((4.6 * a.cos()).round() as i32, (4.6 * a.sin()).round() as i32))
-            .collect(),
+        0 => vec![(-2, -5), (2, -5), (5, -2), (5, 2), (2, 5), (-2, 5), (-5, 2), (-5, -2)],
         1 => vec![(-4, -4), (4, -4), (4, 4), (-4, 4)],
         2 => vec![(0, -6), (5, 4), (-5, 4)],
         3 => vec![(0, -6), (6, 0), (0, 6), (-6, 0)],
@@ -172,6 +169,12 @@ fn draw(
         .x_desc(x_label)
         .y_desc(y_label)
         .draw()?;
+    // Arrows of several series at one abscissa stand side by side.
+    let with_open: Vec<usize> = (0..series.len()).filter(|&i| !series[i].open_points.is_empty()).collect();
+    let mut beside = vec![0; series.len()];
+    for (place, &i) in with_open.iter().enumerate() {
+        beside[i] = 15 * place as i32 - 15 * (with_open.len() as i32 - 1) / 2;
+    }
     for (i, s) in series.iter().enumerate() {
         let colour = PALETTE[i % PALETTE.len()];
         for part in unbroken(s) {
@@ -185,12 +188,12 @@ fn draw(
         }
         for &(x, _) in s.open_points.iter().filter(|(x, _)| x.is_finite()) {
             let (x, y) = chart.backend_coord(&(x, top));
-            mark(&root, (x + 3 * i as i32, y + 2), &ARROW, colour)?;
+            mark(&root, (x + beside[i], y + 2), &ARROW, colour)?;
         }
     }
     let base = (head + PLOT) as i32 + 14;
     for ((i, is_open, words), (x, row)) in entries.iter().zip(&places) {
-        let (y, colour) = (base + *row as i32 * ROW as i32, PALETTE[i % PALETTE.len()]);
+        let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
         if *is_open {
             mark(&root, (x + 16, y - 10), &ARROW, colour)?;
         } else {
@@ -200,7 +203,7 @@ fn draw(
         write(&root, (x + 42, y), words, 14, false)?;
     }
     for (i, line) in lines.iter().enumerate() {
-        write(&root, (70, base + ROW as i32 * (row as i32 + 1) + 20 * i as i32), line, 13, false)?;
+        write(&root, (70, base + ROW as i32 * (row + 1) + 20 * i as i32), line, 13, false)?;
     }
     root.present()?;
     Ok(())

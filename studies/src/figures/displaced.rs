@@ -31,6 +31,16 @@ impl Placement {
         Placement { centre, angle, shift }
     }
 
+    /// The same, then a turn by `angle` about `pivot` and a shift.
+    pub fn then(&self, pivot: Vec2, angle: f64, shift: Vec2) -> Self {
+        let turn = Placement { centre: pivot, angle, shift };
+        Placement {
+            centre: self.centre,
+            angle: self.angle + angle,
+            shift: turn.of(self.centre + self.shift) - self.centre,
+        }
+    }
+
     /// Where a point of the body comes to lie [m].
     pub fn of(&self, point: Vec2) -> Vec2 {
         let (sin, cos) = self.angle.sin_cos();
@@ -61,7 +71,7 @@ pub fn displaced(assembly: &Assembly, motion: &[MotionEntry]) -> Option<(Vec<Pla
     let scale = (0.12 * assembly.size() / farthest).min(0.4 / fastest.max(1e-300));
     let place = |body: usize| {
         let centre = assembly.inertia(body).centroid;
-        if by_name.contains_key(assembly.bodies[body].name.as_str()) {
+        if by_name.contains_key(assembly.bodies[body].name.as_str()) && velocity(body) != [0.0; 3] {
             Placement::of_velocity(centre, velocity(body), scale)
         } else {
             Placement::rest()

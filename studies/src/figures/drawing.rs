@@ -11,6 +11,9 @@ use voussoir_core::assembly::{Assembly, Stage};
 use voussoir_core::geometry::{Vec2, bounding_box, turned};
 use voussoir_core::limit::Status;
 
+/// Rings of more voussoirs get two faces instead of outlines.
+const MANY: usize = 300;
+
 type Legend = Vec<(Symbol, String)>;
 
 /// The drawing of a case, as SVG. `study` is the study's name, `stages` its stages in order.
@@ -77,7 +80,28 @@ fn blocks(sheet: &mut Sheet, assembly: &Assembly) {
         |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
     sheet.outlines(shapes(true), "url(#ground)", OUTLINE, 1.0, "");
     sheet.outlines(shapes(false), STONE, OUTLINE, width, "");
+    faces(sheet, assembly, OUTLINE, |_, point| point);
     supports(sheet, assembly);
+}
+
+/// Intrados and extrados of rings whose voussoirs are too small to have outlines of their own;
+/// `place` says where a point of a body lies.
+pub(super) fn faces(sheet: &mut Sheet, assembly: &Assembly, colour: &str, place: impl Fn(usize, Vec2) -> Vec2) {
+    let Some(arch) = assembly.arch.as_ref().filter(|arch| arch.voussoirs > MANY) else { return };
+    let stride = arch.voussoirs.div_ceil(MANY);
+    for left in (0..arch.voussoirs).step_by(stride) {
+        let right = (left + stride).min(arch.voussoirs);
+        let (Some(first), Some(last)) = (assembly.joints.get(left), assembly.joints.get(right)) else { continue };
+        for side in 0..2 {
+            let (a, b) = (place(first.plus, first.ends[side]), place(last.minus, last.ends[side]));
+            let before = (last.ends[side] - first.ends[side]).norm();
+            // A chord that changes its length spans an open hinge.
+            if ((b - a).norm() - before).abs() < 1e-3 * before {
+                let chord = [sheet.at(a), sheet.at(b)];
+                sheet.line(&chord, colour, 0.9, "");
+            }
+        }
+    }
 }
 
 /// Hatching along the joints of supports that have no shape.
@@ -136,8 +160,7 @@ fn forces(sheet: &mut Sheet, assembly: &Assembly, result: &CaseResult, legend: &
             sheet.line(&[[x - half.x, y + half.y], [x + half.x, y - half.y]], THRUST, width, "");
         }
     }
-    legend
-        .push((Symbol::Force, format!("joint force, as wide as it is great (widest {})", format_force(strongest))));
+    legend.push((Symbol::Force, format!("joint force, width ∝ force (widest {})", format_force(strongest))));
 }
 
 fn strut(sheet: &mut Sheet, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {

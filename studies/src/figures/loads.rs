@@ -1,8 +1,9 @@
 //! Loads of the last stage as arrows.
 
 use super::format::{format_force, format_number};
+use super::lettering::{Area, Spot};
 use super::marks::LOAD;
-use super::sheet::{Area, Sheet, Spot};
+use super::sheet::Sheet;
 use voussoir_core::assembly::{Assembly, PointForce, Stage};
 use voussoir_core::geometry::{Vec2, contains};
 

@@ -1,6 +1,7 @@
 //! Marks for joints: hinges, sliding, crushing; and the symbols of a legend.
 
-use super::sheet::{Area, Sheet, Spot};
+use super::lettering::{Area, Spot};
+use super::sheet::Sheet;
 use voussoir_core::assembly::{Assembly, Joint};
 use voussoir_core::geometry::Vec2;
 use voussoir_core::mechanism::Mechanism;
@@ -171,7 +172,8 @@ pub fn mark(
     if !spots.is_empty() {
         let numbered = if spots.len() <= NUMBERED { "with its joint's number" } else { "too many to number" };
         let symbol = if senses && spots.len() <= NUMBERED { Symbol::TurningHinge } else { Symbol::Hinge };
-        let sense = if symbol == Symbol::TurningHinge { ", turning sense of the plus (higher) side" } else { "" };
+        let sense =
+            if symbol == Symbol::TurningHinge { "; arrow: how its plus side turns (right on arches)" } else { "" };
         legend.push((symbol, format!("hinge {numbered}{sense}")));
     }
     if !mechanism.sliding.is_empty() {

@@ -1,7 +1,8 @@
 //! A mechanism: where its blocks go.
 
+use super::closure::closed;
 use super::displaced::displaced;
-use super::drawing::{extent, outline_width, supports};
+use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
 use super::marks::{OUTLINE, STONE, Symbol, mark};
 use super::sheet::Sheet;
@@ -13,6 +14,7 @@ use voussoir_core::geometry::Vec2;
 pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
     let (mechanism, motion) = (result.mechanism.as_ref()?, result.motion.as_ref()?);
     let (placements, scale) = displaced(assembly, motion)?;
+    let placements = closed(assembly, mechanism, placements);
     let moved: Vec<Vec<Vec2>> = assembly
         .bodies
         .iter()
@@ -21,7 +23,10 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
         .collect();
     let further: Vec<Vec2> = moved.iter().flatten().copied().collect();
     let (low, high) = extent(assembly, &further);
-    let titles = [case_title(study, result), format!("mechanism: {}", kind_words(mechanism.kind))];
+    let titles = [
+        case_title(study, result),
+        format!("mechanism: {}", kind_words(mechanism.kind).trim_end_matches(" mechanism")),
+    ];
     let mut sheet = Sheet::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
     let width = outline_width(&sheet, assembly);
     let free = |body: usize| !assembly.bodies[body].fixed;
@@ -29,16 +34,16 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     sheet.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
     let before = assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.vertices.as_slice());
     sheet.outlines(before, "none", "#999999", width.min(0.9), "4 3");
+    faces(&mut sheet, assembly, "#999999", |_, point| point);
     let after = moved.iter().enumerate().filter(|(body, _)| free(*body)).map(|(_, shape)| shape.as_slice());
     sheet.outlines(after, STONE, OUTLINE, width, "");
+    faces(&mut sheet, assembly, OUTLINE, |body, point| placements[body].of(point));
     supports(&mut sheet, assembly);
     let mut legend =
         vec![(Symbol::Block, "blocks as they move".to_string()), (Symbol::Before, "where they were".to_string())];
-    legend.extend(mark(&mut sheet, assembly, mechanism, true, |joint, point| {
-        (placements[joint.minus].of(point) + placements[joint.plus].of(point)) / 2.0
-    }));
+    legend.extend(mark(&mut sheet, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
     let caption = [format!(
-        "Displacements are exaggerated: the motion of the mechanism (scaled to unit work of the load) times {}. \
+        "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {}. \
          Only directions and ratios mean something, not the size.",
         format_short(scale, 3)
     )];

@@ -3,9 +3,11 @@
 //! Everything here is a pure function from results to text (SVG). No file is touched.
 
 pub mod chart;
+pub mod closure;
 pub mod displaced;
 pub mod drawing;
 pub mod format;
+pub mod lettering;
 pub mod loads;
 pub mod marks;
 pub mod mechanism;

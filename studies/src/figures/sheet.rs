@@ -1,13 +1,11 @@
 //! A sheet of paper: metres to pixels, lines, polygons, and text that keeps out of the way of
 //! other text. What is drawn on it is decided elsewhere.
 
+use super::lettering::{Area, Spot, text_width, wrapped};
 use super::marks::Symbol;
 use svg::Document;
 use svg::node::element::{Circle, Definitions, Line, Path, Pattern, Polygon, Rectangle, Text};
 use voussoir_core::geometry::Vec2;
-
-/// A place on the sheet [px], y down.
-pub type Spot = [f64; 2];
 
 /// Size of ordinary text [px].
 pub const TEXT: f64 = 13.0;
@@ -15,62 +13,6 @@ pub const TEXT: f64 = 13.0;
 pub const INK: &str = "#222222";
 const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 const SIDE: f64 = 40.0;
-
-/// Estimated width of a text [px]; on the safe side for the usual sans-serif fonts.
-pub fn text_width(text: &str, size: f64) -> f64 {
-    0.6 * size * text.chars().count() as f64
-}
-
-/// Breaks a text into lines that fit into `width` [px].
-pub fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = vec![String::new()];
-    for word in text.split_whitespace() {
-        let line = lines.last_mut().expect("there is always a line");
-        if line.is_empty() {
-            line.push_str(word);
-        } else if text_width(line, size) + text_width(word, size) + size <= width {
-            line.push(' ');
-            line.push_str(word);
-        } else {
-            lines.push(word.to_string());
-        }
-    }
-    lines
-}
-
-/// An axis-parallel box on the sheet [px].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Area {
-    /// Upper left corner.
-    pub low: Spot,
-    /// Lower right corner.
-    pub high: Spot,
-}
-
-impl Area {
-    /// The box of a text whose anchor is at `spot` on its base line.
-    pub fn of_text(spot: Spot, anchor: &str, size: f64, text: &str) -> Self {
-        let width = text_width(text, size);
-        let left = spot[0]
-            - match anchor {
-                "middle" => width / 2.0,
-                "end" => width,
-                _ => 0.0,
-            };
-        Area { low: [left, spot[1] - 0.8 * size], high: [left + width, spot[1] + 0.25 * size] }
-    }
-
-    /// The box with this middle and half width and height.
-    pub fn around(middle: Spot, half: Spot) -> Self {
-        Area { low: [middle[0] - half[0], middle[1] - half[1]], high: [middle[0] + half[0], middle[1] + half[1]] }
-    }
-
-    /// Area shared with another box [px²].
-    pub fn shared(&self, other: &Area) -> f64 {
-        let side = |i: usize| (self.high[i].min(other.high[i]) - self.low[i].max(other.low[i])).max(0.0);
-        side(0) * side(1)
-    }
-}
 
 /// A drawing under way.
 #[derive(Debug)]
@@ -267,7 +209,7 @@ impl Sheet {
             for turn in [0.0_f64, 0.4, -0.4, 0.8, -0.8, 1.3, -1.3, 2.0, -2.0, 2.7, -2.7] {
                 let (sin, cos) = (towards + turn).sin_cos();
                 let reach = (half[0] * cos.abs() + half[1] * sin.abs()).min(half[0].hypot(half[1]))
-                    + 10.0
+                    + 13.0
                     + 9.0 * ring as f64;
                 let middle = [spot[0] + reach * cos, spot[1] + reach * sin];
                 let area = Area::around(middle, [half[0] + 2.0, half[1] + 1.0]);

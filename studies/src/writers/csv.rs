@@ -70,7 +70,7 @@ fn row(case: &CaseResult, keys: &[String]) -> Vec<String> {
         mechanism.and_then(|m| m.unique).map_or(String::new(), |unique| unique.to_string()),
         case.flow_read_as.clone().unwrap_or_default(),
         case.certificate.passed.to_string(),
-        number(Some(residual).filter(|r| !r.is_nan())),
+        if residual.is_nan() { String::new() } else { format!("{residual:e}") },
         case.solver.clone(),
         case.seconds.to_string(),
         case.notes.join(" | "),

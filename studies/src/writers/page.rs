@@ -20,8 +20,8 @@ body { font: 16px/1.5 system-ui, -apple-system, 'Segoe UI', Helvetica, Arial, sa
 h1 { font-size: 1.8rem; margin: 0 0 .5rem; } h2 { font-size: 1.25rem; margin: 2rem 0 .5rem; border-bottom: 1px solid #ddd; }
 .summary { font-size: 1.05rem; } .quiet { color: #666; } .bad, td.bad { color: #b00020; font-weight: bold; }
 .wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .25rem .6rem; border-bottom: 1px solid #e4e4e4; text-align: left; white-space: nowrap; }
+table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .45rem; border-bottom: 1px solid #e4e4e4; text-align: left; white-space: nowrap; }
 th { border-bottom: 2px solid #999; vertical-align: bottom; white-space: normal; } td.number { text-align: right; }
 details { margin: .5rem 0; border: 1px solid #ddd; border-radius: 4px; padding: .4rem .8rem; }
 summary { cursor: pointer; font-weight: 600; }
@@ -68,5 +68,5 @@ pub(super) fn value(value: &serde_json::Value) -> String {
 
 /// The drawing with ids of its own, since ids are shared by all drawings of a page.
 pub(super) fn own_ids(svg: &str, prefix: &str) -> String {
-    svg.replace("\"ground\"", &format!("\"{prefix}\"")).replace("url(#ground)", &format!("url(#{prefix})"))
+    svg.replace("id=\"ground\"", &format!("id=\"{prefix}\"")).replace("url(#ground)", &format!("url(#{prefix})"))
 }
