@@ -141,16 +141,10 @@ impl Assembly {
     pub fn inertia(&self, body: usize) -> Inertia {
         let body = &self.bodies[body];
         if body.vertices.is_empty() {
-            return Inertia {
-                mass: 0.0,
-                centroid: Vec2::zeros(),
-            };
+            return Inertia { mass: 0.0, centroid: Vec2::zeros() };
         }
         let (area, centroid) = area_and_centroid(&body.vertices);
-        Inertia {
-            mass: self.catalogue.materials[body.material].1.density() * area * self.width,
-            centroid,
-        }
+        Inertia { mass: self.catalogue.materials[body.material].1.density() * area * self.width, centroid }
     }
 
     /// The law of a joint, unless it is bonded.
@@ -163,19 +157,12 @@ impl Assembly {
 
     /// Whether a body's material is rigid.
     pub fn is_rigid(&self, body: usize) -> bool {
-        self.catalogue.materials[self.bodies[body].material]
-            .1
-            .deformability()
-            == Deformability::Rigid
+        self.catalogue.materials[self.bodies[body].material].1.deformability() == Deformability::Rigid
     }
 
     /// Diagonal of the box around everything [m].
     pub fn size(&self) -> f64 {
-        let points = self
-            .bodies
-            .iter()
-            .flat_map(|b| &b.vertices)
-            .chain(self.joints.iter().flat_map(|j| &j.ends));
+        let points = self.bodies.iter().flat_map(|b| &b.vertices).chain(self.joints.iter().flat_map(|j| &j.ends));
         let (low, high) = bounding_box(points);
         (high - low).norm()
     }
@@ -191,15 +178,8 @@ impl Assembly {
             }
             i
         }
-        for joint in self
-            .joints
-            .iter()
-            .filter(|joint| joint.bond == Bond::Bonded)
-        {
-            let (a, b) = (
-                root(&mut parent, joint.minus),
-                root(&mut parent, joint.plus),
-            );
+        for joint in self.joints.iter().filter(|joint| joint.bond == Bond::Bonded) {
+            let (a, b) = (root(&mut parent, joint.minus), root(&mut parent, joint.plus));
             parent[a] = b;
         }
         let mut held = vec![false; self.bodies.len()];

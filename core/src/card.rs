@@ -84,17 +84,12 @@ pub fn cards() -> Vec<&'static Card> {
 
 /// The cards of one kind, sorted by tag.
 pub fn cards_of(kind: PluginKind) -> Vec<&'static Card> {
-    cards()
-        .into_iter()
-        .filter(|card| card.kind == kind)
-        .collect()
+    cards().into_iter().filter(|card| card.kind == kind).collect()
 }
 
 /// The card with this kind and tag.
 pub fn card(kind: PluginKind, tag: &str) -> Option<&'static Card> {
-    inventory::iter::<Card>
-        .into_iter()
-        .find(|card| card.kind == kind && card.tag == tag)
+    inventory::iter::<Card>.into_iter().find(|card| card.kind == kind && card.tag == tag)
 }
 
 /// The name nearest to `wrong` among `names`, if any is near enough to be meant.
@@ -117,10 +112,7 @@ fn audit_of(all: &[&Card]) -> Vec<String> {
     let mut wrong = Vec::new();
     for kind in PluginKind::ALL {
         if !all.iter().any(|card| card.kind == kind) {
-            wrong.push(format!(
-                "no {} is registered: is its crate named in the facade?",
-                kind.describe()
-            ));
+            wrong.push(format!("no {} is registered: is its crate named in the facade?", kind.describe()));
         }
     }
     for pair in all.windows(2) {
@@ -157,24 +149,13 @@ mod tests {
     #[test]
     fn the_audit_finds_an_empty_kind_and_a_duplicate_tag() {
         let wrong = audit_of(&[&ONE, &ONE]);
-        assert!(
-            wrong
-                .iter()
-                .any(|w| w == "no interface law is registered: is its crate named in the facade?")
-        );
-        assert!(
-            wrong
-                .iter()
-                .any(|w| w == "two scenes are called \"arch\": here.rs and here.rs")
-        );
+        assert!(wrong.iter().any(|w| w == "no interface law is registered: is its crate named in the facade?"));
+        assert!(wrong.iter().any(|w| w == "two scenes are called \"arch\": here.rs and here.rs"));
     }
 
     #[test]
     fn the_nearest_name_is_found_or_none() {
-        assert_eq!(
-            nearest("coulom", ["unilateral", "coulomb"]),
-            Some("coulomb")
-        );
+        assert_eq!(nearest("coulom", ["unilateral", "coulomb"]), Some("coulomb"));
         assert_eq!(nearest("zzzzzz", ["unilateral", "coulomb"]), None);
     }
 }

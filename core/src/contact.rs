@@ -30,10 +30,7 @@ fn neighbours(bodies: &[Body], tolerance: f64) -> Vec<(usize, usize)> {
     boxes.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
     let mut pairs = Vec::new();
     for (place, (i, low, high)) in boxes.iter().enumerate() {
-        for (j, other_low, other_high) in boxes[place + 1..]
-            .iter()
-            .take_while(|other| other.1.x <= high.x)
-        {
+        for (j, other_low, other_high) in boxes[place + 1..].iter().take_while(|other| other.1.x <= high.x) {
             if other_low.y <= high.y && low.y <= other_high.y {
                 pairs.push((*i.min(j), *i.max(j)));
             }
@@ -56,16 +53,8 @@ fn edge_overlap(a: Vec2, b: Vec2, c: Vec2, d: Vec2, tolerance: f64) -> Option<[V
     }
     let place = |p: Vec2| (p - a).dot(&along);
     // Ends are vertices of the bodies themselves, so that congruent joints stay congruent.
-    let (start, first) = if place(d) > 0.0 {
-        (place(d), d)
-    } else {
-        (0.0, a)
-    };
-    let (end, last) = if place(c) < length {
-        (place(c), c)
-    } else {
-        (length, b)
-    };
+    let (start, first) = if place(d) > 0.0 { (place(d), d) } else { (0.0, a) };
+    let (end, last) = if place(c) < length { (place(c), c) } else { (length, b) };
     (end - start > tolerance).then_some([first, last])
 }
 
@@ -83,10 +72,7 @@ pub fn find_joints(
         let (one, other) = (&bodies[minus], &bodies[plus]);
         let depth = overlap_depth(&one.vertices, &other.vertices);
         if depth > tolerance {
-            overlaps.push(Interpenetration {
-                bodies: [minus, plus],
-                depth,
-            });
+            overlaps.push(Interpenetration { bodies: [minus, plus], depth });
             continue;
         }
         if one.fixed && other.fixed {
@@ -96,13 +82,7 @@ pub fn find_joints(
             for (c, d) in edges(&other.vertices) {
                 if let Some(ends) = edge_overlap(a, b, c, d, tolerance) {
                     let (bond, gap) = law(minus, plus);
-                    joints.push(Joint {
-                        minus,
-                        plus,
-                        ends,
-                        bond,
-                        gap,
-                    });
+                    joints.push(Joint { minus, plus, ends, bond, gap });
                 }
             }
         }

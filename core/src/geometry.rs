@@ -37,11 +37,7 @@ pub fn edges(vertices: &[Vec2]) -> impl Iterator<Item = (Vec2, Vec2)> + '_ {
 /// Lower left and upper right corner of the box around some points.
 pub fn bounding_box<'a>(points: impl IntoIterator<Item = &'a Vec2>) -> (Vec2, Vec2) {
     let infinite = Vec2::repeat(f64::INFINITY);
-    points
-        .into_iter()
-        .fold((infinite, -infinite), |(low, high), p| {
-            (low.inf(p), high.sup(p))
-        })
+    points.into_iter().fold((infinite, -infinite), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
 /// Distance of `p` from the segment from `a` to `b`.
@@ -57,9 +53,7 @@ pub fn contains(vertices: &[Vec2], p: Vec2, tolerance: f64) -> bool {
         return true;
     }
     edges(vertices)
-        .filter(|&(a, b)| {
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
-        })
+        .filter(|&(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
         .count()
         % 2
         == 1
@@ -170,10 +164,7 @@ mod tests {
         let shape = polygon(&[(far, 0.0), (far + 3.0, 0.0), (far + 2.0, 1.0), (far, 1.0)]);
         let (area, centroid) = area_and_centroid(&shape);
         assert!((area - 2.5).abs() < 1e-12);
-        assert!(
-            (centroid.x - far - 19.0 / 15.0).abs() < 1e-9
-                && (centroid.y - 7.0 / 15.0).abs() < 1e-12
-        );
+        assert!((centroid.x - far - 19.0 / 15.0).abs() < 1e-9 && (centroid.y - 7.0 / 15.0).abs() < 1e-12);
     }
 
     #[test]
@@ -181,40 +172,16 @@ mod tests {
         let square = polygon(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
         let neighbour = polygon(&[(1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0)]);
         assert_eq!(overlap_depth(&square, &neighbour), 0.0);
-        let angle = polygon(&[
-            (0.5, 1.0),
-            (0.5, -1.0),
-            (3.0, -1.0),
-            (3.0, 3.0),
-            (2.0, 3.0),
-            (2.0, 1.0),
-        ]);
+        let angle = polygon(&[(0.5, 1.0), (0.5, -1.0), (3.0, -1.0), (3.0, 3.0), (2.0, 3.0), (2.0, 1.0)]);
         assert!(overlap_depth(&square, &angle) > 0.1);
-        let beside = polygon(&[
-            (1.0, 1.0),
-            (1.0, -1.0),
-            (3.0, -1.0),
-            (3.0, 3.0),
-            (2.0, 3.0),
-            (2.0, 1.0),
-        ]);
+        let beside = polygon(&[(1.0, 1.0), (1.0, -1.0), (3.0, -1.0), (3.0, 3.0), (2.0, 3.0), (2.0, 1.0)]);
         assert!(overlap_depth(&square, &beside) < 1e-15);
     }
 
     #[test]
     fn a_bow_tie_crosses_itself() {
-        assert!(crosses_itself(&polygon(&[
-            (0.0, 0.0),
-            (1.0, 1.0),
-            (1.0, 0.0),
-            (0.0, 1.0)
-        ])));
-        assert!(!crosses_itself(&polygon(&[
-            (0.0, 0.0),
-            (1.0, 0.0),
-            (1.0, 1.0),
-            (0.0, 1.0)
-        ])));
+        assert!(crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])));
+        assert!(!crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])));
     }
 
     #[test]

@@ -34,12 +34,7 @@ pub struct Facet {
 impl Facet {
     /// A facet with associated flow.
     pub fn associated(mode: FacetMode, normal: [f64; 2], bound: f64) -> Self {
-        Facet {
-            mode,
-            normal,
-            bound,
-            flow: normal,
-        }
+        Facet { mode, normal, bound, flow: normal }
     }
 
     /// t_n ≥ −`tensile_strength` [Pa].
@@ -83,6 +78,15 @@ pub trait InterfaceLaw: Debug + Send + Sync {
     /// Joint stiffness [k_n, k_t] [Pa/m] where the joint itself is compliant. Limit loads do not
     /// depend on it.
     fn stiffness(&self) -> Option<[f64; 2]>;
+}
+
+impl Formulation {
+    /// The facets, where the law has that form.
+    pub fn facets(self) -> Option<Vec<Facet>> {
+        match self {
+            Formulation::Facets(facets) => Some(facets),
+        }
+    }
 }
 
 /// Whether every facet's flow is its normal, so that the bound theorems hold as they stand.

@@ -15,11 +15,7 @@ pub struct Issue {
 impl Issue {
     /// A mistake at `path`.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
-        Issue {
-            path: path.into(),
-            message: message.into(),
-            help: None,
-        }
+        Issue { path: path.into(), message: message.into(), help: None }
     }
 
     /// With advice.

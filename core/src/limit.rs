@@ -47,14 +47,8 @@ pub struct LimitJoint {
 impl LimitJoint {
     /// Wrenches about `pole` on the plus body per unit of N_0, N_1 and T; minus gets the opposite.
     pub fn wrenches(&self, pole: Vec2) -> [[f64; 3]; 3] {
-        let at = |point: Vec2, direction: Vec2| {
-            [direction.x, direction.y, cross(point - pole, direction)]
-        };
-        [
-            at(self.ends[0], self.normal),
-            at(self.ends[1], self.normal),
-            at(self.ends[0], self.tangent),
-        ]
+        let at = |point: Vec2, direction: Vec2| [direction.x, direction.y, cross(point - pole, direction)];
+        [at(self.ends[0], self.normal), at(self.ends[1], self.normal), at(self.ends[0], self.tangent)]
     }
 }
 
@@ -86,11 +80,7 @@ impl LimitProblem {
         let (group_of, groups) = assembly.rigid_groups();
         let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
         let (low, high) = crate::geometry::bounding_box(points);
-        let pole = if assembly.joints.is_empty() {
-            Vec2::zeros()
-        } else {
-            (low + high) / 2.0
-        };
+        let pole = if assembly.joints.is_empty() { Vec2::zeros() } else { (low + high) / 2.0 };
         let mut read: BTreeMap<usize, Vec<crate::interface::Facet>> = BTreeMap::new();
         let mut flow_read_as_associated = false;
         let mut joints = Vec::new();
@@ -111,15 +101,7 @@ impl LimitProblem {
             let strength = integrate(facets, joint.height() * assembly.width)
                 .map_err(|why| format!("joint law \"{name}\": {why}"))?;
             let (normal, tangent) = joint.frame();
-            joints.push(LimitJoint {
-                joint: index,
-                minus,
-                plus,
-                ends: joint.ends,
-                normal,
-                tangent,
-                strength,
-            });
+            joints.push(LimitJoint { joint: index, minus, plus, ends: joint.ends, normal, tangent, strength });
         }
         let gather = |wrenches: &Wrenches| {
             let mut sum = vec![[0.0; 3]; groups];
@@ -140,21 +122,14 @@ impl LimitProblem {
             groups,
             joints,
             pole,
-            length: if low.x.is_finite() {
-                (high - low).norm()
-            } else {
-                1.0
-            },
+            length: if low.x.is_finite() { (high - low).norm() } else { 1.0 },
             flow_read_as_associated,
         })
     }
 
     /// Sum of the sizes of some wrenches as forces [N], moments divided by the scene's length.
     pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
-        wrenches
-            .iter()
-            .map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length))
-            .sum()
+        wrenches.iter().map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length)).sum()
     }
 }
 
@@ -204,8 +179,8 @@ pub struct LimitAnswer {
     pub field_factor: f64,
     /// One entry per joint of the problem.
     pub field: Option<Vec<JointForce>>,
-    /// One entry per group, about the problem's pole; scaled to varying·q̇ = 1, or for
-    /// `NoEquilibrium` to varying·q̇ = ±1 or excess power 1.
+    /// One entry per group, about the problem's pole; scaled to varying·q̇ = 1, for `NoEquilibrium`
+    /// with a feasible interval to ±1, without one in any scale.
     pub motion: Option<Vec<Velocity>>,
     /// Is the motion the only one?
     pub unique: Option<bool>,

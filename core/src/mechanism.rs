@@ -110,10 +110,7 @@ impl Jump {
 
     /// The greatest component.
     pub fn size(&self) -> f64 {
-        self.open[0]
-            .abs()
-            .max(self.open[1].abs())
-            .max(self.slip.abs())
+        self.open[0].abs().max(self.open[1].abs()).max(self.slip.abs())
     }
 }
 
@@ -124,19 +121,14 @@ pub fn velocity_at(centroid: Vec2, velocity: CentroidVelocity, point: Vec2) -> V
 
 /// The jumps at all joints in a motion of all bodies.
 pub fn jumps(assembly: &Assembly, motion: &[CentroidVelocity]) -> Vec<Jump> {
-    let centroids: Vec<Vec2> = (0..assembly.bodies.len())
-        .map(|body| assembly.inertia(body).centroid)
-        .collect();
+    let centroids: Vec<Vec2> = (0..assembly.bodies.len()).map(|body| assembly.inertia(body).centroid).collect();
     let jump = |joint: &Joint| {
         let (n, t) = joint.frame();
         let apart = joint.ends.map(|point| {
             let at = |body: usize| velocity_at(centroids[body], motion[body], point);
             at(joint.plus) - at(joint.minus)
         });
-        Jump {
-            open: apart.map(|v| v.dot(&n)),
-            slip: (apart[0] + apart[1]).dot(&t) / 2.0,
-        }
+        Jump { open: apart.map(|v| v.dot(&n)), slip: (apart[0] + apart[1]).dot(&t) / 2.0 }
     };
     assembly.joints.iter().map(jump).collect()
 }
@@ -152,22 +144,13 @@ fn clearance(rays: &[[f64; 2]], open: f64, slip: f64) -> f64 {
 }
 
 /// Reads a mechanism off a motion. `None` where nothing moves.
-pub fn mechanism(
-    assembly: &Assembly,
-    motion: &[CentroidVelocity],
-    unique: Option<bool>,
-) -> Option<Mechanism> {
+pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Option<bool>) -> Option<Mechanism> {
     let jumps = jumps(assembly, motion);
     let tolerance = TOLERANCE * jumps.iter().map(Jump::size).fold(0.0, f64::max);
     if tolerance == 0.0 {
         return None;
     }
-    let rays: Vec<Vec<[f64; 2]>> = assembly
-        .catalogue
-        .laws
-        .iter()
-        .map(|(_, law)| contact_rays(&**law))
-        .collect();
+    let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law)).collect();
     let mut found = Mechanism {
         kind: MechanismKind::Rocking,
         hinge_count: 0,
@@ -185,50 +168,25 @@ pub fn mechanism(
             continue; // apart all along
         }
         if jump.slip.abs() > tolerance {
-            found.sliding.push(Sliding {
-                joint: index,
-                between: between(),
-                slip: jump.slip,
-            });
+            found.sliding.push(Sliding { joint: index, between: between(), slip: jump.slip });
         }
         let crushed = crushed_share(clear, tolerance);
         if crushed > 0.5 {
-            found.crushing.push(Crushing {
-                joint: index,
-                between: between(),
-                share: crushed,
-            });
+            found.crushing.push(Crushing { joint: index, between: between(), share: crushed });
         }
         let rotation = jump.rotation(height);
         if (rotation * height).abs() > tolerance && crushed < 1.0 {
             let touching = usize::from(clear[1] < clear[0]);
             let toward = joint.ends[1 - touching] - joint.ends[touching];
             let point = joint.ends[touching] + toward * crushed;
-            let side = assembly
-                .arch
-                .as_ref()
-                .map(|_| [Side::Intrados, Side::Extrados][touching]);
-            found.hinges.push(Hinge {
-                joint: index,
-                between: between(),
-                side,
-                point: point.into(),
-                rotation,
-            });
+            let side = assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]);
+            found.hinges.push(Hinge { joint: index, between: between(), side, point: point.into(), rotation });
         }
     }
     let crushes = |joint: usize| found.crushing.iter().any(|c| c.joint == joint);
-    let hinges: Vec<&Hinge> = found
-        .hinges
-        .iter()
-        .filter(|hinge| !crushes(hinge.joint))
-        .collect();
+    let hinges: Vec<&Hinge> = found.hinges.iter().filter(|hinge| !crushes(hinge.joint)).collect();
     found.hinge_count = count_merged(assembly, &hinges);
-    found.kind = match (
-        found.hinge_count,
-        found.sliding.is_empty(),
-        found.crushing.is_empty(),
-    ) {
+    found.kind = match (found.hinge_count, found.sliding.is_empty(), found.crushing.is_empty()) {
         (0, false, true) => MechanismKind::Sliding,
         (0, true, false) => MechanismKind::Crushing,
         (3, true, true) => MechanismKind::ThreeHinge,
@@ -242,12 +200,10 @@ pub fn mechanism(
 
 fn contact_rays(law: &dyn InterfaceLaw) -> Vec<[f64; 2]> {
     let Formulation::Facets(facets) = law.formulation();
-    let uncrushed: Vec<_> = facets
-        .into_iter()
-        .filter(|f| f.mode != FacetMode::Crushing)
-        .collect();
+    let uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
     let mut rays = YieldPolygon::of(&uncrushed).rays;
-    if rays.len() < 2 || rays.iter().all(|ray| ray[0] < 0.1) {
+    let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;
+    if rays.len() < 2 || rays.iter().any(|a| rays.iter().any(|b| opposite(a, b))) {
         // Stuck along the joint: only opening parts the blocks.
         rays = vec![[1.0, 0.0]];
     }
@@ -256,11 +212,7 @@ fn contact_rays(law: &dyn InterfaceLaw) -> Vec<[f64; 2]> {
 
 /// Share of the height over which the clearance, linear along the joint, is negative.
 fn crushed_share(clear: [f64; 2], tolerance: f64) -> f64 {
-    let [low, high] = if clear[0] < clear[1] {
-        clear
-    } else {
-        [clear[1], clear[0]]
-    };
+    let [low, high] = if clear[0] < clear[1] { clear } else { [clear[1], clear[0]] };
     if low >= -tolerance {
         0.0
     } else if high <= tolerance {
@@ -276,22 +228,15 @@ fn count_merged(assembly: &Assembly, hinges: &[&Hinge]) -> usize {
     let mut group: Vec<usize> = (0..hinges.len()).collect();
     for i in 0..hinges.len() {
         for j in 0..i {
-            let (a, b) = (
-                &assembly.joints[hinges[i].joint],
-                &assembly.joints[hinges[j].joint],
-            );
-            let neighbours = [a.minus, a.plus]
-                .iter()
-                .any(|body| !assembly.bodies[*body].fixed && [b.minus, b.plus].contains(body));
+            let (a, b) = (&assembly.joints[hinges[i].joint], &assembly.joints[hinges[j].joint]);
+            let neighbours =
+                [a.minus, a.plus].iter().any(|body| !assembly.bodies[*body].fixed && [b.minus, b.plus].contains(body));
             let off = |joint: &Joint, hinge: &Hinge| Vec2::from(hinge.point) - joint.middle();
-            let alike = hinges[i].rotation * hinges[j].rotation > 0.0
-                && off(a, hinges[i]).dot(&off(b, hinges[j])) > 0.0;
+            let alike =
+                hinges[i].rotation * hinges[j].rotation > 0.0 && off(a, hinges[i]).dot(&off(b, hinges[j])) > 0.0;
             if neighbours && alike && group[i] != group[j] {
                 let (from, to) = (group[i], group[j]);
-                group
-                    .iter_mut()
-                    .filter(|g| **g == from)
-                    .for_each(|g| *g = to);
+                group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
                 count -= 1;
             }
         }

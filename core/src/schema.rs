@@ -29,53 +29,22 @@ impl Range {
 
     /// An interval; `*_open` excludes its end.
     pub const fn new(min: f64, min_open: bool, max: f64, max_open: bool) -> Self {
-        Range {
-            min,
-            min_open,
-            max,
-            max_open,
-        }
+        Range { min, min_open, max, max_open }
     }
 
     /// Whether the finite number `x` lies in the range.
     pub fn contains(&self, x: f64) -> bool {
         x.is_finite()
-            && (if self.min_open {
-                x > self.min
-            } else {
-                x >= self.min
-            })
-            && (if self.max_open {
-                x < self.max
-            } else {
-                x <= self.max
-            })
+            && (if self.min_open { x > self.min } else { x >= self.min })
+            && (if self.max_open { x < self.max } else { x <= self.max })
     }
 
     /// In words: `greater than 0`, `from 0 to 0.5 (excluded)`.
     pub fn describe(&self) -> String {
-        let lower = (self.min != f64::NEG_INFINITY).then(|| {
-            format!(
-                "{} {}",
-                if self.min_open {
-                    "greater than"
-                } else {
-                    "at least"
-                },
-                self.min
-            )
-        });
-        let upper = (self.max != f64::INFINITY).then(|| {
-            format!(
-                "{} {}",
-                if self.max_open {
-                    "less than"
-                } else {
-                    "at most"
-                },
-                self.max
-            )
-        });
+        let lower = (self.min != f64::NEG_INFINITY)
+            .then(|| format!("{} {}", if self.min_open { "greater than" } else { "at least" }, self.min));
+        let upper = (self.max != f64::INFINITY)
+            .then(|| format!("{} {}", if self.max_open { "less than" } else { "at most" }, self.max));
         match (lower, upper) {
             (None, None) => "a finite number".into(),
             (Some(l), None) => l,
@@ -234,33 +203,17 @@ pub struct Parameter {
 
 impl Parameter {
     /// A number that must be given.
-    pub const fn number(
-        name: &'static str,
-        quantity: Quantity,
-        range: Range,
-        doc: &'static str,
-    ) -> Self {
-        Parameter {
-            name,
-            doc,
-            shape: Shape::Number(quantity, range),
-            need: Need::Required,
-        }
+    pub const fn number(name: &'static str, quantity: Quantity, range: Range, doc: &'static str) -> Self {
+        Parameter { name, doc, shape: Shape::Number(quantity, range), need: Need::Required }
     }
 
     /// The same parameter, not compulsory.
     pub const fn optional(self, otherwise: &'static str) -> Self {
-        Parameter {
-            need: Need::Optional(otherwise),
-            ..self
-        }
+        Parameter { need: Need::Optional(otherwise), ..self }
     }
 
     /// The same parameter with a default, a TOML value.
     pub const fn default(self, value: &'static str) -> Self {
-        Parameter {
-            need: Need::Default(value),
-            ..self
-        }
+        Parameter { need: Need::Default(value), ..self }
     }
 }

@@ -45,11 +45,7 @@ pub struct JointStrength {
 impl JointStrength {
     /// Whether rows leave T free of bounds, or fix it to zero.
     pub fn tangential(&self) -> Tangential {
-        let mut sliding = self
-            .rows
-            .iter()
-            .filter(|row| row.normal[2] != 0.0)
-            .peekable();
+        let mut sliding = self.rows.iter().filter(|row| row.normal[2] != 0.0).peekable();
         if sliding.peek().is_none() {
             Tangential::Stuck
         } else if sliding.all(|row| row.normal[0] == 0.0 && row.bound == 0.0) {
@@ -88,11 +84,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 impl YieldPolygon {
     /// The set {t : a·t ≤ b for all facets}, by intersection of all pairs of facets.
     pub fn of(facets: &[Facet]) -> Self {
-        let scale = facets
-            .iter()
-            .map(|f| f.bound.abs())
-            .fold(0.0, f64::max)
-            .max(1.0);
+        let scale = facets.iter().map(|f| f.bound.abs()).fold(0.0, f64::max).max(1.0);
         let length = |a: [f64; 2]| a[0].hypot(a[1]);
         let mut vertices: Vec<[f64; 2]> = Vec::new();
         let mut rays: Vec<[f64; 2]> = Vec::new();
@@ -100,9 +92,7 @@ impl YieldPolygon {
             for sense in [1.0, -1.0] {
                 let l = length(f.normal);
                 let ray = [-sense * f.normal[1] / l, sense * f.normal[0] / l];
-                let admissible = facets
-                    .iter()
-                    .all(|g| dot(g.normal, ray) <= 1e-12 * length(g.normal));
+                let admissible = facets.iter().all(|g| dot(g.normal, ray) <= 1e-12 * length(g.normal));
                 if admissible && !rays.iter().any(|r| (dot(*r, ray) - 1.0).abs() < 1e-12) {
                     rays.push(ray);
                 }
@@ -117,15 +107,19 @@ impl YieldPolygon {
                     (g.bound * f.normal[0] - f.bound * g.normal[0]) / determinant,
                 ];
                 let tolerance = 1e-12 * scale.max(length(vertex));
-                let inside = facets
-                    .iter()
-                    .all(|h| dot(h.normal, vertex) <= h.bound + tolerance * length(h.normal));
-                if inside
-                    && !vertices
-                        .iter()
-                        .any(|v| length([v[0] - vertex[0], v[1] - vertex[1]]) <= tolerance)
-                {
+                let inside = facets.iter().all(|h| dot(h.normal, vertex) <= h.bound + tolerance * length(h.normal));
+                if inside && !vertices.iter().any(|v| length([v[0] - vertex[0], v[1] - vertex[1]]) <= tolerance) {
                     vertices.push(vertex);
+                }
+            }
+        }
+        if rays.iter().any(|a| rays.iter().any(|b| dot(*a, *b) < -1.0 + 1e-12)) {
+            // A half plane: the rays along its edge do not show that it is open inwards.
+            for f in facets {
+                let l = length(f.normal);
+                let inwards = [-f.normal[0] / l, -f.normal[1] / l];
+                if facets.iter().all(|g| dot(g.normal, inwards) <= 1e-12 * length(g.normal)) {
+                    rays.push(inwards);
                 }
             }
         }
@@ -144,10 +138,7 @@ impl YieldPolygon {
         if self.rays.iter().any(|ray| ray[0] < -1e-12) {
             return f64::NEG_INFINITY;
         }
-        self.vertices
-            .iter()
-            .map(|v| v[0])
-            .fold(f64::INFINITY, f64::min)
+        self.vertices.iter().map(|v| v[0]).fold(f64::INFINITY, f64::min)
     }
 
     /// The greatest t_n [Pa], ∞ where unbounded.
@@ -155,10 +146,7 @@ impl YieldPolygon {
         if self.rays.iter().any(|ray| ray[0] > 1e-12) {
             return f64::INFINITY;
         }
-        self.vertices
-            .iter()
-            .map(|v| v[0])
-            .fold(f64::NEG_INFINITY, f64::max)
+        self.vertices.iter().map(|v| v[0]).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
@@ -172,36 +160,20 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
     let tension = -least * area;
     let mut rows = Vec::new();
     if greatest.is_infinite() {
-        rows.push(ForceRow {
-            normal: [-1.0, 0.0, 0.0],
-            bound: tension / 2.0,
-            mode: FacetMode::Opening,
-        });
-        rows.push(ForceRow {
-            normal: [0.0, -1.0, 0.0],
-            bound: tension / 2.0,
-            mode: FacetMode::Opening,
-        });
+        rows.push(ForceRow { normal: [-1.0, 0.0, 0.0], bound: tension / 2.0, mode: FacetMode::Opening });
+        rows.push(ForceRow { normal: [0.0, -1.0, 0.0], bound: tension / 2.0, mode: FacetMode::Opening });
     }
     for sense in [1.0, -1.0] {
-        let on_side: Vec<&Facet> = facets
-            .iter()
-            .filter(|f| f.normal[1] * sense > 0.0)
-            .collect();
+        let on_side: Vec<&Facet> = facets.iter().filter(|f| f.normal[1] * sense > 0.0).collect();
         // A facet counts where it bounds the polygon in more than a corner.
         let bounding: Vec<&Facet> = on_side
             .iter()
             .copied()
             .filter(|f| {
-                let touching = |v: &&[f64; 2]| {
-                    dot(f.normal, **v) >= f.bound - 1e-9 * f.bound.abs().max(dot(**v, **v).sqrt())
-                };
+                let touching =
+                    |v: &&[f64; 2]| dot(f.normal, **v) >= f.bound - 1e-9 * f.bound.abs().max(dot(**v, **v).sqrt());
                 let corners = polygon.vertices.iter().filter(touching).count();
-                let along = polygon
-                    .rays
-                    .iter()
-                    .filter(|r| dot(f.normal, **r).abs() < 1e-12)
-                    .count();
+                let along = polygon.rays.iter().filter(|r| dot(f.normal, **r).abs() < 1e-12).count();
                 corners + along >= 2
             })
             .collect();
@@ -223,10 +195,7 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
             }
         }
     }
-    let block = greatest.is_finite().then(|| StressBlock {
-        tension,
-        total: (greatest - least) * area,
-    });
+    let block = greatest.is_finite().then(|| StressBlock { tension, total: (greatest - least) * area });
     Ok(JointStrength { rows, block })
 }
 
@@ -259,15 +228,11 @@ mod tests {
     #[test]
     fn the_stress_block_is_the_parabola_of_the_design() {
         let (f_t, f_c, h, area) = (0.3, 10.0, 0.6, 1.2);
-        let block = integrate(&mohr_coulomb(f_t, f_c, 4.0, 0.5), area)
-            .unwrap()
-            .block
-            .unwrap();
+        let block = integrate(&mohr_coulomb(f_t, f_c, 4.0, 0.5), area).unwrap().block.unwrap();
         for n in [0.0, 1.0, 5.0, 11.0] {
             let limit = (n + f_t * area) * (f_c * area - n) * h / (2.0 * area * (f_c + f_t));
             let (n_0, n_1) = (n / 2.0 - limit / h, n / 2.0 + limit / h);
-            let slack =
-                |end: f64| block.total * (2.0 * end + block.tension) - (n + block.tension).powi(2);
+            let slack = |end: f64| block.total * (2.0 * end + block.tension) - (n + block.tension).powi(2);
             assert!(slack(n_0).abs() < 1e-9 && slack(n_1) > -1e-9);
         }
     }
@@ -275,16 +240,9 @@ mod tests {
     #[test]
     fn frictionless_and_stuck_joints_are_recognised() {
         let [left, right] = Facet::friction(0.0, 0.0, 0.0);
-        assert_eq!(
-            integrate(&[Facet::opening(0.0), left, right], 1.0)
-                .unwrap()
-                .tangential(),
-            Tangential::Free
-        );
-        assert_eq!(
-            integrate(&[Facet::opening(0.0)], 1.0).unwrap().tangential(),
-            Tangential::Stuck
-        );
+        assert_eq!(integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap().tangential(), Tangential::Free);
+        let stuck = integrate(&[Facet::opening(0.0)], 1.0).unwrap();
+        assert_eq!((stuck.tangential(), stuck.block, stuck.rows.len()), (Tangential::Stuck, None, 2));
     }
 
     #[test]

@@ -30,20 +30,9 @@ const INCH: f64 = 0.0254; // exact
 /// Standard gravity [m/s²], used for specific weights only where a study has no gravity.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-const LENGTHS: &[(&str, f64)] = &[
-    ("m", 1.0),
-    ("mm", 1e-3),
-    ("cm", 1e-2),
-    ("ft", FOOT),
-    ("in", INCH),
-];
-const FORCES: &[(&str, f64)] = &[
-    ("N", 1.0),
-    ("kN", 1e3),
-    ("MN", 1e6),
-    ("lbf", POUND_FORCE),
-    ("kip", 1e3 * POUND_FORCE),
-];
+const LENGTHS: &[(&str, f64)] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("ft", FOOT), ("in", INCH)];
+const FORCES: &[(&str, f64)] =
+    &[("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("lbf", POUND_FORCE), ("kip", 1e3 * POUND_FORCE)];
 const STRESSES: &[(&str, f64)] = &[
     ("Pa", 1.0),
     ("kPa", 1e3),
@@ -54,23 +43,10 @@ const STRESSES: &[(&str, f64)] = &[
     ("psi", POUND_FORCE / (INCH * INCH)),
     ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)),
 ];
-const STIFFNESSES: &[(&str, f64)] = &[
-    ("Pa/m", 1.0),
-    ("kPa/m", 1e3),
-    ("MPa/m", 1e6),
-    ("GPa/m", 1e9),
-    ("N/mm3", 1e9),
-];
-const DENSITIES: &[(&str, f64)] = &[
-    ("kg/m3", 1.0),
-    ("t/m3", 1e3),
-    ("lb/ft3", 0.453_592_37 / (FOOT * FOOT * FOOT)),
-];
-const SPECIFIC_WEIGHTS: &[(&str, f64)] = &[
-    ("N/m3", 1.0),
-    ("kN/m3", 1e3),
-    ("lbf/ft3", POUND_FORCE / (FOOT * FOOT * FOOT)),
-];
+const STIFFNESSES: &[(&str, f64)] = &[("Pa/m", 1.0), ("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9), ("N/mm3", 1e9)];
+const DENSITIES: &[(&str, f64)] = &[("kg/m3", 1.0), ("t/m3", 1e3), ("lb/ft3", 0.453_592_37 / (FOOT * FOOT * FOOT))];
+const SPECIFIC_WEIGHTS: &[(&str, f64)] =
+    &[("N/m3", 1.0), ("kN/m3", 1e3), ("lbf/ft3", POUND_FORCE / (FOOT * FOOT * FOOT))];
 const ACCELERATIONS: &[(&str, f64)] = &[("m/s2", 1.0), ("g", STANDARD_GRAVITY), ("ft/s2", FOOT)];
 
 impl Quantity {
@@ -101,9 +77,7 @@ impl Quantity {
             Quantity::Stress => STRESSES.to_vec(),
             Quantity::Stiffness => STIFFNESSES.to_vec(),
             Quantity::Density => {
-                let weights = SPECIFIC_WEIGHTS
-                    .iter()
-                    .map(|&(name, factor)| (name, factor / gravity));
+                let weights = SPECIFIC_WEIGHTS.iter().map(|&(name, factor)| (name, factor / gravity));
                 DENSITIES.iter().copied().chain(weights).collect()
             }
             Quantity::Acceleration => ACCELERATIONS.to_vec(),
@@ -117,15 +91,12 @@ impl Quantity {
             .char_indices()
             .find(|&(i, c)| {
                 let exponent = (c == 'e' || c == 'E')
-                    && text[i + 1..]
-                        .starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
+                    && text[i + 1..].starts_with(|d: char| d.is_ascii_digit() || d == '-' || d == '+');
                 !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | '_') || exponent)
             })
             .map_or(text.len(), |(i, _)| i);
         let (number, unit) = (text[..split].replace('_', ""), text[split..].trim());
-        let number: f64 = number
-            .parse()
-            .map_err(|_| format!("\"{text}\" does not start with a number"))?;
+        let number: f64 = number.parse().map_err(|_| format!("\"{text}\" does not start with a number"))?;
         if unit.is_empty() {
             return Ok(number);
         }
@@ -133,16 +104,11 @@ impl Quantity {
         let table = self.table(gravity);
         match table.iter().find(|(name, _)| *name == unit) {
             // Dividing by an inverse power of ten is exact to rounding; multiplying by 1e-3 is not.
-            Some(&(_, factor)) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => {
-                Ok(number / (1.0 / factor))
-            }
+            Some(&(_, factor)) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
             Some(&(_, factor)) => Ok(number * factor),
             None => {
                 let names: Vec<_> = table.iter().map(|(name, _)| *name).collect();
-                Err(format!(
-                    "unit \"{unit}\" does not fit; units here: {}",
-                    names.join(", ")
-                ))
+                Err(format!("unit \"{unit}\" does not fit; units here: {}", names.join(", ")))
             }
         }
     }
@@ -168,10 +134,7 @@ mod tests {
     #[test]
     fn a_wrong_unit_is_named_with_those_that_fit() {
         let error = Quantity::Length.parse("3 kN", 9.81).unwrap_err();
-        assert_eq!(
-            error,
-            "unit \"kN\" does not fit; units here: m, mm, cm, ft, in"
-        );
+        assert_eq!(error, "unit \"kN\" does not fit; units here: m, mm, cm, ft, in");
         assert!(Quantity::Force.parse("kN", 9.81).is_err());
     }
 }

@@ -37,13 +37,8 @@ impl InterfaceLaw for Coulomb {
     }
 }
 
-const PARAMETERS: &[Parameter] = &[
-    FRICTION,
-    FRICTION_ANGLE,
-    DILATANCY_ANGLE.default("0.0"),
-    NORMAL_STIFFNESS,
-    SHEAR_STIFFNESS,
-];
+const PARAMETERS: &[Parameter] =
+    &[FRICTION, FRICTION_ANGLE, DILATANCY_ANGLE.default("0.0"), NORMAL_STIFFNESS, SHEAR_STIFFNESS];
 
 voussoir_core::inventory::submit! {
     Card {

@@ -30,10 +30,7 @@ impl BulkMaterial for Elastic {
     }
 
     fn deformability(&self) -> Deformability {
-        Deformability::LinearElastic {
-            young_modulus: self.young_modulus,
-            poisson_ratio: self.poisson_ratio,
-        }
+        Deformability::LinearElastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
     }
 }
 

@@ -36,9 +36,7 @@ pub struct MohrCoulomb {
 impl InterfaceLaw for MohrCoulomb {
     fn formulation(&self) -> Formulation {
         let mu = friction(self.friction, self.friction_angle);
-        let dilatancy = self
-            .dilatancy_angle
-            .map_or(mu, |angle| tangent(angle).min(mu));
+        let dilatancy = self.dilatancy_angle.map_or(mu, |angle| tangent(angle).min(mu));
         let [left, right] = Facet::friction(mu, self.cohesion, dilatancy);
         let mut facets = vec![Facet::opening(self.tensile_strength), left, right];
         facets.extend(self.compressive_strength.map(Facet::crushing));

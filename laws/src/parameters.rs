@@ -54,12 +54,7 @@ pub fn tangent(degrees: f64) -> f64 {
 
 /// [k_n, k_t] where either is given; a stiff direction is ∞.
 pub fn stiffness(normal: Option<f64>, shear: Option<f64>) -> Option<[f64; 2]> {
-    (normal.is_some() || shear.is_some()).then(|| {
-        [
-            normal.unwrap_or(f64::INFINITY),
-            shear.unwrap_or(f64::INFINITY),
-        ]
-    })
+    (normal.is_some() || shear.is_some()).then(|| [normal.unwrap_or(f64::INFINITY), shear.unwrap_or(f64::INFINITY)])
 }
 
 /// Exactly one of `friction` and `friction_angle`, and dilatancy at most friction.
@@ -72,10 +67,7 @@ pub fn validate_friction(
     match (coefficient, angle) {
         (None, None) => wrong.push((String::new(), "needs friction or friction_angle".into())),
         (Some(_), Some(_)) => {
-            wrong.push((
-                "friction_angle".into(),
-                "given besides friction; give one of the two".into(),
-            ));
+            wrong.push(("friction_angle".into(), "given besides friction; give one of the two".into()));
         }
         _ => {}
     }

@@ -3,12 +3,12 @@
 use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
 use std::sync::Arc;
 use voussoir_core::assembly::{Assembly, Stage, StageLoads, Target, stage_loads};
-use voussoir_core::certificate::{Certificate, Claim, ContactForce, certify};
+use voussoir_core::certificate::{Certificate, Claim, ContactForce, certify, largest_jump};
 use voussoir_core::geometry::{Vec2, turned};
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
 };
-use voussoir_core::mechanism::{CentroidVelocity, mechanism};
+use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
 
 /// A choice of solver for the problems of a case.
 #[derive(Debug, Clone)]
@@ -43,14 +43,8 @@ fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
     match stage.target {
         Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Stand(0.0),
         Target::Factor(factor) if factor < 0.0 => LimitQuestion::Stand(factor),
-        Target::Factor(factor) => LimitQuestion::Collapse {
-            start: 0.0,
-            max: factor,
-        },
-        Target::Collapse => LimitQuestion::Collapse {
-            start: start_of(stage),
-            max: stage.factor_max,
-        },
+        Target::Factor(factor) => LimitQuestion::Collapse { start: 0.0, max: factor },
+        Target::Collapse => LimitQuestion::Collapse { start: start_of(stage), max: stage.factor_max },
     }
 }
 
@@ -69,9 +63,7 @@ fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
 
 /// Answers a case. `id`, `variant`, `parameters` and `seconds` are left for the caller to fill.
 pub fn answer(question: &Question) -> CaseResult {
-    let Question {
-        assembly, stages, ..
-    } = *question;
+    let Question { assembly, stages, .. } = *question;
     let loads = stage_loads(assembly, stages);
     let mut done: Vec<StageResult> = Vec::new();
     let mut counters = Counters::new();
@@ -86,12 +78,7 @@ pub fn answer(question: &Question) -> CaseResult {
         for (name, count) in std::mem::take(&mut result.counters) {
             *counters.entry(name).or_default() += count;
         }
-        let hinges = result
-            .mechanism
-            .iter()
-            .flat_map(|m| &m.hinges)
-            .map(|hinge| hinge.joint)
-            .collect();
+        let hinges = result.mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
         let stage = |index: usize, status, factor, hinges| StageResult {
             name: stages[index].name.clone(),
             status,
@@ -100,22 +87,12 @@ pub fn answer(question: &Question) -> CaseResult {
         };
         // Stages answered by this one's check of its start.
         for earlier in done.len()..index {
-            let carried =
-                result.status != Status::NoEquilibrium && result.status != Status::Stalled;
+            let carried = result.status != Status::NoEquilibrium && result.status != Status::Stalled;
             let Target::Factor(factor) = stages[earlier].target else {
                 continue;
             };
-            let status = if carried {
-                Status::Stands
-            } else {
-                result.status
-            };
-            done.push(stage(
-                earlier,
-                status,
-                carried.then_some(factor),
-                Vec::new(),
-            ));
+            let status = if carried { Status::Stands } else { result.status };
+            done.push(stage(earlier, status, carried.then_some(factor), Vec::new()));
         }
         let reached = match (result.status, stages[index].target) {
             (Status::Collapse, _) => result.load_factor,
@@ -153,11 +130,7 @@ fn stalled(why: String) -> CaseResult {
         motion: None,
         ray: None,
         thrust_line: None,
-        certificate: Certificate {
-            passed: false,
-            residuals: Default::default(),
-            failures: vec!["not proven".into()],
-        },
+        certificate: Certificate { passed: false, residuals: Default::default(), failures: vec!["not proven".into()] },
         counters: Counters::new(),
         seconds: 0.0,
         stages: Vec::new(),
@@ -187,12 +160,7 @@ pub fn first_solver(choice: &Choice, problem: &LimitProblem) -> String {
     candidates(choice, problem).swap_remove(0).0
 }
 
-fn solve_stage(
-    question: &Question,
-    stage: &Stage,
-    problem: &LimitProblem,
-    loads: &StageLoads,
-) -> CaseResult {
+fn solve_stage(question: &Question, stage: &Stage, problem: &LimitProblem, loads: &StageLoads) -> CaseResult {
     let mut notes = Vec::new();
     let mut best: Option<CaseResult> = None;
     for (tag, solver) in candidates(question.solver, problem) {
@@ -227,10 +195,11 @@ fn solve_stage(
                 .into(),
         );
     }
-    if (0..question.assembly.bodies.len())
-        .any(|b| problem.group_of[b].is_some() && !question.assembly.is_rigid(b))
-    {
-        result.notes.push("blocks are read as rigid: with small displacements the limit load does not depend on their elasticity".into());
+    if (0..question.assembly.bodies.len()).any(|b| problem.group_of[b].is_some() && !question.assembly.is_rigid(b)) {
+        result.notes.push(
+            "blocks are read as rigid: with small displacements the limit load does not depend on their elasticity"
+                .into(),
+        );
     }
     result
 }
@@ -245,18 +214,13 @@ fn proven(
     solved: LimitAnswer,
 ) -> CaseResult {
     let assembly = question.assembly;
-    let field = solved
-        .field
-        .as_ref()
-        .map(|forces| contact_forces(problem, forces));
-    let ray = solved
-        .ray
-        .as_ref()
-        .map(|forces| contact_forces(problem, forces));
-    let motion = solved
-        .motion
-        .as_ref()
-        .map(|motion| body_velocities(assembly, problem, motion));
+    let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
+    let ray = solved.ray.as_ref().map(|forces| contact_forces(problem, forces));
+    let mut motion = solved.motion.as_ref().map(|motion| body_velocities(assembly, problem, motion));
+    if let (Status::NoEquilibrium, None, Some(motion)) = (solved.status, solved.feasible_interval, &mut motion) {
+        let largest = largest_jump(&jumps(assembly, motion));
+        motion.iter_mut().flatten().for_each(|v| *v /= largest);
+    }
     let start = match asked {
         LimitQuestion::Stand(factor) => factor,
         LimitQuestion::Collapse { start, .. } => start,
@@ -282,25 +246,14 @@ fn proven(
         load_factor: solved.factor,
         bounds,
         feasible_interval: solved.feasible_interval.map(|ends| ends.map(finite)),
-        mechanism: motion
-            .as_ref()
-            .and_then(|motion| mechanism(assembly, motion, solved.unique)),
+        mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique)),
         field_factor: field.is_some().then_some(solved.field_factor),
-        thrust_line: field
-            .as_ref()
-            .and_then(|field| thrust_line(assembly, field)),
+        thrust_line: field.as_ref().and_then(|field| thrust_line(assembly, field)),
         field: field.as_deref().map(field_entries),
         ray: ray.as_deref().map(field_entries),
         motion: motion.map(|motion| {
             let name = |body: usize| assembly.bodies[body].name.clone();
-            motion
-                .into_iter()
-                .enumerate()
-                .map(|(body, velocity)| MotionEntry {
-                    body: name(body),
-                    velocity,
-                })
-                .collect()
+            motion.into_iter().enumerate().map(|(body, velocity)| MotionEntry { body: name(body), velocity }).collect()
         }),
         certificate,
         counters: solved.counters,
@@ -309,21 +262,11 @@ fn proven(
 }
 
 fn stalled_without(notes: Vec<String>) -> CaseResult {
-    CaseResult {
-        notes,
-        ..stalled(String::new())
-    }
+    CaseResult { notes, ..stalled(String::new()) }
 }
 
 fn field_entries(forces: &[ContactForce]) -> Vec<FieldEntry> {
-    forces
-        .iter()
-        .map(|c| FieldEntry {
-            joint: c.joint,
-            point: c.point.into(),
-            force: c.force,
-        })
-        .collect()
+    forces.iter().map(|c| FieldEntry { joint: c.joint, point: c.point.into(), force: c.force }).collect()
 }
 
 /// Forces at the two ends of every joint; shear goes with the normal forces, so that each end's
@@ -333,36 +276,23 @@ fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactF
     for (joint, force) in problem.joints.iter().zip(forces) {
         let sum = force.normal[0] + force.normal[1];
         let share = |end: usize| {
-            if force.normal[0] >= 0.0 && force.normal[1] >= 0.0 && sum > 0.0 {
-                force.normal[end] / sum
-            } else {
-                0.5
-            }
+            if force.normal[0] >= 0.0 && force.normal[1] >= 0.0 && sum > 0.0 { force.normal[end] / sum } else { 0.5 }
         };
         let shears = [force.shear * share(0), force.shear - force.shear * share(0)];
         for end in 0..2 {
             let force = [force.normal[end], shears[end]];
-            contacts.push(ContactForce {
-                joint: joint.joint,
-                point: joint.ends[end],
-                force,
-            });
+            contacts.push(ContactForce { joint: joint.joint, point: joint.ends[end], force });
         }
     }
     contacts
 }
 
-fn body_velocities(
-    assembly: &Assembly,
-    problem: &LimitProblem,
-    motion: &[Velocity],
-) -> Vec<CentroidVelocity> {
+fn body_velocities(assembly: &Assembly, problem: &LimitProblem, motion: &[Velocity]) -> Vec<CentroidVelocity> {
     let velocity = |body: usize| match problem.group_of[body] {
         None => [0.0; 3],
         Some(group) => {
             let [x, y, omega] = motion[group];
-            let v =
-                Vec2::new(x, y) + turned(assembly.inertia(body).centroid - problem.pole) * omega;
+            let v = Vec2::new(x, y) + turned(assembly.inertia(body).centroid - problem.pole) * omega;
             [v.x, v.y, omega]
         }
     };
@@ -378,9 +308,5 @@ pub fn thrust_line(assembly: &Assembly, field: &[ContactForce]) -> Option<Vec<Op
         sums[contact.joint].0 += contact.force[0];
         sums[contact.joint].1 += contact.point * contact.force[0];
     }
-    Some(
-        sums.into_iter()
-            .map(|(n, moment)| (n > 1e-12 * largest).then(|| (moment / n).into()))
-            .collect(),
-    )
+    Some(sums.into_iter().map(|(n, moment)| (n > 1e-12 * largest).then(|| (moment / n).into())).collect())
 }

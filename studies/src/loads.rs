@@ -90,18 +90,9 @@ pub type Placed = (Vec<PointForce>, Vec<Vec2>);
 
 /// The forces and accelerations of a load. `path` is the key of the load in the study.
 pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec<Issue>> {
-    let place = Place {
-        assembly,
-        path,
-        held: assembly.rigid_groups().0,
-    };
+    let place = Place { assembly, path, held: assembly.rigid_groups().0 };
     match load {
-        Load::Point {
-            span_fraction,
-            block,
-            point,
-            force,
-        } => {
+        Load::Point { span_fraction, block, point, force } => {
             place.finite(&[("force", force)])?;
             let force = Vec2::from(*force);
             let forces = match (span_fraction, block, point) {
@@ -115,10 +106,7 @@ pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec
                 }
                 (Some(_), _, _) => {
                     let key = if block.is_some() { "block" } else { "point" };
-                    return place.fail(
-                        key,
-                        "given besides span_fraction; give span_fraction, or block and point",
-                    );
+                    return place.fail(key, "given besides span_fraction; give span_fraction, or block and point");
                 }
                 (None, Some(_), None) => {
                     return place.fail("point", "is missing: where on the block the force acts");
@@ -133,11 +121,7 @@ pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec
             Ok((forces, Vec::new()))
         }
         Load::Strip { from, to, pressure } => Ok((place.strip(*from, *to, *pressure)?, Vec::new())),
-        Load::Axles {
-            at,
-            positions,
-            forces,
-        } => {
+        Load::Axles { at, positions, forces } => {
             place.finite(&[("positions", positions), ("forces", forces)])?;
             if positions.len() != forces.len() {
                 let message = format!("{} forces for {} positions", forces.len(), positions.len());
@@ -149,20 +133,12 @@ pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec
             let start = place.x_at(*at, "at")?;
             let (mut placed, mut issues) = (Vec::new(), Vec::new());
             for (i, (position, force)) in positions.iter().zip(forces).enumerate() {
-                match place.on_extrados(
-                    start + position,
-                    Vec2::new(0.0, -force),
-                    &format!("positions.{i}"),
-                ) {
+                match place.on_extrados(start + position, Vec2::new(0.0, -force), &format!("positions.{i}")) {
                     Ok(mut forces) => placed.append(&mut forces),
                     Err(mut wrong) => issues.append(&mut wrong),
                 }
             }
-            if issues.is_empty() {
-                Ok((placed, Vec::new()))
-            } else {
-                Err(issues)
-            }
+            if issues.is_empty() { Ok((placed, Vec::new())) } else { Err(issues) }
         }
         Load::Pressure { block, edge, value } => {
             place.finite(&[("value", &[*value])])?;
@@ -219,11 +195,7 @@ impl Chord {
 
 impl Place<'_> {
     fn key(&self, key: &str) -> String {
-        if key.is_empty() {
-            self.path.to_string()
-        } else {
-            format!("{}.{key}", self.path)
-        }
+        if key.is_empty() { self.path.to_string() } else { format!("{}.{key}", self.path) }
     }
 
     fn fail<T>(&self, key: &str, message: impl Into<String>) -> Result<T, Vec<Issue>> {
@@ -257,10 +229,7 @@ impl Place<'_> {
     fn chords(&self, arch: &ArchLayout) -> Vec<Chord> {
         let chord = |k: usize| Chord {
             body: arch.first + k,
-            ends: [
-                self.assembly.joints[k].ends[1],
-                self.assembly.joints[k + 1].ends[1],
-            ],
+            ends: [self.assembly.joints[k].ends[1], self.assembly.joints[k + 1].ends[1]],
         };
         (0..arch.voussoirs).map(chord).collect()
     }
@@ -269,15 +238,10 @@ impl Place<'_> {
     fn movable(&self, body: usize, key: &str) -> Result<usize, Vec<Issue>> {
         let name = &self.assembly.bodies[body].name;
         if self.assembly.bodies[body].fixed {
-            return self.fail(
-                key,
-                format!("block \"{name}\" is fixed: a load on it does nothing"),
-            );
+            return self.fail(key, format!("block \"{name}\" is fixed: a load on it does nothing"));
         }
         if self.held[body].is_none() && self.assembly.is_rigid(body) {
-            let message = format!(
-                "block \"{name}\" is rigid and bonded to the ground: a load on it does nothing"
-            );
+            let message = format!("block \"{name}\" is rigid and bonded to the ground: a load on it does nothing");
             return self.fail(key, message);
         }
         Ok(body)
@@ -286,61 +250,33 @@ impl Place<'_> {
     fn block(&self, block: &BlockName) -> Result<usize, Vec<Issue>> {
         let name = block.text();
         let body = self.assembly.body(&name).ok_or_else(|| {
-            let names = self
-                .assembly
-                .bodies
-                .iter()
-                .filter(|body| !body.fixed)
-                .map(|body| body.name.as_str());
+            let names = self.assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.name.as_str());
             vec![unknown(&self.key("block"), "block", &name, names)]
         })?;
         self.movable(body, "block")
     }
 
-    fn on_block(
-        &self,
-        block: &BlockName,
-        point: Vec2,
-        force: Vec2,
-    ) -> Result<PointForce, Vec<Issue>> {
+    fn on_block(&self, block: &BlockName, point: Vec2, force: Vec2) -> Result<PointForce, Vec<Issue>> {
         let body = self.block(block)?;
         let tolerance = CONTACT_TOLERANCE * self.assembly.size();
         if !contains(&self.assembly.bodies[body].vertices, point, tolerance) {
-            let message = format!(
-                "({}, {}) lies outside block \"{}\"",
-                point.x,
-                point.y,
-                block.text()
-            );
+            let message = format!("({}, {}) lies outside block \"{}\"", point.x, point.y, block.text());
             return self.fail("point", message);
         }
         Ok(PointForce { body, point, force })
     }
 
-    fn on_edge(
-        &self,
-        block: &BlockName,
-        edge: usize,
-        value: f64,
-    ) -> Result<PointForce, Vec<Issue>> {
+    fn on_edge(&self, block: &BlockName, edge: usize, value: f64) -> Result<PointForce, Vec<Issue>> {
         let body = self.block(block)?;
         let vertices = &self.assembly.bodies[body].vertices;
         if edge >= vertices.len() {
-            let message = format!(
-                "block \"{}\" has edges 0 to {}, not {edge}",
-                block.text(),
-                vertices.len() - 1
-            );
+            let message = format!("block \"{}\" has edges 0 to {}, not {edge}", block.text(), vertices.len() - 1);
             return self.fail("edge", message);
         }
         let (a, b) = (vertices[edge], vertices[(edge + 1) % vertices.len()]);
         // Of an anticlockwise polygon the inside lies to the left of every edge.
         let force = turned(b - a) * (value * self.assembly.width);
-        Ok(PointForce {
-            body,
-            point: (a + b) / 2.0,
-            force,
-        })
+        Ok(PointForce { body, point: (a + b) / 2.0, force })
     }
 
     fn on_extrados(&self, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Issue>> {
@@ -353,45 +289,21 @@ impl Place<'_> {
             .filter(|(_, chord)| chord.left() - tolerance <= x && x <= chord.right() + tolerance)
             .map(|(k, chord)| (k, chord.body, chord.at(x)))
             .collect();
-        let Some(top) = here
-            .iter()
-            .map(|(_, _, point)| point.y)
-            .max_by(f64::total_cmp)
-        else {
+        let Some(top) = here.iter().map(|(_, _, point)| point.y).max_by(f64::total_cmp) else {
             let (left, right) = extent(&chords);
-            let message =
-                format!("x = {x} m hits no block: the extrados reaches from {left} to {right} m");
+            let message = format!("x = {x} m hits no block: the extrados reaches from {left} to {right} m");
             return self.fail(key, message);
         };
         let from_middle = |k: usize| (2 * k + 1).abs_diff(arch.voussoirs);
         // Chords that meet at x have their common vertex there, to within the tolerance and its slope.
-        let near = |point: &Vec2| {
-            here.iter()
-                .any(|(_, _, p)| p.y == top && (point - p).norm() <= 4.0 * tolerance)
-        };
-        let upper: Vec<_> = here
-            .iter()
-            .filter(|(_, _, point)| point.y == top || near(point))
-            .collect();
-        let nearest = upper
-            .iter()
-            .map(|&&(k, _, _)| from_middle(k))
-            .min()
-            .unwrap_or(0);
-        let chosen: Vec<_> = upper
-            .into_iter()
-            .filter(|&&(k, _, _)| from_middle(k) == nearest)
-            .collect();
+        let near = |point: &Vec2| here.iter().any(|(_, _, p)| p.y == top && (point - p).norm() <= 4.0 * tolerance);
+        let upper: Vec<_> = here.iter().filter(|(_, _, point)| point.y == top || near(point)).collect();
+        let nearest = upper.iter().map(|&&(k, _, _)| from_middle(k)).min().unwrap_or(0);
+        let chosen: Vec<_> = upper.into_iter().filter(|&&(k, _, _)| from_middle(k) == nearest).collect();
         let share = force / chosen.len() as f64;
         chosen
             .into_iter()
-            .map(|&(_, body, point)| {
-                Ok(PointForce {
-                    body: self.movable(body, key)?,
-                    point,
-                    force: share,
-                })
-            })
+            .map(|&(_, body, point)| Ok(PointForce { body: self.movable(body, key)?, point, force: share }))
             .collect()
     }
 
@@ -406,24 +318,14 @@ impl Place<'_> {
         let (left, right) = extent(&chords);
         for (key, x) in [("from", start), ("to", end)] {
             if x < left - tolerance || x > right + tolerance {
-                let message = format!(
-                    "x = {x} m lies beyond the extrados, which reaches from {left} to {right} m"
-                );
+                let message = format!("x = {x} m lies beyond the extrados, which reaches from {left} to {right} m");
                 return self.fail(key, message);
             }
         }
-        let mut cuts: Vec<f64> = chords
-            .iter()
-            .flat_map(|chord| chord.ends.map(|p| p.x))
-            .collect();
+        let mut cuts: Vec<f64> = chords.iter().flat_map(|chord| chord.ends.map(|p| p.x)).collect();
         // An end that is a vertex but for rounding is that vertex: no sliver on the next voussoir.
         let rounding = ROUNDING * self.assembly.size();
-        let vertex = |x: f64| {
-            cuts.iter()
-                .copied()
-                .find(|cut| (cut - x).abs() <= rounding)
-                .unwrap_or(x)
-        };
+        let vertex = |x: f64| cuts.iter().copied().find(|cut| (cut - x).abs() <= rounding).unwrap_or(x);
         let (start, end) = (vertex(start), vertex(end));
         cuts.extend([start, end]);
         cuts.retain(|&x| start <= x && x <= end);
@@ -433,16 +335,12 @@ impl Place<'_> {
         let mut parts: Vec<(Chord, f64, f64)> = Vec::new();
         for pair in cuts.windows(2).filter(|pair| pair[0] < pair[1]) {
             let middle = (pair[0] + pair[1]) / 2.0;
-            let above = chords
-                .iter()
-                .filter(|chord| chord.left() <= middle && middle <= chord.right());
+            let above = chords.iter().filter(|chord| chord.left() <= middle && middle <= chord.right());
             let Some(&top) = above.max_by(|a, b| a.at(middle).y.total_cmp(&b.at(middle).y)) else {
                 continue;
             };
             match parts.last_mut() {
-                Some((chord, _, high)) if chord.body == top.body && *high == pair[0] => {
-                    *high = pair[1]
-                }
+                Some((chord, _, high)) if chord.body == top.body && *high == pair[0] => *high = pair[1],
                 _ => parts.push((top, pair[0], pair[1])),
             }
         }
@@ -451,11 +349,7 @@ impl Place<'_> {
         for (chord, low, high) in parts {
             let body = self.movable(chord.body, "")?;
             let force = Vec2::new(0.0, -pressure * width * (high - low));
-            forces.push(PointForce {
-                body,
-                point: chord.at((low + high) / 2.0),
-                force,
-            });
+            forces.push(PointForce { body, point: chord.at((low + high) / 2.0), force });
         }
         Ok(forces)
     }
@@ -463,27 +357,13 @@ impl Place<'_> {
 
 /// Least and greatest x of the extrados.
 fn extent(chords: &[Chord]) -> (f64, f64) {
-    let left = chords
-        .iter()
-        .fold(f64::INFINITY, |x, chord| x.min(chord.left()));
-    (
-        left,
-        chords
-            .iter()
-            .fold(f64::NEG_INFINITY, |x, chord| x.max(chord.right())),
-    )
+    let left = chords.iter().fold(f64::INFINITY, |x, chord| x.min(chord.left()));
+    (left, chords.iter().fold(f64::NEG_INFINITY, |x, chord| x.max(chord.right())))
 }
 
 const FRACTION: Range = Range::ANY;
-const VECTOR_N: Shape = Shape::List {
-    of: &Shape::Number(Quantity::Force, Range::ANY),
-    min: 2,
-    max: 2,
-};
-const NUMBER: Shape = Shape::Integer {
-    min: 0,
-    max: i64::MAX,
-};
+const VECTOR_N: Shape = Shape::List { of: &Shape::Number(Quantity::Force, Range::ANY), min: 2, max: 2 };
+const NUMBER: Shape = Shape::Integer { min: 0, max: i64::MAX };
 const BLOCK: Parameter = Parameter {
     name: "block",
     doc: "name of the block, on arches the number of the voussoir from the left",
@@ -492,16 +372,7 @@ const BLOCK: Parameter = Parameter {
 };
 
 const fn many(name: &'static str, of: &'static Shape, doc: &'static str) -> Parameter {
-    Parameter {
-        name,
-        doc,
-        shape: Shape::List {
-            of,
-            min: 1,
-            max: usize::MAX,
-        },
-        need: Need::Required,
-    }
+    Parameter { name, doc, shape: Shape::List { of, min: 1, max: usize::MAX }, need: Need::Required }
 }
 
 /// What a load may hold.
@@ -526,58 +397,25 @@ pub const LOAD: Shape = Shape::Tagged {
                     shape: POINT,
                     need: Need::Optional("span_fraction is given"),
                 },
-                Parameter {
-                    name: "force",
-                    doc: "x to the right, y upwards",
-                    shape: VECTOR_N,
-                    need: Need::Required,
-                },
+                Parameter { name: "force", doc: "x to the right, y upwards", shape: VECTOR_N, need: Need::Required },
             ],
         },
         Variant {
             tag: "strip",
             doc: "vertical pressure on the extrados of an arch, over the full width",
             parameters: &[
-                Parameter::number(
-                    "from",
-                    Quantity::Ratio,
-                    FRACTION,
-                    "span fraction of the left end",
-                ),
-                Parameter::number(
-                    "to",
-                    Quantity::Ratio,
-                    FRACTION,
-                    "span fraction of the right end",
-                ),
-                Parameter::number(
-                    "pressure",
-                    Quantity::Stress,
-                    Range::ANY,
-                    "on the plan area, downwards",
-                ),
+                Parameter::number("from", Quantity::Ratio, FRACTION, "span fraction of the left end"),
+                Parameter::number("to", Quantity::Ratio, FRACTION, "span fraction of the right end"),
+                Parameter::number("pressure", Quantity::Stress, Range::ANY, "on the plan area, downwards"),
             ],
         },
         Variant {
             tag: "axles",
             doc: "wheels or axles on the extrados of an arch",
             parameters: &[
-                Parameter::number(
-                    "at",
-                    Quantity::Ratio,
-                    FRACTION,
-                    "span fraction of the origin of the positions",
-                ),
-                many(
-                    "positions",
-                    &Shape::Number(Quantity::Length, Range::ANY),
-                    "horizontal distances from there",
-                ),
-                many(
-                    "forces",
-                    &Shape::Number(Quantity::Force, Range::ANY),
-                    "downwards, one for each position",
-                ),
+                Parameter::number("at", Quantity::Ratio, FRACTION, "span fraction of the origin of the positions"),
+                many("positions", &Shape::Number(Quantity::Length, Range::ANY), "horizontal distances from there"),
+                many("forces", &Shape::Number(Quantity::Force, Range::ANY), "downwards, one for each position"),
             ],
         },
         Variant {
@@ -600,11 +438,7 @@ pub const LOAD: Shape = Shape::Tagged {
             parameters: &[Parameter {
                 name: "acceleration",
                 doc: "x to the right, y upwards",
-                shape: Shape::List {
-                    of: &Shape::Number(Quantity::Acceleration, Range::ANY),
-                    min: 2,
-                    max: 2,
-                },
+                shape: Shape::List { of: &Shape::Number(Quantity::Acceleration, Range::ANY), min: 2, max: 2 },
                 need: Need::Required,
             }],
         },

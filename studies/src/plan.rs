@@ -52,10 +52,16 @@ fn plan_case(case: &Case, text: &mut String) {
             Target::Collapse => {
                 writeln!(text, "  {tag}: stands at factor {}? then the greatest factor", start_of(stage))
             }
-            Target::Factor(factor) => writeln!(text, "  {tag}: stands up to factor {factor}? (left to the next stage where that starts here)"),
+            Target::Factor(factor) => {
+                writeln!(text, "  {tag}: stands up to factor {factor}? (left to the next stage where that starts here)")
+            }
         };
         if tag == "limit_chain" {
-            let _ = writeln!(text, "  chains of bodies: three redundants each and the factor, instead of {} equations", 3 * problem.groups);
+            let _ = writeln!(
+                text,
+                "  chains of bodies: three redundants each and the factor, instead of {} equations",
+                3 * problem.groups
+            );
         }
     }
 }

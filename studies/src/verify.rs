@@ -9,7 +9,7 @@ use crate::study::{Case, Study};
 use voussoir_core::assembly::{Assembly, Bond, Target, stage_loads};
 use voussoir_core::certificate::{Claim, ContactForce, certify};
 use voussoir_core::geometry::{Vec2, distance_to_segment};
-use voussoir_core::interface::{Formulation, is_associated};
+use voussoir_core::interface::is_associated;
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{CentroidVelocity, Mechanism, mechanism};
 
@@ -158,8 +158,8 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     let non_associated = assembly.joints.iter().any(|joint| match joint.bond {
         Bond::Bonded => false,
         Bond::Law(law) => {
-            let Formulation::Facets(facets) = assembly.catalogue.laws[law].1.formulation();
-            !is_associated(&facets)
+            let facets = assembly.catalogue.laws[law].1.formulation().facets();
+            facets.is_some_and(|facets| !is_associated(&facets))
         }
     });
     if result.flow_read_as.as_deref() != non_associated.then_some("associated") {
@@ -182,7 +182,8 @@ fn velocities(assembly: &Assembly, result: &CaseResult) -> Result<Vec<CentroidVe
         .zip(motion)
         .map(|(body, entry)| {
             let fine = body.name == entry.body && entry.velocity.iter().all(|v| v.is_finite());
-            fine.then_some(entry.velocity).ok_or(format!("motion: \"{}\" is not the velocity of \"{}\"", entry.body, body.name))
+            fine.then_some(entry.velocity)
+                .ok_or(format!("motion: \"{}\" is not the velocity of \"{}\"", entry.body, body.name))
         })
         .collect()
 }
@@ -205,13 +206,17 @@ fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {
         wrong.push("hinges are not those of the motion".into());
     }
     let sliding = stored.sliding.len() == recomputed.sliding.len()
-        && stored.sliding.iter().zip(&recomputed.sliding).all(|(a, b)| {
-            (a.joint, &a.between) == (b.joint, &b.between) && close(a.slip, b.slip)
-        });
+        && stored
+            .sliding
+            .iter()
+            .zip(&recomputed.sliding)
+            .all(|(a, b)| (a.joint, &a.between) == (b.joint, &b.between) && close(a.slip, b.slip));
     let crushing = stored.crushing.len() == recomputed.crushing.len()
-        && stored.crushing.iter().zip(&recomputed.crushing).all(|(a, b)| {
-            (a.joint, &a.between) == (b.joint, &b.between) && close(a.share, b.share)
-        });
+        && stored
+            .crushing
+            .iter()
+            .zip(&recomputed.crushing)
+            .all(|(a, b)| (a.joint, &a.between) == (b.joint, &b.between) && close(a.share, b.share));
     if !sliding || !crushing {
         wrong.push("sliding or crushing joints are not those of the motion".into());
     }
@@ -223,7 +228,9 @@ fn same_line(a: &Option<Vec<Option<[f64; 2]>>>, b: &Option<Vec<Option<[f64; 2]>>
         (Some(a), Some(b)) => {
             a.len() == b.len()
                 && a.iter().zip(b).all(|pair| match pair {
-                    (Some(p), Some(q)) => (Vec2::from(*p) - Vec2::from(*q)).norm() <= EQUAL * (1.0 + Vec2::from(*q).norm()),
+                    (Some(p), Some(q)) => {
+                        (Vec2::from(*p) - Vec2::from(*q)).norm() <= EQUAL * (1.0 + Vec2::from(*q).norm())
+                    }
                     (None, None) => true,
                     _ => false,
                 })

@@ -7,16 +7,14 @@ pub mod chain;
 pub mod conic;
 
 use voussoir_core::assembly::Wrenches;
-use voussoir_core::limit::{
-    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity,
-};
+use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity};
 
 /// Whether a fixed load can be carried.
 #[derive(Debug, Clone)]
 pub enum Verdict {
     /// Yes: an admissible field.
     Field(Vec<JointForce>),
-    /// No: a motion on which the load does more work than is dissipated, scaled to an excess of 1.
+    /// No: a motion on which the load does more work than is dissipated, in any scale.
     Motion(Vec<Velocity>),
     /// Not decided.
     Failed(String),
@@ -66,11 +64,7 @@ fn combined(fixed: &Wrenches, varying: &Wrenches, factor: f64) -> Wrenches {
 }
 
 /// Answers a question with an engine: every status with its proof.
-pub fn answer(
-    problem: &LimitProblem,
-    question: LimitQuestion,
-    engine: &mut dyn Engine,
-) -> LimitAnswer {
+pub fn answer(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn Engine) -> LimitAnswer {
     let (start, max) = match question {
         LimitQuestion::Stand(factor) => (factor, factor),
         LimitQuestion::Collapse { start, max } => (start, max),
@@ -117,20 +111,13 @@ fn collapse(
     answer: &mut LimitAnswer,
 ) {
     if problem.magnitude(&problem.varying) == 0.0 {
-        answer
-            .notes
-            .push("every load of this stage acts on what the ground holds".into());
+        answer.notes.push("every load of this stage acts on what the ground holds".into());
         answer.status = Status::Unbounded;
         answer.ray = Some(vec![JointForce::default(); problem.joints.len()]);
         return;
     }
     match engine.greatest(base, &problem.varying, max - start) {
-        Greatest::Collapse {
-            factor,
-            field,
-            motion,
-            unique,
-        } => {
+        Greatest::Collapse { factor, field, motion, unique } => {
             // Rounding of a zero factor is not a factor.
             let unit = problem.magnitude(base).max(f64::MIN_POSITIVE) / problem.magnitude(&problem.varying);
             let factor = if factor.abs() < 1e-15 * unit.max(f64::EPSILON) { 0.0 } else { factor };
@@ -157,13 +144,7 @@ fn collapse(
 }
 
 /// The base load is not carried: is there a factor at which it would be?
-fn refuted(
-    problem: &LimitProblem,
-    engine: &mut dyn Engine,
-    base: &Wrenches,
-    start: f64,
-    answer: &mut LimitAnswer,
-) {
+fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, start: f64, answer: &mut LimitAnswer) {
     if problem.magnitude(&problem.varying) == 0.0 {
         return;
     }
@@ -171,9 +152,7 @@ fn refuted(
         Verdict::Field(_) => {}
         Verdict::Motion(motion) => {
             answer.motion = Some(motion);
-            answer
-                .notes
-                .push("no factor of the last stage's loads makes equilibrium possible".into());
+            answer.notes.push("no factor of the last stage's loads makes equilibrium possible".into());
             return;
         }
         Verdict::Failed(why) => return answer.notes.push(why),
@@ -187,9 +166,7 @@ fn refuted(
         _ => None,
     };
     let (Some(high), Some(low)) = (end(&upper), end(&lower)) else {
-        return answer
-            .notes
-            .push("the interval of factors with equilibrium could not be found".into());
+        return answer.notes.push("the interval of factors with equilibrium could not be found".into());
     };
     let interval = [start - low, start + high];
     answer.feasible_interval = Some(interval);

@@ -1,6 +1,6 @@
 //! `voussoir run`.
 
-use super::{FINE, NOT_PROVEN, WRONG_INPUT, files};
+use super::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -92,11 +92,18 @@ fn finished(dir: &Path, resolved: &str) -> BTreeMap<usize, CaseResult> {
 }
 
 fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
-    let resolved = study.resolved_toml();
+    let resolved = toml::to_string(&study.resolved).map_err(|error| {
+        eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name);
+        NO_ACCESS
+    })?;
     let wanted: Vec<usize> = match options.case {
         Some(id) if id < study.cases.len() => vec![id],
         Some(id) => {
-            eprintln!("--case {id}: the study \"{}\" has cases 0 to {}", study.name, study.cases.len().saturating_sub(1));
+            eprintln!(
+                "--case {id}: the study \"{}\" has cases 0 to {}",
+                study.name,
+                study.cases.len().saturating_sub(1)
+            );
             return Err(WRONG_INPUT);
         }
         None => (0..study.cases.len()).collect(),
@@ -117,7 +124,10 @@ fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
     if options.quiet || rest.len() < 2 {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
-    bar.set_style(ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} {eta}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_style(
+        ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} {eta}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
     bar.set_message(study.name.clone());
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&journal).ok();
     let progress = Progress { bar, journal: Mutex::new(file) };
@@ -139,7 +149,8 @@ fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
 fn write_results(study: &Study, results: &StudyResults, dir: &Path, options: &Options) -> Result<(), u8> {
     let assemblies: Vec<&Assembly> = results.cases.iter().map(|case| &study.cases[case.id].assembly).collect();
     let stages: Vec<&[Stage]> = results.cases.iter().map(|case| study.cases[case.id].stages.as_slice()).collect();
-    let sweep_keys = study.sweep_keys();
+    let sweep_keys: Vec<String> =
+        study.cases.first().map(|case| case.parameters.keys().cloned().collect()).unwrap_or_default();
     let output = StudyOutput {
         name: &study.name,
         results,

@@ -21,8 +21,7 @@ pub fn closed(assembly: &Assembly, mechanism: &Mechanism, mut placements: Vec<Pl
         .iter()
         .filter_map(|hinge| {
             let joint = assembly.joints.get(hinge.joint)?;
-            (link_of[joint.minus] != link_of[joint.plus])
-                .then(|| (joint.minus, joint.plus, Vec2::from(hinge.point)))
+            (link_of[joint.minus] != link_of[joint.plus]).then(|| (joint.minus, joint.plus, Vec2::from(hinge.point)))
         })
         .collect();
     if links == 0 || hinges.is_empty() || 3 * links > GREATEST || 2 * hinges.len() > GREATEST {

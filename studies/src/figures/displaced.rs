@@ -22,11 +22,8 @@ impl Placement {
     /// that blocks keep their size and blocks that move as one stay one.
     pub fn of_velocity(centre: Vec2, [x, y, spin]: [f64; 3], scale: f64) -> Self {
         let angle = spin * scale;
-        let (a, b) = if angle.abs() < 1e-6 {
-            (1.0, angle / 2.0)
-        } else {
-            (angle.sin() / angle, (1.0 - angle.cos()) / angle)
-        };
+        let (a, b) =
+            if angle.abs() < 1e-6 { (1.0, angle / 2.0) } else { (angle.sin() / angle, (1.0 - angle.cos()) / angle) };
         let shift = Vec2::new(a * x - b * y, b * x + a * y) * scale;
         Placement { centre, angle, shift }
     }

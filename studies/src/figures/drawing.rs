@@ -76,8 +76,7 @@ pub(super) fn outline_width(sheet: &Sheet, assembly: &Assembly) -> f64 {
 
 fn blocks(sheet: &mut Sheet, assembly: &Assembly) {
     let width = outline_width(sheet, assembly);
-    let shapes =
-        |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
+    let shapes = |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
     sheet.outlines(shapes(true), "url(#ground)", OUTLINE, 1.0, "");
     sheet.outlines(shapes(false), STONE, OUTLINE, width, "");
     faces(sheet, assembly, OUTLINE, |_, point| point);
@@ -169,8 +168,7 @@ fn strut(sheet: &mut Sheet, assembly: &Assembly, stages: &[Stage], result: &Case
         let points: Vec<_> = ray.iter().map(|r| r.map(|r| r.point)).collect();
         thrust_pieces(assembly, &points, &ray)
     } else {
-        let loads: Vec<_> =
-            stages.last().map_or(Vec::new(), |s| s.forces.iter().map(|f| (f.body, f.point)).collect());
+        let loads: Vec<_> = stages.last().map_or(Vec::new(), |s| s.forces.iter().map(|f| (f.body, f.point)).collect());
         strut_lines(assembly, &ray, &loads).into_iter().map(Vec::from).collect()
     };
     for line in &lines {

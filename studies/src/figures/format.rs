@@ -69,11 +69,7 @@ pub fn format_value(value: &serde_json::Value) -> String {
 
 /// For XML and HTML: `&`, `<`, `>` and quotes as entities.
 pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
-        .replace('\'', "&#39;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
 }
 
 /// A status as it stands in results.json.

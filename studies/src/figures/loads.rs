@@ -105,8 +105,7 @@ impl Loads {
         for arrow in &self.arrows {
             let tail = if arrow.pulls { arrow.direction } else { -arrow.direction } * self.length_of(arrow);
             let near = |axis: usize, side: f64| side * (arrow.point[axis] - middle[axis]) / extent[axis] > 0.2;
-            for (i, axis, side, label) in
-                [(0, 0, -1.0, 80.0), (1, 1, 1.0, 34.0), (2, 0, 1.0, 80.0), (3, 1, -1.0, 34.0)]
+            for (i, axis, side, label) in [(0, 0, -1.0, 80.0), (1, 1, 1.0, 34.0), (2, 0, 1.0, 80.0), (3, 1, -1.0, 34.0)]
             {
                 if side * tail[axis] > 1.0 && near(axis, side) {
                     margins[i] = margins[i].max(side * tail[axis] + label);

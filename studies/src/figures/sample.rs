@@ -46,9 +46,8 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
         Body { name: format!("v{k}"), vertices: vec![a, c, d, b], material: 0, fixed: false }
     }));
     bodies.push(support("right"));
-    let joints = (0..=voussoirs)
-        .map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: 0.0 })
-        .collect();
+    let joints =
+        (0..=voussoirs).map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: 0.0 }).collect();
     let arch = Some(ArchLayout { first: 1, voussoirs, span, rise });
     Assembly { catalogue: catalogue(), bodies, joints, width: 5.81, plane: Plane::Strain, arch }
 }
@@ -57,8 +56,7 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
 pub fn arch_stages(assembly: &Assembly) -> Vec<Stage> {
     let layout = assembly.arch.as_ref().expect("an arch");
     let x = -layout.span / 4.0;
-    let body =
-        (1..=layout.voussoirs).find(|&b| assembly.joints[b].ends[1].x >= x).expect("the load is on the arch");
+    let body = (1..=layout.voussoirs).find(|&b| assembly.joints[b].ends[1].x >= x).expect("the load is on the arch");
     let (a, b) = (assembly.joints[body - 1].ends[1], assembly.joints[body].ends[1]);
     let point = a + (b - a) * ((x - a.x) / (b.x - a.x));
     let force = PointForce { body, point, force: Vec2::new(0.0, -1000.0) };
@@ -120,13 +118,11 @@ pub fn arch_answer(assembly: &Assembly, stages: &[Stage]) -> CaseResult {
         let arm = a - pole;
         let live = if load.body <= last { cross(load.point - pole, load.force) } else { 0.0 };
         matrix.set_row(row, &nalgebra::RowVector3::new(-arm.y, arm.x, live));
-        right[row] =
-            -(1..=last).map(|body| cross(assembly.inertia(body).centroid - pole, weight(body))).sum::<f64>();
+        right[row] = -(1..=last).map(|body| cross(assembly.inertia(body).centroid - pole, weight(body))).sum::<f64>();
     }
     let solution = matrix.lu().solve(&right).expect("four hinges make a mechanism");
     let factor = solution[2];
-    let (mut force, mut moment) =
-        (Vec2::new(solution[0], solution[1]), cross(a, Vec2::new(solution[0], solution[1])));
+    let (mut force, mut moment) = (Vec2::new(solution[0], solution[1]), cross(a, Vec2::new(solution[0], solution[1])));
     let (mut field, mut line) = (Vec::new(), Vec::new());
     for (k, joint) in assembly.joints.iter().enumerate() {
         if k > 0 {
@@ -216,12 +212,8 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
     let shape = |x0: f64, x1: f64, y0: f64, y1: f64| {
         vec![Vec2::new(x0, y0), Vec2::new(x1, y0), Vec2::new(x1, y1), Vec2::new(x0, y1)]
     };
-    let mut bodies = vec![Body {
-        name: "ground".into(),
-        vertices: shape(-0.4, total + 0.4, -0.2, 0.0),
-        material: 0,
-        fixed: true,
-    }];
+    let mut bodies =
+        vec![Body { name: "ground".into(), vertices: shape(-0.4, total + 0.4, -0.2, 0.0), material: 0, fixed: true }];
     let mut rows: Vec<Vec<(usize, f64, f64)>> = vec![vec![(0, -0.4, total + 0.4)]];
     let mut joints = Vec::new();
     for course in 0..courses {
@@ -268,14 +260,12 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
     }
     let top = height * courses as f64;
     let pushed = rows[courses][0].0;
-    let force =
-        PointForce { body: pushed, point: Vec2::new(0.0, top - height / 2.0), force: Vec2::new(1000.0, 0.0) };
+    let force = PointForce { body: pushed, point: Vec2::new(0.0, top - height / 2.0), force: Vec2::new(1000.0, 0.0) };
     let stages = vec![
         stage("dead", Some(Vec2::new(0.0, -9.81)), vec![], Target::Factor(1.0)),
         stage("push", None, vec![force], Target::Collapse),
     ];
-    let assembly =
-        Assembly { catalogue: catalogue(), bodies, joints, width: 0.2, plane: Plane::Strain, arch: None };
+    let assembly = Assembly { catalogue: catalogue(), bodies, joints, width: 0.2, plane: Plane::Strain, arch: None };
     let field = assembly.joints.iter().enumerate().flat_map(|(k, joint)| {
         let bed = joint.frame().0.y > 0.5;
         let depth = top - joint.middle().y;
@@ -295,23 +285,15 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         let v = turned(assembly.inertia(body).centroid - pole) * -1e-3;
         MotionEntry { body: assembly.bodies[body].name.clone(), velocity: [v.x, v.y, -1e-3] }
     });
-    let between =
-        |joint: &Joint| [assembly.bodies[joint.minus].name.clone(), assembly.bodies[joint.plus].name.clone()];
-    let corner =
-        assembly.joints.iter().enumerate().find(|(_, j)| (j.ends[0] - pole).norm() < 1e-9 && moving(j.plus));
+    let between = |joint: &Joint| [assembly.bodies[joint.minus].name.clone(), assembly.bodies[joint.plus].name.clone()];
+    let corner = assembly.joints.iter().enumerate().find(|(_, j)| (j.ends[0] - pole).norm() < 1e-9 && moving(j.plus));
     let slide = assembly.joints.iter().enumerate().find(|(_, j)| !moving(j.minus) && moving(j.plus));
     let mechanism = Mechanism {
         kind: MechanismKind::Mixed,
         hinge_count: 1,
         unique: Some(false),
         hinges: corner
-            .map(|(k, j)| Hinge {
-                joint: k,
-                between: between(j),
-                side: None,
-                point: [pole.x, pole.y],
-                rotation: -1e-3,
-            })
+            .map(|(k, j)| Hinge { joint: k, between: between(j), side: None, point: [pole.x, pole.y], rotation: -1e-3 })
             .into_iter()
             .collect(),
         sliding: slide.map(|(k, j)| Sliding { joint: k, between: between(j), slip: -1e-3 }).into_iter().collect(),

@@ -112,11 +112,8 @@ impl Sheet {
         if d.is_empty() {
             return;
         }
-        let mut path = Path::new()
-            .set("d", d)
-            .set("fill", fill)
-            .set("stroke", stroke)
-            .set("stroke-width", format!("{width:.2}"));
+        let mut path =
+            Path::new().set("d", d).set("fill", fill).set("stroke", stroke).set("stroke-width", format!("{width:.2}"));
         if !dash.is_empty() {
             path = path.set("stroke-dasharray", dash);
         }
@@ -208,9 +205,8 @@ impl Sheet {
         for ring in 0..6 {
             for turn in [0.0_f64, 0.4, -0.4, 0.8, -0.8, 1.3, -1.3, 2.0, -2.0, 2.7, -2.7] {
                 let (sin, cos) = (towards + turn).sin_cos();
-                let reach = (half[0] * cos.abs() + half[1] * sin.abs()).min(half[0].hypot(half[1]))
-                    + 13.0
-                    + 9.0 * ring as f64;
+                let reach =
+                    (half[0] * cos.abs() + half[1] * sin.abs()).min(half[0].hypot(half[1])) + 13.0 + 9.0 * ring as f64;
                 let middle = [spot[0] + reach * cos, spot[1] + reach * sin];
                 let area = Area::around(middle, [half[0] + 2.0, half[1] + 1.0]);
                 let outside = (half[0] + half[1])

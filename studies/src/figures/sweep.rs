@@ -46,12 +46,7 @@ pub fn study_chart(study: &StudyOutput) -> Option<String> {
 
 /// Load over a swept value, one series per variant. With `unit_load` [N], the load at factor 1,
 /// the axis is the load in kN, otherwise the factor. `None` where no case has a load to show.
-pub fn sweep_chart(
-    study: &str,
-    cases: &[(&CaseResult, f64)],
-    x_label: &str,
-    unit_load: Option<f64>,
-) -> Option<String> {
+pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, unit_load: Option<f64>) -> Option<String> {
     let mut variants: Vec<Option<&str>> = Vec::new();
     for (case, _) in cases {
         if !variants.contains(&case.variant.as_deref()) {
@@ -76,11 +71,8 @@ pub fn sweep_chart(
                 .collect();
             if !ids.is_empty() {
                 let name = super::format::status_word(status).replace('_', " ");
-                let shown = if ids.len() > 12 {
-                    format!("{} cases", ids.len())
-                } else {
-                    format!("case {}", ids.join(", "))
-                };
+                let shown =
+                    if ids.len() > 12 { format!("{} cases", ids.len()) } else { format!("case {}", ids.join(", ")) };
                 notes.push(format!("not shown, {name}: {shown}"));
             }
         }

@@ -85,12 +85,8 @@ fn texts(svg: &str) -> Vec<(String, Area)> {
             let tag = format!(" {tag}");
             let number = |name: &str| attribute(&tag, name).parse::<f64>().expect("a number");
             let words = rest.split('<').next().unwrap_or("").trim().to_string();
-            let area = Area::of_text(
-                [number("x"), number("y")],
-                attribute(&tag, "text-anchor"),
-                number("font-size"),
-                &words,
-            );
+            let area =
+                Area::of_text([number("x"), number("y")], attribute(&tag, "text-anchor"), number("font-size"), &words);
             (words, area)
         })
         .collect()
@@ -142,9 +138,7 @@ fn displaced_blocks_keep_their_size_and_meet_at_hinges() {
         let (placements, _) = displaced::displaced(&scene.assembly, motion).expect("it moves");
         let placements = closure::closed(&scene.assembly, mechanism, placements);
         let size = scene.assembly.size();
-        for (body, placement) in
-            scene.assembly.bodies.iter().zip(&placements).filter(|(b, _)| !b.vertices.is_empty())
-        {
+        for (body, placement) in scene.assembly.bodies.iter().zip(&placements).filter(|(b, _)| !b.vertices.is_empty()) {
             let (a, b) = (body.vertices[0], body.vertices[2]);
             let change = (placement.of(a) - placement.of(b)).norm() - (a - b).norm();
             assert!(change.abs() < 1e-12 * size, "{}: {} grows", scene.name, body.name);
@@ -222,8 +216,7 @@ fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
             let rise = 4.71 - 0.35 * f64::from(step);
             let assembly = arch(9.42, rise, 15);
             let steps = arch_stages(&assembly);
-            let mut case =
-                if rise < 1.5 { arch_unbounded(&assembly, &steps) } else { arch_answer(&assembly, &steps) };
+            let mut case = if rise < 1.5 { arch_unbounded(&assembly, &steps) } else { arch_answer(&assembly, &steps) };
             case.id = cases.len();
             case.variant = Some(variant.into());
             case.parameters.insert("scene.profile.rise".into(), serde_json::json!((rise * 1e6).round() / 1e6));

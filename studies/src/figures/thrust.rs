@@ -47,7 +47,6 @@ fn crossing((p, a): (Vec2, Vec2), (q, b): (Vec2, Vec2)) -> Option<Vec2> {
 /// crosses each joint, `forces` its direction where known.
 pub fn thrust_pieces(assembly: &Assembly, points: &[Option<Vec2>], forces: &[Option<Resultant>]) -> Vec<Vec<Vec2>> {
     let mut pieces: Vec<Vec<Vec2>> = vec![Vec::new()];
-    let size = assembly.size();
     for (k, point) in points.iter().enumerate() {
         let piece = pieces.last_mut().expect("there is always a piece");
         let Some(point) = point else {
@@ -60,7 +59,8 @@ pub fn thrust_pieces(assembly: &Assembly, points: &[Option<Vec2>], forces: &[Opt
             let force = |joint: usize| forces.get(joint).copied().flatten().map(|r| r.force);
             let corner = force(k - 1).zip(force(k)).and_then(|(a, b)| crossing((last, a), (*point, b)));
             let block = &assembly.bodies[joint.minus].vertices;
-            piece.extend(corner.filter(|&c| block.len() > 2 && contains(block, c, 1e-9 * size)));
+            // Only joints keep the line inside the masonry: under a load its corner may lie above.
+            piece.extend(corner.filter(|&c| block.len() > 2 && contains(block, c, joint.height() / 2.0)));
         }
         piece.push(*point);
     }

@@ -10,18 +10,11 @@ fn arch(span: f64, rise: f64, voussoirs: usize, ends: &str, material: &str) -> A
         "scene": "arch", "profile": { "shape": "segmental", "span": span, "rise": rise }, "thickness": 0.6,
         "width": 5.81, "voussoirs": voussoirs, "ends": ends, "material": material, "joint": "dry",
     });
-    serde_json::from_value::<Box<dyn Scene>>(scene)
-        .unwrap()
-        .build(&catalogue())
-        .unwrap()
+    serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue()).unwrap()
 }
 
 fn placed(value: Value, assembly: &Assembly) -> Result<Placed, Vec<Issue>> {
-    place(
-        &serde_json::from_value(value).unwrap(),
-        assembly,
-        "stages.1.loads.0",
-    )
+    place(&serde_json::from_value(value).unwrap(), assembly, "stages.1.loads.0")
 }
 
 fn path(value: Value, assembly: &Assembly) -> String {
@@ -33,9 +26,7 @@ fn the_quarter_span_load_of_strathmashie_lies_on_the_chord_of_its_voussoir() {
     let arch = arch(9.42, 2.99, 15, "bonded", "stone");
     let load = json!({ "kind": "point", "span_fraction": 0.25, "force": [0.0, -1000.0] });
     let (forces, _) = placed(load, &arch).unwrap();
-    let [force] = forces[..] else {
-        panic!("one force")
-    };
+    let [force] = forces[..] else { panic!("one force") };
     assert_eq!(force.point.x, -4.71 + 0.25 * 9.42);
     assert_eq!(force.force, Vec2::new(0.0, -1000.0));
     let vertices = &arch.bodies[force.body].vertices;
@@ -57,10 +48,7 @@ fn mirrored_loads_load_mirrored_voussoirs_on_boundaries_too() {
             assert_eq!(here.len(), if joint.ends[1].x == 0.0 { 2 } else { 1 });
             for (a, b) in here.iter().zip(there.iter().rev()) {
                 assert_eq!(a.body + b.body, voussoirs + 1);
-                assert_eq!(
-                    (a.point.x, a.point.y, a.force.y),
-                    (-b.point.x, b.point.y, b.force.y)
-                );
+                assert_eq!((a.point.x, a.point.y, a.force.y), (-b.point.x, b.point.y, b.force.y));
             }
         }
     }
@@ -68,17 +56,9 @@ fn mirrored_loads_load_mirrored_voussoirs_on_boundaries_too() {
 
 #[test]
 fn the_resultant_of_a_strip_is_pressure_times_length_times_width_at_its_middle() {
-    for (rise, voussoirs, from, to) in [
-        (1.0, 15, 0.1, 0.37),
-        (2.0, 8, 0.0, 1.0),
-        (3.5, 23, 0.02, 0.7),
-    ] {
+    for (rise, voussoirs, from, to) in [(1.0, 15, 0.1, 0.37), (2.0, 8, 0.0, 1.0), (3.5, 23, 0.02, 0.7)] {
         let arch = arch(4.0, rise, voussoirs, "jointed", "stone");
-        let (forces, _) = placed(
-            json!({ "kind": "strip", "from": from, "to": to, "pressure": 3e3 }),
-            &arch,
-        )
-        .unwrap();
+        let (forces, _) = placed(json!({ "kind": "strip", "from": from, "to": to, "pressure": 3e3 }), &arch).unwrap();
         let total: f64 = forces.iter().map(|f| f.force.y).sum();
         let moment: f64 = forces.iter().map(|f| f.force.y * f.point.x).sum();
         let exact = -3e3 * (to - from) * 4.0 * 5.81;
@@ -86,11 +66,7 @@ fn the_resultant_of_a_strip_is_pressure_times_length_times_width_at_its_middle()
         assert!((moment - exact * (2.0 * (from + to) - 2.0)).abs() < 1e-11 * exact.abs());
         assert!(forces.iter().all(|f| f.force.x == 0.0));
         // A strip lies on the upper chords only: no force below the widest point of a tall ring.
-        assert!(
-            forces
-                .iter()
-                .all(|f| f.point.y > arch.bodies[f.body].vertices[0].y.min(rise / 2.0) - 1e-12)
-        );
+        assert!(forces.iter().all(|f| f.point.y > arch.bodies[f.body].vertices[0].y.min(rise / 2.0) - 1e-12));
         let mut bodies: Vec<_> = forces.iter().map(|f| f.body).collect();
         bodies.dedup();
         assert_eq!(bodies.len(), forces.len());
@@ -110,11 +86,8 @@ fn pressure_on_all_edges_of_a_block_is_in_equilibrium_and_pushes_inwards() {
     let arch = arch(4.0, 1.0, 5, "jointed", "stone");
     let mut wrench = [0.0; 3];
     for edge in 0..4 {
-        let (forces, _) = placed(
-            json!({ "kind": "pressure", "block": 2, "edge": edge, "value": 10.0 }),
-            &arch,
-        )
-        .unwrap();
+        let (forces, _) =
+            placed(json!({ "kind": "pressure", "block": 2, "edge": edge, "value": 10.0 }), &arch).unwrap();
         voussoir_core::assembly::add_force(&mut wrench, forces[0].point, forces[0].force, 1.0);
         if edge == 2 {
             assert!(forces[0].force.y < 0.0);
@@ -126,8 +99,7 @@ fn pressure_on_all_edges_of_a_block_is_in_equilibrium_and_pushes_inwards() {
 #[test]
 fn accelerations_and_forces_on_named_blocks_are_passed_on() {
     let arch = arch(4.0, 1.0, 5, "jointed", "stone");
-    let (forces, accelerations) =
-        placed(json!({ "kind": "body", "acceleration": [1.0, 0.0] }), &arch).unwrap();
+    let (forces, accelerations) = placed(json!({ "kind": "body", "acceleration": [1.0, 0.0] }), &arch).unwrap();
     assert!(forces.is_empty() && accelerations == [Vec2::new(1.0, 0.0)]);
     let vertex = arch.bodies[3].vertices[2];
     for block in [json!(2), json!("2")] {
@@ -142,61 +114,21 @@ fn every_impossible_load_is_refused_at_its_key() {
     let force = [0.0, -1.0];
     let cases = [
         (json!({ "kind": "point", "force": force }), ""),
-        (
-            json!({ "kind": "point", "span_fraction": 0.5, "block": 1, "force": force }),
-            ".block",
-        ),
-        (
-            json!({ "kind": "point", "block": 1, "force": force }),
-            ".point",
-        ),
-        (
-            json!({ "kind": "point", "point": [0.0, 1.0], "force": force }),
-            ".block",
-        ),
-        (
-            json!({ "kind": "point", "block": 9, "point": [0.0, 1.0], "force": force }),
-            ".block",
-        ),
-        (
-            json!({ "kind": "point", "block": "left", "point": [0.0, 1.0], "force": force }),
-            ".block",
-        ),
-        (
-            json!({ "kind": "point", "block": 1, "point": [9.0, 1.0], "force": force }),
-            ".point",
-        ),
-        (
-            json!({ "kind": "point", "span_fraction": 1.5, "force": force }),
-            ".span_fraction",
-        ),
-        (
-            json!({ "kind": "strip", "from": 0.5, "to": 0.5, "pressure": 1.0 }),
-            ".to",
-        ),
-        (
-            json!({ "kind": "strip", "from": 0.5, "to": 1.5, "pressure": 1.0 }),
-            ".to",
-        ),
-        (
-            json!({ "kind": "axles", "at": 0.5, "positions": [0.0, 9.0], "forces": [1.0, 1.0] }),
-            ".positions.1",
-        ),
-        (
-            json!({ "kind": "axles", "at": 0.5, "positions": [0.0, 1.0], "forces": [1.0] }),
-            ".forces",
-        ),
-        (
-            json!({ "kind": "pressure", "block": 1, "edge": 4, "value": 1.0 }),
-            ".edge",
-        ),
+        (json!({ "kind": "point", "span_fraction": 0.5, "block": 1, "force": force }), ".block"),
+        (json!({ "kind": "point", "block": 1, "force": force }), ".point"),
+        (json!({ "kind": "point", "point": [0.0, 1.0], "force": force }), ".block"),
+        (json!({ "kind": "point", "block": 9, "point": [0.0, 1.0], "force": force }), ".block"),
+        (json!({ "kind": "point", "block": "left", "point": [0.0, 1.0], "force": force }), ".block"),
+        (json!({ "kind": "point", "block": 1, "point": [9.0, 1.0], "force": force }), ".point"),
+        (json!({ "kind": "point", "span_fraction": 1.5, "force": force }), ".span_fraction"),
+        (json!({ "kind": "strip", "from": 0.5, "to": 0.5, "pressure": 1.0 }), ".to"),
+        (json!({ "kind": "strip", "from": 0.5, "to": 1.5, "pressure": 1.0 }), ".to"),
+        (json!({ "kind": "axles", "at": 0.5, "positions": [0.0, 9.0], "forces": [1.0, 1.0] }), ".positions.1"),
+        (json!({ "kind": "axles", "at": 0.5, "positions": [0.0, 1.0], "forces": [1.0] }), ".forces"),
+        (json!({ "kind": "pressure", "block": 1, "edge": 4, "value": 1.0 }), ".edge"),
     ];
     for (load, key) in cases {
-        assert_eq!(
-            path(load.clone(), &arch),
-            format!("stages.1.loads.0{key}"),
-            "{load}"
-        );
+        assert_eq!(path(load.clone(), &arch), format!("stages.1.loads.0{key}"), "{load}");
     }
 }
 

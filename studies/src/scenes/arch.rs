@@ -2,10 +2,7 @@
 #![doc = include_str!("arch.md")]
 
 use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
-use super::{
-    JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of,
-    take,
-};
+use super::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::{ArchLayout, Assembly, Body, Bond, Catalogue, Joint};
 use voussoir_core::card::{Card, check_as};
@@ -94,22 +91,14 @@ impl Arch {
         let mut issues = Vec::new();
         issues.extend(out_of_range("width", self.width, Range::POSITIVE));
         if let Some(mesh) = &self.mesh {
-            for (i, &count) in mesh
-                .elements
-                .iter()
-                .enumerate()
-                .filter(|&(_, n)| !(1..=MAX_ELEMENTS).contains(n))
-            {
+            for (i, &count) in mesh.elements.iter().enumerate().filter(|&(_, n)| !(1..=MAX_ELEMENTS).contains(n)) {
                 issues.push(Issue::new(
                     format!("mesh.elements.{i}"),
                     format!("{count} must be from 1 to {MAX_ELEMENTS}"),
                 ));
             }
             if !(1..=2).contains(&mesh.order) {
-                issues.push(Issue::new(
-                    "mesh.order",
-                    format!("{} must be 1 or 2", mesh.order),
-                ));
+                issues.push(Issue::new("mesh.order", format!("{} must be 1 or 2", mesh.order)));
             }
             issues.extend(out_of_range("mesh.grading", mesh.grading, GRADING));
         }
@@ -117,17 +106,10 @@ impl Arch {
             issues.push(Issue::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));
             return Err(issues);
         }
-        match self
-            .profile
-            .ring(self.thickness, self.voussoirs, self.springing)
-        {
+        match self.profile.ring(self.thickness, self.voussoirs, self.springing) {
             Ok(ring) => {
                 issues.extend(self.overlap(&ring));
-                if issues.is_empty() {
-                    Ok(ring)
-                } else {
-                    Err(issues)
-                }
+                if issues.is_empty() { Ok(ring) } else { Err(issues) }
             }
             Err(mut wrong) => {
                 issues.append(&mut wrong);
@@ -138,26 +120,15 @@ impl Arch {
 
     /// A ring given by points may run into itself, as nearly a full circle does.
     fn overlap(&self, ring: &Ring) -> Option<Issue> {
-        let bodies: Vec<_> = (0..ring.voussoirs())
-            .map(|k| voussoir(ring, k, 0))
-            .collect();
+        let bodies: Vec<_> = (0..ring.voussoirs()).map(|k| voussoir(ring, k, 0)).collect();
         let (low, high) = bounding_box(ring.intrados.iter().chain(&ring.extrados));
         let (_, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Bonded, 0.0));
-        let worst = overlaps
-            .into_iter()
-            .max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+        let worst = overlaps.into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
         let [a, b] = worst.bodies;
-        let key = if self.springing.is_some() {
-            "springing"
-        } else {
-            "profile"
-        };
+        let key = if self.springing.is_some() { "springing" } else { "profile" };
         Some(Issue::new(
             key,
-            format!(
-                "voussoirs {a} and {b} overlap by {:.3e} m: the ring runs into itself",
-                worst.depth
-            ),
+            format!("voussoirs {a} and {b} overlap by {:.3e} m: the ring runs into itself", worst.depth),
         ))
     }
 
@@ -167,12 +138,7 @@ impl Arch {
 }
 
 fn voussoir(ring: &Ring, k: usize, material: usize) -> Body {
-    Body {
-        name: k.to_string(),
-        vertices: ring.voussoir(k),
-        material,
-        fixed: false,
-    }
+    Body { name: k.to_string(), vertices: ring.voussoir(k), material, fixed: false }
 }
 
 #[typetag::serde(name = "arch")]
@@ -181,20 +147,12 @@ impl Scene for Arch {
         let mut issues = Vec::new();
         let material = take(material(catalogue, &self.material, "material"), &mut issues);
         let law = take(law(catalogue, &self.joint, "joint"), &mut issues);
-        let ring = self
-            .ring()
-            .map_err(|mut wrong| issues.append(&mut wrong))
-            .ok();
+        let ring = self.ring().map_err(|mut wrong| issues.append(&mut wrong)).ok();
         let (Some(material), Some(law), Some(ring)) = (material, law, ring) else {
             return Err(from_root(issues));
         };
         let count = ring.voussoirs();
-        let support = |name: &str| Body {
-            name: name.into(),
-            vertices: Vec::new(),
-            material,
-            fixed: true,
-        };
+        let support = |name: &str| Body { name: name.into(), vertices: Vec::new(), material, fixed: true };
         let mut bodies = vec![support("left")];
         bodies.extend((0..count).map(|k| voussoir(&ring, k, material)));
         bodies.push(support("right"));
@@ -202,11 +160,7 @@ impl Scene for Arch {
             minus: k,
             plus: k + 1,
             ends: [ring.intrados[k], ring.extrados[k]],
-            bond: if self.ends == Ends::Bonded && (k == 0 || k == count) {
-                Bond::Bonded
-            } else {
-                Bond::Law(law)
-            },
+            bond: if self.ends == Ends::Bonded && (k == 0 || k == count) { Bond::Bonded } else { Bond::Law(law) },
             gap: 0.0,
         };
         Ok(Assembly {
@@ -215,12 +169,7 @@ impl Scene for Arch {
             bodies,
             width: self.width,
             plane: self.plane.into(),
-            arch: Some(ArchLayout {
-                first: 1,
-                voussoirs: count,
-                span: ring.span,
-                rise: ring.rise,
-            }),
+            arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),
         })
     }
 }
@@ -229,14 +178,7 @@ const MESH: &[Parameter] = &[
     Parameter {
         name: "elements",
         doc: "elements along the ring, across it",
-        shape: Shape::List {
-            of: &Shape::Integer {
-                min: 1,
-                max: MAX_ELEMENTS as i64,
-            },
-            min: 2,
-            max: 2,
-        },
+        shape: Shape::List { of: &Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 }, min: 2, max: 2 },
         need: Need::Default("[4, 6]"),
     },
     Parameter {
@@ -245,38 +187,20 @@ const MESH: &[Parameter] = &[
         shape: Shape::Integer { min: 1, max: 2 },
         need: Need::Default("2"),
     },
-    Parameter::number(
-        "grading",
-        Quantity::Ratio,
-        GRADING,
-        "more than 1 is finer towards the joint's ends",
-    )
-    .default("1.0"),
+    Parameter::number("grading", Quantity::Ratio, GRADING, "more than 1 is finer towards the joint's ends")
+        .default("1.0"),
 ];
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "profile",
-        doc: "shape of the intrados",
-        shape: PROFILE,
-        need: Need::Required,
-    },
-    Parameter::number(
-        "thickness",
-        Quantity::Length,
-        Range::POSITIVE,
-        "of the ring, along the joints",
-    )
-    .optional("the profile is a list of points"),
+    Parameter { name: "profile", doc: "shape of the intrados", shape: PROFILE, need: Need::Required },
+    Parameter::number("thickness", Quantity::Length, Range::POSITIVE, "of the ring, along the joints")
+        .optional("the profile is a list of points"),
     WIDTH,
     PLANE,
     Parameter {
         name: "voussoirs",
         doc: "their number",
-        shape: Shape::Integer {
-            min: 1,
-            max: MAX_VOUSSOIRS as i64,
-        },
+        shape: Shape::Integer { min: 1, max: MAX_VOUSSOIRS as i64 },
         need: Need::Optional("the profile is a list of points"),
     },
     Parameter {
@@ -330,9 +254,7 @@ mod tests {
         for (key, value) in extra.as_object().unwrap() {
             scene[key] = value.clone();
         }
-        serde_json::from_value::<Box<dyn Scene>>(scene)
-            .unwrap()
-            .build(&catalogue())
+        serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue())
     }
 
     #[test]
@@ -348,24 +270,16 @@ mod tests {
             assert_eq!(joint.bond == Bond::Bonded, k == 0 || k == 15);
             assert!((joint.height() - 0.6).abs() < 1e-14);
             if (1..15).contains(&k) {
-                assert!(
-                    (arch.inertia(k + 1).centroid - joint.middle()).dot(&joint.frame().0) > 0.0
-                );
+                assert!((arch.inertia(k + 1).centroid - joint.middle()).dot(&joint.frame().0) > 0.0);
             }
         }
-        assert_eq!(
-            arch.arch
-                .as_ref()
-                .map(|layout| (layout.first, layout.voussoirs)),
-            Some((1, 15))
-        );
+        assert_eq!(arch.arch.as_ref().map(|layout| (layout.first, layout.voussoirs)), Some((1, 15)));
     }
 
     #[test]
     fn joints_found_from_the_polygons_are_those_of_the_ring() {
         let arch = arch(json!({})).unwrap();
-        let (found, overlaps) =
-            find_joints(&arch.bodies[1..16], arch.size(), |_, _| (Bond::Law(0), 0.0));
+        let (found, overlaps) = find_joints(&arch.bodies[1..16], arch.size(), |_, _| (Bond::Law(0), 0.0));
         assert!(overlaps.is_empty());
         assert_eq!(found.len(), 14);
         for (found, joint) in found.iter().zip(&arch.joints[1..]) {
@@ -380,11 +294,7 @@ mod tests {
             "mesh": { "elements": [0, 4], "order": 3, "grading": 0.0 },
             "profile": { "shape": "pointed", "span": 4.0, "rise": 1.0 },
         }));
-        let mut paths: Vec<_> = wrong
-            .unwrap_err()
-            .into_iter()
-            .map(|issue| issue.path)
-            .collect();
+        let mut paths: Vec<_> = wrong.unwrap_err().into_iter().map(|issue| issue.path).collect();
         paths.sort();
         let keys = [
             "joint",
@@ -403,12 +313,7 @@ mod tests {
     #[test]
     fn a_nearly_closed_ring_with_a_gap_at_the_springings_is_accepted() {
         let profile = json!({ "shape": "segmental", "span": 0.2, "rise": 2.0 });
-        assert!(
-            arch(
-                json!({ "profile": profile, "thickness": 0.3, "voussoirs": 24, "springing": -89.0 })
-            )
-            .is_ok()
-        );
+        assert!(arch(json!({ "profile": profile, "thickness": 0.3, "voussoirs": 24, "springing": -89.0 })).is_ok());
     }
 
     #[test]
@@ -422,10 +327,7 @@ mod tests {
             "thickness": null, "voussoirs": null,
         });
         let wrong = arch(points).unwrap_err();
-        assert!(
-            wrong[0].path == "scene.profile" && wrong[0].message.contains("overlap"),
-            "{wrong:?}"
-        );
+        assert!(wrong[0].path == "scene.profile" && wrong[0].message.contains("overlap"), "{wrong:?}");
     }
 
     #[test]

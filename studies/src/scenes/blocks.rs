@@ -2,8 +2,7 @@
 #![doc = include_str!("blocks.md")]
 
 use super::{
-    JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range,
-    pairs_of, take, unknown,
+    JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take, unknown,
 };
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Joint};
@@ -69,15 +68,9 @@ pub struct Blocks {
 fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
     let mut polygon: Vec<_> = vertices.iter().map(|&[x, y]| Vec2::new(x, y)).collect();
     if polygon.len() < 3 {
-        return Err(format!(
-            "{} vertices make no block: at least three",
-            polygon.len()
-        ));
+        return Err(format!("{} vertices make no block: at least three", polygon.len()));
     }
-    if let Some(i) = polygon
-        .iter()
-        .position(|p| !(p.x.is_finite() && p.y.is_finite()))
-    {
+    if let Some(i) = polygon.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
         return Err(format!("vertex {i} is not finite"));
     }
     let (low, high) = bounding_box(&polygon);
@@ -90,10 +83,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
     let flat = area.abs() <= 1e-12 * size * size;
     // Two edges that fold back on each other touch as neighbours, which the test of crossing leaves out.
     let folds = |i: usize| {
-        let (one, other) = (
-            polygon[(i + 1) % n] - polygon[i],
-            polygon[(i + 2) % n] - polygon[(i + 1) % n],
-        );
+        let (one, other) = (polygon[(i + 1) % n] - polygon[i], polygon[(i + 2) % n] - polygon[(i + 1) % n]);
         cross(one, other).abs() <= 1e-12 * one.norm() * other.norm() && one.dot(&other) < 0.0
     };
     if crosses_itself(&polygon) {
@@ -103,10 +93,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
         return Err("the block has no area".into());
     }
     if let Some(i) = (0..n).find(|&i| folds(i)) {
-        return Err(format!(
-            "the outline folds back on itself at vertex {}",
-            (i + 1) % n
-        ));
+        return Err(format!("the outline folds back on itself at vertex {}", (i + 1) % n));
     }
     if area < 0.0 {
         polygon[1..].reverse();
@@ -122,46 +109,27 @@ impl Blocks {
         if self.blocks.is_empty() {
             issues.push(Issue::new("blocks", "there is no block"));
         } else if self.blocks.iter().all(|block| !block.fixed) {
-            issues.push(
-                Issue::new("blocks", "nothing is fixed")
-                    .help("give fixed = true to the blocks that are held"),
-            );
+            issues.push(Issue::new("blocks", "nothing is fixed").help("give fixed = true to the blocks that are held"));
         } else if self.blocks.iter().all(|block| block.fixed) {
-            issues.push(Issue::new(
-                "blocks",
-                "every block is fixed: nothing can move",
-            ));
+            issues.push(Issue::new("blocks", "every block is fixed: nothing can move"));
         }
         for (i, block) in self.blocks.iter().enumerate() {
             let key = format!("blocks.{i}.name");
             if block.name.trim().is_empty() {
                 issues.push(Issue::new(&key, "is empty"));
             }
-            if let Some(first) = self.blocks[..i]
-                .iter()
-                .position(|other| other.name == block.name)
-            {
-                let message = format!(
-                    "\"{}\" is already the name of block {first} of the list",
-                    block.name
-                );
+            if let Some(first) = self.blocks[..i].iter().position(|other| other.name == block.name) {
+                let message = format!("\"{}\" is already the name of block {first} of the list", block.name);
                 issues.push(Issue::new(&key, message));
             }
             if !block.fixed && matches!(block.name.as_str(), "left" | "right") {
-                let message = format!(
-                    "\"{}\" is the name of a support, but this block is not fixed",
-                    block.name
-                );
+                let message = format!("\"{}\" is the name of a support, but this block is not fixed", block.name);
                 issues.push(Issue::new(&key, message));
             }
         }
         let shapes = self.blocks.iter().enumerate().map(|(i, block)| {
-            let wrong = |message| {
-                Issue::new(
-                    format!("blocks.{i}.vertices"),
-                    format!("block \"{}\": {message}", block.name),
-                )
-            };
+            let wrong =
+                |message| Issue::new(format!("blocks.{i}.vertices"), format!("block \"{}\": {message}", block.name));
             take(polygon(&block.vertices).map_err(wrong), &mut issues)
         });
         let shapes = shapes.collect();
@@ -174,29 +142,17 @@ impl Blocks {
             for (end, name) in pair.between.iter().enumerate() {
                 if self.position(name).is_none() {
                     let names = self.blocks.iter().map(|block| block.name.as_str());
-                    issues.push(unknown(
-                        &format!("pairs.{i}.between.{end}"),
-                        "block",
-                        name,
-                        names,
-                    ));
+                    issues.push(unknown(&format!("pairs.{i}.between.{end}"), "block", name, names));
                 }
             }
-            issues.extend(out_of_range(
-                &format!("pairs.{i}.gap"),
-                pair.gap,
-                Range::NON_NEGATIVE,
-            ));
+            issues.extend(out_of_range(&format!("pairs.{i}.gap"), pair.gap, Range::NON_NEGATIVE));
             let key = format!("pairs.{i}.between");
             if pair.between[0] == pair.between[1] {
                 issues.push(Issue::new(&key, "names one block twice"));
             }
             let same = |other: &Pair| pair.is_between(&other.between[0], &other.between[1]);
             if let Some(first) = self.pairs[..i].iter().position(same) {
-                issues.push(Issue::new(
-                    &key,
-                    format!("is already pair {first} of the list"),
-                ));
+                issues.push(Issue::new(&key, format!("is already pair {first} of the list")));
             }
         }
     }
@@ -208,10 +164,7 @@ impl Blocks {
     /// The pair of two blocks, with its index.
     fn pair(&self, a: usize, b: usize) -> Option<(usize, &Pair)> {
         let (a, b) = (&self.blocks[a].name, &self.blocks[b].name);
-        self.pairs
-            .iter()
-            .enumerate()
-            .find(|(_, pair)| pair.is_between(a, b))
+        self.pairs.iter().enumerate().find(|(_, pair)| pair.is_between(a, b))
     }
 
     /// The name of the law between two blocks, and the key that gives it.
@@ -221,30 +174,20 @@ impl Blocks {
         {
             return Ok((name, format!("pairs.{i}.joint")));
         }
-        match [a, b].map(|i| {
-            self.blocks[i]
-                .joint
-                .as_deref()
-                .map(|name| (name, format!("blocks.{i}.joint")))
-        }) {
+        match [a, b].map(|i| self.blocks[i].joint.as_deref().map(|name| (name, format!("blocks.{i}.joint")))) {
             [Some(one), Some(other)] if one.0 != other.0 => {
                 let (first, second) = (&self.blocks[a].name, &self.blocks[b].name);
                 let message = format!(
                     "blocks \"{first}\" and \"{second}\" touch and name different joint laws, \"{}\" and \"{}\"",
                     one.0, other.0
                 );
-                let help = format!(
-                    "decide by pairs = [{{ between = [\"{first}\", \"{second}\"], joint = … }}]"
-                );
+                let help = format!("decide by pairs = [{{ between = [\"{first}\", \"{second}\"], joint = … }}]");
                 Err(Issue::new(other.1, message).help(help))
             }
             [Some(one), _] | [None, Some(one)] => Ok(one),
             [None, None] => match &self.joint {
                 Some(name) => Ok((name, "joint".into())),
-                None => Err(Issue::new(
-                    "joint",
-                    "is missing: the interface law of joints for which none is named",
-                )),
+                None => Err(Issue::new("joint", "is missing: the interface law of joints for which none is named")),
             },
         }
     }
@@ -253,12 +196,7 @@ impl Blocks {
         let (shapes, mut issues) = self.shapes();
         if issues.is_empty() {
             let bodies = self.bodies(shapes, &vec![0; self.blocks.len()]);
-            issues.extend(
-                self.joints(&bodies, |_, _| Bond::Bonded)
-                    .err()
-                    .into_iter()
-                    .flatten(),
-            );
+            issues.extend(self.joints(&bodies, |_, _| Bond::Bonded).err().into_iter().flatten());
         }
         pairs_of(issues)
     }
@@ -270,66 +208,33 @@ impl Blocks {
             material,
             fixed: block.fixed,
         };
-        self.blocks
-            .iter()
-            .zip(shapes)
-            .zip(materials)
-            .map(body)
-            .collect()
+        self.blocks.iter().zip(shapes).zip(materials).map(body).collect()
     }
 
     /// Joints of sound bodies; overlaps, and pairs that share no joint, are mistakes.
-    fn joints(
-        &self,
-        bodies: &[Body],
-        bond: impl Fn(usize, usize) -> Bond,
-    ) -> Result<Vec<Joint>, Vec<Issue>> {
+    fn joints(&self, bodies: &[Body], bond: impl Fn(usize, usize) -> Bond) -> Result<Vec<Joint>, Vec<Issue>> {
         let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
         let gap = |a, b| self.pair(a, b).map_or(0.0, |(_, pair)| pair.gap);
-        let (joints, overlaps) =
-            find_joints(bodies, (high - low).norm(), |a, b| (bond(a, b), gap(a, b)));
-        let mut issues: Vec<_> = overlaps
-            .iter()
-            .map(|overlap| self.overlap(overlap))
-            .collect();
+        let (joints, overlaps) = find_joints(bodies, (high - low).norm(), |a, b| (bond(a, b), gap(a, b)));
+        let mut issues: Vec<_> = overlaps.iter().map(|overlap| self.overlap(overlap)).collect();
         for (i, pair) in self.pairs.iter().enumerate() {
             let [Some(a), Some(b)] = [0, 1].map(|end| self.position(&pair.between[end])) else {
                 continue;
             };
-            let overlap = overlaps
-                .iter()
-                .any(|overlap| overlap.bodies == [a.min(b), a.max(b)]);
-            if !overlap
-                && !joints
-                    .iter()
-                    .any(|joint| [joint.minus, joint.plus] == [a.min(b), a.max(b)])
-            {
-                let reason = if bodies[a].fixed && bodies[b].fixed {
-                    "are both fixed"
-                } else {
-                    "share no joint"
-                };
-                let message = format!(
-                    "blocks \"{}\" and \"{}\" {reason}",
-                    pair.between[0], pair.between[1]
-                );
+            let overlap = overlaps.iter().any(|overlap| overlap.bodies == [a.min(b), a.max(b)]);
+            if !overlap && !joints.iter().any(|joint| [joint.minus, joint.plus] == [a.min(b), a.max(b)]) {
+                let reason = if bodies[a].fixed && bodies[b].fixed { "are both fixed" } else { "share no joint" };
+                let message = format!("blocks \"{}\" and \"{}\" {reason}", pair.between[0], pair.between[1]);
                 issues.push(Issue::new(format!("pairs.{i}.between"), message));
             }
         }
-        if issues.is_empty() {
-            Ok(joints)
-        } else {
-            Err(issues)
-        }
+        if issues.is_empty() { Ok(joints) } else { Err(issues) }
     }
 
     fn overlap(&self, overlap: &Interpenetration) -> Issue {
         let [a, b] = overlap.bodies;
         let (first, second) = (&self.blocks[a].name, &self.blocks[b].name);
-        let message = format!(
-            "blocks \"{first}\" and \"{second}\" overlap, {:.3e} m deep",
-            overlap.depth
-        );
+        let message = format!("blocks \"{first}\" and \"{second}\" overlap, {:.3e} m deep", overlap.depth);
         Issue::new(format!("blocks.{b}.vertices"), message)
     }
 }
@@ -347,10 +252,7 @@ impl Scene for Blocks {
         let (shapes, mut issues) = self.shapes();
         let mut missing = false;
         let material_of = |(i, block): (usize, &Block)| match (&block.material, &self.material) {
-            (Some(name), _) => take(
-                material(catalogue, name, &format!("blocks.{i}.material")),
-                &mut issues,
-            ),
+            (Some(name), _) => take(material(catalogue, name, &format!("blocks.{i}.material")), &mut issues),
             (None, Some(name)) => catalogue.material(name),
             (None, None) => {
                 missing = true;
@@ -359,10 +261,7 @@ impl Scene for Blocks {
         };
         let materials: Option<Vec<_>> = self.blocks.iter().enumerate().map(material_of).collect();
         if missing {
-            issues.push(Issue::new(
-                "material",
-                "is missing: the material of blocks that name none",
-            ));
+            issues.push(Issue::new("material", "is missing: the material of blocks that name none"));
         }
         // Names are checked whether or not a joint uses them.
         if let Some(name) = &self.material {
@@ -371,33 +270,19 @@ impl Scene for Blocks {
         if let Some(name) = &self.joint {
             issues.extend(law(catalogue, name, "joint").err());
         }
-        for (i, name) in self
-            .blocks
-            .iter()
-            .enumerate()
-            .filter_map(|(i, block)| Some((i, block.joint.as_ref()?)))
-        {
+        for (i, name) in self.blocks.iter().enumerate().filter_map(|(i, block)| Some((i, block.joint.as_ref()?))) {
             issues.extend(law(catalogue, name, &format!("blocks.{i}.joint")).err());
         }
-        for (i, name) in self
-            .pairs
-            .iter()
-            .enumerate()
-            .filter_map(|(i, pair)| Some((i, pair.joint.as_ref()?)))
-        {
+        for (i, name) in self.pairs.iter().enumerate().filter_map(|(i, pair)| Some((i, pair.joint.as_ref()?))) {
             issues.extend(law(catalogue, name, &format!("pairs.{i}.joint")).err());
         }
         let Some(materials) = materials.filter(|_| issues.is_empty()) else {
             return Err(from_root(issues));
         };
         let bodies = self.bodies(shapes, &materials);
-        let mut joints = self
-            .joints(&bodies, |_, _| Bond::Bonded)
-            .map_err(from_root)?;
+        let mut joints = self.joints(&bodies, |_, _| Bond::Bonded).map_err(from_root)?;
         for joint in &mut joints {
-            let index = self
-                .law_name(joint.minus, joint.plus)
-                .and_then(|(name, key)| law(catalogue, name, &key));
+            let index = self.law_name(joint.minus, joint.plus).and_then(|(name, key)| law(catalogue, name, &key));
             match index {
                 Ok(index) => joint.bond = Bond::Law(index),
                 Err(issue) if issues.contains(&issue) => {}
@@ -408,40 +293,19 @@ impl Scene for Blocks {
             return Err(from_root(issues));
         }
         let (width, plane) = (self.width, self.plane.into());
-        Ok(Assembly {
-            catalogue: catalogue.clone(),
-            bodies,
-            joints,
-            width,
-            plane,
-            arch: None,
-        })
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, arch: None })
     }
 }
 
 const BLOCK: &[Parameter] = &[
-    Parameter {
-        name: "name",
-        doc: "unique",
-        shape: Shape::Text,
-        need: Need::Required,
-    },
+    Parameter { name: "name", doc: "unique", shape: Shape::Text, need: Need::Required },
     Parameter {
         name: "vertices",
         doc: "in either sense",
-        shape: Shape::List {
-            of: &POINT,
-            min: 3,
-            max: usize::MAX,
-        },
+        shape: Shape::List { of: &POINT, min: 3, max: usize::MAX },
         need: Need::Required,
     },
-    Parameter {
-        name: "fixed",
-        doc: "held by the ground",
-        shape: Shape::Boolean,
-        need: Need::Default("false"),
-    },
+    Parameter { name: "fixed", doc: "held by the ground", shape: Shape::Boolean, need: Need::Default("false") },
     MATERIAL.optional("the scene's"),
     JOINT.optional("the scene's"),
 ];
@@ -450,21 +314,11 @@ const PAIR: &[Parameter] = &[
     Parameter {
         name: "between",
         doc: "names of two blocks",
-        shape: Shape::List {
-            of: &Shape::Text,
-            min: 2,
-            max: 2,
-        },
+        shape: Shape::List { of: &Shape::Text, min: 2, max: 2 },
         need: Need::Required,
     },
     JOINT.optional("that of the blocks, or the scene's"),
-    Parameter::number(
-        "gap",
-        Quantity::Length,
-        Range::NON_NEGATIVE,
-        "initial opening",
-    )
-    .default("0.0"),
+    Parameter::number("gap", Quantity::Length, Range::NON_NEGATIVE, "initial opening").default("0.0"),
 ];
 
 const PARAMETERS: &[Parameter] = &[
@@ -475,21 +329,13 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "blocks",
         doc: "the blocks",
-        shape: Shape::List {
-            of: &Shape::Table(BLOCK),
-            min: 1,
-            max: usize::MAX,
-        },
+        shape: Shape::List { of: &Shape::Table(BLOCK), min: 1, max: usize::MAX },
         need: Need::Required,
     },
     Parameter {
         name: "pairs",
         doc: "joints with a law or gap of their own",
-        shape: Shape::List {
-            of: &Shape::Table(PAIR),
-            min: 0,
-            max: usize::MAX,
-        },
+        shape: Shape::List { of: &Shape::Table(PAIR), min: 0, max: usize::MAX },
         need: Need::Default("[]"),
     },
 ];
@@ -516,13 +362,12 @@ mod tests {
     use serde_json::{Value, json};
 
     fn build(blocks: Value, extra: Value) -> Result<Assembly, Vec<Issue>> {
-        let mut scene = json!({ "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry", "blocks": blocks });
+        let mut scene =
+            json!({ "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry", "blocks": blocks });
         for (key, value) in extra.as_object().unwrap() {
             scene[key] = value.clone();
         }
-        serde_json::from_value::<Box<dyn Scene>>(scene)
-            .unwrap()
-            .build(&catalogue())
+        serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue())
     }
 
     fn box_at(name: &str, x: f64, y: f64) -> Value {
@@ -540,10 +385,7 @@ mod tests {
         assert_eq!(scene.bodies[1].vertices, expected);
         assert_eq!(scene.joints.len(), 1);
         let joint = &scene.joints[0];
-        assert_eq!(
-            (joint.minus, joint.plus, joint.frame().0),
-            (0, 1, Vec2::new(0.0, 1.0))
-        );
+        assert_eq!((joint.minus, joint.plus, joint.frame().0), (0, 1, Vec2::new(0.0, 1.0)));
     }
 
     #[test]
@@ -553,43 +395,16 @@ mod tests {
         let blocks = json!([ground(), box_at("a", 0.0, 0.0), b]);
         let pairs = json!({ "pairs": [{ "between": ["b", "a"], "joint": "dry", "gap": 0.001 }] });
         let scene = build(blocks, pairs).unwrap();
-        let bonds: Vec<_> = scene
-            .joints
-            .iter()
-            .map(|j| (j.minus, j.plus, j.bond, j.gap))
-            .collect();
-        let expected = [
-            (0, 1, Bond::Law(0), 0.0),
-            (0, 2, Bond::Law(1), 0.0),
-            (1, 2, Bond::Law(0), 0.001),
-        ];
+        let bonds: Vec<_> = scene.joints.iter().map(|j| (j.minus, j.plus, j.bond, j.gap)).collect();
+        let expected = [(0, 1, Bond::Law(0), 0.0), (0, 2, Bond::Law(1), 0.0), (1, 2, Bond::Law(0), 0.001)];
         assert_eq!(bonds, expected);
     }
 
     #[test]
     fn a_block_with_two_level_tops_or_a_vertex_within_an_edge_does_not_cross_itself() {
-        let u = [
-            [0.0, 0.0],
-            [3.0, 0.0],
-            [3.0, 2.0],
-            [2.0, 2.0],
-            [2.0, 1.0],
-            [1.0, 1.0],
-            [1.0, 2.0],
-            [0.0, 2.0],
-        ];
+        let u = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [2.0, 2.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
         assert!(polygon(&u).is_ok());
-        assert!(
-            polygon(&[
-                [0.0, 0.0],
-                [1.0, 0.0],
-                [2.0, 0.0],
-                [3.0, 0.0],
-                [3.0, 1.0],
-                [0.0, 1.0]
-            ])
-            .is_ok()
-        );
+        assert!(polygon(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]]).is_ok());
     }
 
     #[test]
@@ -598,32 +413,14 @@ mod tests {
         let a = || box_at("a", 0.0, 0.0);
         let none = || json!({});
         let shape = |vertices: Value| json!([ground(), { "name": "a", "vertices": vertices }]);
-        assert_eq!(
-            path(shape(json!([[0, 0], [1, 0]])), none()),
-            "scene.blocks.1.vertices"
-        );
-        assert_eq!(
-            path(shape(json!([[0, 0], [1, 0], [2, 0]])), none()),
-            "scene.blocks.1.vertices"
-        );
-        assert_eq!(
-            path(shape(json!([[0, 0], [1, 1], [1, 0], [0, 1]])), none()),
-            "scene.blocks.1.vertices"
-        );
-        assert_eq!(
-            path(json!([ground(), a(), a()]), none()),
-            "scene.blocks.2.name"
-        );
-        assert_eq!(
-            path(json!([ground(), box_at("left", 0.0, 0.0)]), none()),
-            "scene.blocks.1.name"
-        );
+        assert_eq!(path(shape(json!([[0, 0], [1, 0]])), none()), "scene.blocks.1.vertices");
+        assert_eq!(path(shape(json!([[0, 0], [1, 0], [2, 0]])), none()), "scene.blocks.1.vertices");
+        assert_eq!(path(shape(json!([[0, 0], [1, 1], [1, 0], [0, 1]])), none()), "scene.blocks.1.vertices");
+        assert_eq!(path(json!([ground(), a(), a()]), none()), "scene.blocks.2.name");
+        assert_eq!(path(json!([ground(), box_at("left", 0.0, 0.0)]), none()), "scene.blocks.1.name");
         assert_eq!(path(json!([a()]), none()), "scene.blocks");
         let pair = |one: &str, other: &str| json!({ "pairs": [{ "between": [one, other] }] });
-        assert_eq!(
-            path(json!([ground(), a()]), pair("a", "b")),
-            "scene.pairs.0.between.1"
-        );
+        assert_eq!(path(json!([ground(), a()]), pair("a", "b")), "scene.pairs.0.between.1");
         let far = || json!([ground(), a(), box_at("b", 3.0, 0.0)]);
         assert_eq!(path(far(), pair("a", "b")), "scene.pairs.0.between");
         assert_eq!(path(far(), json!({ "joint": null })), "scene.joint");
@@ -631,9 +428,7 @@ mod tests {
         let overlap = build(json!([ground(), a(), box_at("b", 0.5, 0.0)]), none()).unwrap_err();
         assert_eq!(overlap[0].path, "scene.blocks.2.vertices");
         assert!(
-            overlap[0]
-                .message
-                .starts_with("blocks \"a\" and \"b\" overlap, 3.333e-1 m deep"),
+            overlap[0].message.starts_with("blocks \"a\" and \"b\" overlap, 3.333e-1 m deep"),
             "{}",
             overlap[0].message
         );

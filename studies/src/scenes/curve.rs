@@ -12,42 +12,17 @@ use voussoir_core::geometry::{Vec2, cross};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Curve {
     /// Circular arc.
-    Segmental {
-        span: f64,
-        rise: f64,
-        radius: f64,
-        half_angle: f64,
-    },
+    Segmental { span: f64, rise: f64, radius: f64, half_angle: f64 },
     /// Half ellipse with semi-axes span/2 and rise.
     Elliptical { half_span: f64, rise: f64 },
     /// y = rise − slope²/(2 curvature), slope = curvature · x.
-    Parabolic {
-        span: f64,
-        rise: f64,
-        curvature: f64,
-    },
+    Parabolic { span: f64, rise: f64, curvature: f64 },
     /// y = rise − c (cosh(x/c) − 1); `slope` = sinh(span/(2c)) is the slope at the springing.
-    Catenary {
-        span: f64,
-        rise: f64,
-        parameter: f64,
-        slope: f64,
-    },
+    Catenary { span: f64, rise: f64, parameter: f64, slope: f64 },
     /// Arc of `radius` about (span/2 − radius, 0); `opening` is the angle from springing to apex.
-    Pointed {
-        span: f64,
-        rise: f64,
-        radius: f64,
-        opening: f64,
-    },
+    Pointed { span: f64, rise: f64, radius: f64, opening: f64 },
     /// Crown arc of radius `crown` up to the normal angle `turn`, then a side arc of radius `side`.
-    ThreeCentred {
-        span: f64,
-        rise: f64,
-        crown: f64,
-        side: f64,
-        turn: f64,
-    },
+    ThreeCentred { span: f64, rise: f64, crown: f64, side: f64, turn: f64 },
 }
 
 impl Curve {
@@ -63,19 +38,12 @@ impl Curve {
 
     /// Semi-axes span/2 and rise.
     pub fn elliptical(span: f64, rise: f64) -> Curve {
-        Curve::Elliptical {
-            half_span: span / 2.0,
-            rise,
-        }
+        Curve::Elliptical { half_span: span / 2.0, rise }
     }
 
     /// y = rise (1 − (2x/span)²).
     pub fn parabolic(span: f64, rise: f64) -> Curve {
-        Curve::Parabolic {
-            span,
-            rise,
-            curvature: 8.0 * rise / (span * span),
-        }
+        Curve::Parabolic { span, rise, curvature: 8.0 * rise / (span * span) }
     }
 
     /// c from rise = c (cosh(span/(2c)) − 1), that is sinh² w / w = 2 rise/span with w = span/(4c).
@@ -85,12 +53,7 @@ impl Curve {
             let (s, c) = (w.sinh(), w.cosh());
             (s * s / w - ratio, s * (2.0 * c * w - s) / (w * w))
         });
-        Curve::Catenary {
-            span,
-            rise,
-            parameter: span / (4.0 * w),
-            slope: (2.0 * w).sinh(),
-        }
+        Curve::Catenary { span, rise, parameter: span / (4.0 * w), slope: (2.0 * w).sinh() }
     }
 
     /// R = (rise² + span²/4)/span, centres on the springing line.
@@ -98,24 +61,13 @@ impl Curve {
         let radius = (rise * rise + span * span / 4.0) / span;
         // R − span/2 = (rise − span/2)(rise + span/2)/span, without its cancellation.
         let centre = (rise - span / 2.0) * (rise + span / 2.0) / span;
-        Curve::Pointed {
-            span,
-            rise,
-            radius,
-            opening: rise.atan2(centre),
-        }
+        Curve::Pointed { span, rise, radius, opening: rise.atan2(centre) }
     }
 
     /// Side radius r = (2R rise − rise² − span²/4)/(2R − span), the side arcs upright at the springings.
     pub fn three_centred(span: f64, rise: f64, crown: f64) -> Curve {
         let side = (2.0 * crown * rise - rise * rise - span * span / 4.0) / (2.0 * crown - span);
-        Curve::ThreeCentred {
-            span,
-            rise,
-            crown,
-            side,
-            turn: (span / 2.0 - side).atan2(crown - rise),
-        }
+        Curve::ThreeCentred { span, rise, crown, side, turn: (span / 2.0 - side).atan2(crown - rise) }
     }
 
     /// Intrados point and unit outward normal at the share `part / of` of the right half's length,
@@ -134,20 +86,13 @@ impl Curve {
             Curve::Elliptical { half_span, rise } => {
                 let total = elliptic_length(half_span, rise, FRAC_PI_2);
                 let eccentric = increasing_root(0.0, FRAC_PI_2, |t| {
-                    (
-                        elliptic_length(half_span, rise, t) - total * share,
-                        elliptic_speed(half_span, rise, t),
-                    )
+                    (elliptic_length(half_span, rise, t) - total * share, elliptic_speed(half_span, rise, t))
                 });
                 let (sine, cosine) = eccentric.sin_cos();
                 let normal = Vec2::new(rise * sine, half_span * cosine).normalize();
                 (Vec2::new(half_span * sine, rise * cosine), normal)
             }
-            Curve::Parabolic {
-                span,
-                rise,
-                curvature,
-            } => {
+            Curve::Parabolic { span, rise, curvature } => {
                 // Twice the curvature times the arc length from the crown.
                 let length = |p: f64| p * p.hypot(1.0) + p.asinh();
                 let end = 4.0 * rise / span;
@@ -156,49 +101,24 @@ impl Curve {
                 let point = Vec2::new(slope / curvature, rise - slope * slope / (2.0 * curvature));
                 (point, Vec2::new(slope, 1.0) / slope.hypot(1.0))
             }
-            Curve::Catenary {
-                rise,
-                parameter,
-                slope,
-                ..
-            } => {
+            Curve::Catenary { rise, parameter, slope, .. } => {
                 // The arc length from the crown is c sinh(x/c).
                 let slope = slope * share;
                 let drop = parameter * slope * slope / (slope.hypot(1.0) + 1.0);
-                (
-                    Vec2::new(parameter * slope.asinh(), rise - drop),
-                    Vec2::new(slope, 1.0) / slope.hypot(1.0),
-                )
+                (Vec2::new(parameter * slope.asinh(), rise - drop), Vec2::new(slope, 1.0) / slope.hypot(1.0))
             }
-            Curve::Pointed {
-                opening,
-                span,
-                radius,
-                ..
-            } => {
+            Curve::Pointed { opening, span, radius, .. } => {
                 let above = opening * ((of - part) as f64 / of as f64);
-                (
-                    side_arc(span, radius, above),
-                    Vec2::new(above.cos(), above.sin()),
-                )
+                (side_arc(span, radius, above), Vec2::new(above.cos(), above.sin()))
             }
-            Curve::ThreeCentred {
-                span,
-                crown,
-                side,
-                turn,
-                ..
-            } => {
+            Curve::ThreeCentred { span, crown, side, turn, .. } => {
                 let (upper, lower) = (crown * turn, side * (FRAC_PI_2 - turn));
                 let length = (upper + lower) * share;
                 if length <= upper {
                     return at(length / crown);
                 }
                 let above = (upper + lower) * ((of - part) as f64 / of as f64) / side;
-                (
-                    side_arc(span, side, above),
-                    Vec2::new(above.cos(), above.sin()),
-                )
+                (side_arc(span, side, above), Vec2::new(above.cos(), above.sin()))
             }
         }
     }
@@ -212,27 +132,17 @@ impl Curve {
                 let (x, y) = (half_span * sine, rise * cosine);
                 Vec2::new(half_span * x, rise * y) / x.hypot(y)
             }
-            Curve::Parabolic {
-                rise, curvature, ..
-            } => {
+            Curve::Parabolic { rise, curvature, .. } => {
                 let slope = angle.tan();
                 Vec2::new(slope / curvature, rise - slope * slope / (2.0 * curvature))
             }
-            Curve::Catenary {
-                rise, parameter, ..
-            } => {
+            Curve::Catenary { rise, parameter, .. } => {
                 let slope = angle.tan();
                 let drop = parameter * slope * slope / (slope.hypot(1.0) + 1.0);
                 Vec2::new(parameter * slope.asinh(), rise - drop)
             }
             Curve::Pointed { span, radius, .. } => side_arc(span, radius, FRAC_PI_2 - angle),
-            Curve::ThreeCentred {
-                span,
-                rise,
-                crown,
-                side,
-                turn,
-            } => {
+            Curve::ThreeCentred { span, rise, crown, side, turn } => {
                 if angle <= turn {
                     crown_arc(rise, crown, angle)
                 } else {
@@ -277,9 +187,7 @@ impl Curve {
     /// Least and greatest normal angle of the right half, extended beyond the springing.
     fn angles(&self) -> (f64, f64) {
         match *self {
-            Curve::Segmental { .. } | Curve::Elliptical { .. } | Curve::ThreeCentred { .. } => {
-                (0.0, PI)
-            }
+            Curve::Segmental { .. } | Curve::Elliptical { .. } | Curve::ThreeCentred { .. } => (0.0, PI),
             // Steep legs never become upright.
             Curve::Parabolic { .. } | Curve::Catenary { .. } => (0.0, FRAC_PI_2 - 1e-9),
             Curve::Pointed { opening, .. } => (FRAC_PI_2 - opening, PI),
@@ -296,9 +204,7 @@ impl Curve {
             }
             Curve::Parabolic { curvature, .. } => 1.0 / (curvature * angle.cos().powi(3)),
             Curve::Catenary { parameter, .. } => parameter / angle.cos().powi(2),
-            Curve::ThreeCentred {
-                crown, side, turn, ..
-            } => {
+            Curve::ThreeCentred { crown, side, turn, .. } => {
                 if angle <= turn {
                     crown
                 } else {
@@ -312,12 +218,9 @@ impl Curve {
         match *self {
             Curve::Segmental { span, rise, .. } => {
                 let half = span / 2.0;
-                Vec2::new(2.0 * half * rise, (half - rise) * (half + rise))
-                    / (half * half + rise * rise)
+                Vec2::new(2.0 * half * rise, (half - rise) * (half + rise)) / (half * half + rise * rise)
             }
-            Curve::Elliptical { .. } | Curve::Pointed { .. } | Curve::ThreeCentred { .. } => {
-                Vec2::new(1.0, 0.0)
-            }
+            Curve::Elliptical { .. } | Curve::Pointed { .. } | Curve::ThreeCentred { .. } => Vec2::new(1.0, 0.0),
             Curve::Parabolic { span, rise, .. } => {
                 let slope = 4.0 * rise / span;
                 Vec2::new(slope, 1.0) / slope.hypot(1.0)
@@ -358,18 +261,12 @@ fn direction(angle: f64) -> Vec2 {
 /// On the circle through (0, rise) about (0, rise − radius), `angle` from the vertical. The drop is
 /// written with sin² so that flat arcs keep their digits.
 fn crown_arc(rise: f64, radius: f64, angle: f64) -> Vec2 {
-    Vec2::new(
-        radius * angle.sin(),
-        rise - 2.0 * radius * (angle / 2.0).sin().powi(2),
-    )
+    Vec2::new(radius * angle.sin(), rise - 2.0 * radius * (angle / 2.0).sin().powi(2))
 }
 
 /// On the circle through (span/2, 0) about (span/2 − radius, 0), `above` the horizontal.
 fn side_arc(span: f64, radius: f64, above: f64) -> Vec2 {
-    Vec2::new(
-        span / 2.0 - 2.0 * radius * (above / 2.0).sin().powi(2),
-        radius * above.sin(),
-    )
+    Vec2::new(span / 2.0 - 2.0 * radius * (above / 2.0).sin().powi(2), radius * above.sin())
 }
 
 /// ds/dt of the ellipse (a sin t, b cos t).
@@ -393,8 +290,7 @@ fn elliptic_length(a: f64, b: f64, t: f64) -> f64 {
         if depth == 0 || (left + right - whole).abs() <= 2.0 * f64::EPSILON * scale {
             return left + right;
         }
-        refine(a, b, (ends.0, middle), left, scale, depth - 1)
-            + refine(a, b, (middle, ends.1), right, scale, depth - 1)
+        refine(a, b, (ends.0, middle), left, scale, depth - 1) + refine(a, b, (middle, ends.1), right, scale, depth - 1)
     }
     let whole = panel(a, b, 0.0, t);
     refine(a, b, (0.0, t), whole, whole, 40)
@@ -426,11 +322,7 @@ pub(crate) fn increasing_root(low: f64, high: f64, f: impl Fn(f64) -> (f64, f64)
             high = x;
         }
         let newton = x - value / slope;
-        let next = if newton >= low && newton <= high {
-            newton
-        } else {
-            (low + high) / 2.0
-        };
+        let next = if newton >= low && newton <= high { newton } else { (low + high) / 2.0 };
         let done = (next - x).abs() <= f64::EPSILON * x.abs();
         x = next;
         if done {

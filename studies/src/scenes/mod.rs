@@ -33,8 +33,7 @@ impl From<PlaneState> for Plane {
     }
 }
 
-const WIDTH: Parameter =
-    Parameter::number("width", Quantity::Length, Range::POSITIVE, "out of plane");
+const WIDTH: Parameter = Parameter::number("width", Quantity::Length, Range::POSITIVE, "out of plane");
 
 const PLANE: Parameter = Parameter {
     name: "plane",
@@ -58,44 +57,25 @@ const JOINT: Parameter = Parameter {
 };
 
 /// A point \[x, y\] in m.
-pub(crate) const POINT: Shape = Shape::List {
-    of: &LENGTH,
-    min: 2,
-    max: 2,
-};
+pub(crate) const POINT: Shape = Shape::List { of: &LENGTH, min: 2, max: 2 };
 const LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
 
 /// Index of a material, or a mistake at `path`.
 fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Issue> {
-    catalogue.material(name).ok_or_else(|| {
-        unknown(
-            path,
-            "material",
-            name,
-            catalogue.materials.iter().map(|(name, _)| name.as_str()),
-        )
-    })
+    catalogue
+        .material(name)
+        .ok_or_else(|| unknown(path, "material", name, catalogue.materials.iter().map(|(name, _)| name.as_str())))
 }
 
 /// Index of an interface law, or a mistake at `path`.
 fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Issue> {
-    catalogue.law(name).ok_or_else(|| {
-        unknown(
-            path,
-            "joint law",
-            name,
-            catalogue.laws.iter().map(|(name, _)| name.as_str()),
-        )
-    })
+    catalogue
+        .law(name)
+        .ok_or_else(|| unknown(path, "joint law", name, catalogue.laws.iter().map(|(name, _)| name.as_str())))
 }
 
 /// "There is no such thing", with the nearest right name.
-pub(crate) fn unknown<'a>(
-    path: &str,
-    kind: &str,
-    name: &str,
-    names: impl Iterator<Item = &'a str>,
-) -> Issue {
+pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Issue {
     let issue = Issue::new(path, format!("there is no {kind} called \"{name}\""));
     match nearest(name, names) {
         Some(near) => issue.help(format!("did you mean \"{near}\"?")),
@@ -105,8 +85,7 @@ pub(crate) fn unknown<'a>(
 
 /// An issue at a number that breaks a range; `None` where it does not.
 fn out_of_range(path: &str, value: f64, range: Range) -> Option<Issue> {
-    (!range.contains(value))
-        .then(|| Issue::new(path, format!("{value} must be {}", range.describe())))
+    (!range.contains(value)).then(|| Issue::new(path, format!("{value} must be {}", range.describe())))
 }
 
 /// The value, or its mistake added to the list.
@@ -125,13 +104,7 @@ fn pairs_of(issues: Vec<Issue>) -> Vec<(String, String)> {
 
 /// Issues with paths from the scene's table, now from the study's root.
 fn from_root(issues: Vec<Issue>) -> Vec<Issue> {
-    issues
-        .into_iter()
-        .map(|issue| Issue {
-            path: format!("scene.{}", issue.path),
-            ..issue
-        })
-        .collect()
+    issues.into_iter().map(|issue| Issue { path: format!("scene.{}", issue.path), ..issue }).collect()
 }
 
 #[cfg(test)]
@@ -150,13 +123,11 @@ pub(crate) mod tests {
             let value = serde_json::json!({ "law": "coulomb", "friction": friction });
             Arc::from(serde_json::from_value::<Box<dyn InterfaceLaw>>(value).unwrap())
         };
-        let elastic = serde_json::json!({ "law": "elastic", "young_modulus": 5e9, "poisson_ratio": 0.3, "density": 2200.0 });
+        let elastic =
+            serde_json::json!({ "law": "elastic", "young_modulus": 5e9, "poisson_ratio": 0.3, "density": 2200.0 });
         Catalogue {
             materials: vec![
-                (
-                    "stone".into(),
-                    material(serde_json::json!({ "law": "rigid", "density": 2200.0 })),
-                ),
+                ("stone".into(), material(serde_json::json!({ "law": "rigid", "density": 2200.0 }))),
                 ("elastic".into(), material(elastic)),
             ],
             laws: vec![("dry".into(), law(0.6)), ("wet".into(), law(0.3))],

@@ -71,25 +71,11 @@ pub enum Profile {
     },
 }
 
-const SPAN: Parameter = Parameter::number(
-    "span",
-    Quantity::Length,
-    Range::POSITIVE,
-    "clear span of the intrados",
-);
-const RISE: Parameter = Parameter::number(
-    "rise",
-    Quantity::Length,
-    Range::POSITIVE,
-    "rise of the intrados",
-);
+const SPAN: Parameter = Parameter::number("span", Quantity::Length, Range::POSITIVE, "clear span of the intrados");
+const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSITIVE, "rise of the intrados");
 const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
 
-const VERTICES: Shape = Shape::List {
-    of: &super::POINT,
-    min: 2,
-    max: usize::MAX,
-};
+const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
 
 /// What a profile may hold.
 pub const PROFILE: Shape = Shape::Tagged {
@@ -100,21 +86,9 @@ pub const PROFILE: Shape = Shape::Tagged {
             doc: "circular arc; rise > span/2 is more than a half circle",
             parameters: SPAN_RISE,
         },
-        Variant {
-            tag: "elliptical",
-            doc: "half ellipse",
-            parameters: SPAN_RISE,
-        },
-        Variant {
-            tag: "parabolic",
-            doc: "parabola",
-            parameters: SPAN_RISE,
-        },
-        Variant {
-            tag: "catenary",
-            doc: "hanging chain turned over",
-            parameters: SPAN_RISE,
-        },
+        Variant { tag: "elliptical", doc: "half ellipse", parameters: SPAN_RISE },
+        Variant { tag: "parabolic", doc: "parabola", parameters: SPAN_RISE },
+        Variant { tag: "catenary", doc: "hanging chain turned over", parameters: SPAN_RISE },
         Variant {
             tag: "pointed",
             doc: "two arcs with centres on the springing line, rise ≥ span/2",
@@ -169,14 +143,7 @@ const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
 const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
 
 /// What `springing` may hold.
-pub const SPRINGING: Shape = Shape::Either(&[
-    DEGREES,
-    Shape::List {
-        of: &DEGREES,
-        min: 2,
-        max: 2,
-    },
-]);
+pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::List { of: &DEGREES, min: 2, max: 2 }]);
 
 impl Springing {
     /// [left, right] \[deg\], each with its key.
@@ -204,12 +171,7 @@ pub struct Ring {
 impl Ring {
     /// Voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
     pub fn voussoir(&self, k: usize) -> Vec<Vec2> {
-        vec![
-            self.intrados[k],
-            self.intrados[k + 1],
-            self.extrados[k + 1],
-            self.extrados[k],
-        ]
+        vec![self.intrados[k], self.intrados[k + 1], self.extrados[k + 1], self.extrados[k]]
     }
 
     /// Number of voussoirs.
@@ -232,37 +194,20 @@ impl Profile {
         }
         let mut issues = Vec::new();
         match thickness {
-            None => issues.push(Issue::new(
-                "thickness",
-                "is missing: the thickness of the ring [m]",
-            )),
+            None => issues.push(Issue::new("thickness", "is missing: the thickness of the ring [m]")),
             Some(thickness) => issues.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
         }
         match voussoirs {
-            None => issues.push(Issue::new(
-                "voussoirs",
-                "is missing: the number of voussoirs",
-            )),
+            None => issues.push(Issue::new("voussoirs", "is missing: the number of voussoirs")),
             Some(0) => issues.push(Issue::new("voussoirs", "there must be at least one")),
             Some(_) => {}
         }
         if let Some(springing) = springing {
             let sides = springing.sides();
-            let sides = if sides[0] == sides[1] {
-                &sides[..1]
-            } else {
-                &sides[..]
-            };
-            issues.extend(
-                sides
-                    .iter()
-                    .filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)),
-            );
+            let sides = if sides[0] == sides[1] { &sides[..1] } else { &sides[..] };
+            issues.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
         }
-        let curve = self
-            .curve()
-            .map_err(|mut wrong| issues.append(&mut wrong))
-            .ok();
+        let curve = self.curve().map_err(|mut wrong| issues.append(&mut wrong)).ok();
         let (Some(curve), Some(thickness), Some(voussoirs)) = (curve, thickness, voussoirs) else {
             return Err(issues);
         };
@@ -292,9 +237,7 @@ impl Profile {
         issues.extend(out_of_range("profile.span", span, Range::POSITIVE));
         issues.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
         if issues.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
-            let message = format!(
-                "{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span"
-            );
+            let message = format!("{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span");
             issues.push(Issue::new("profile.rise", message));
         }
         if !issues.is_empty() {
@@ -308,17 +251,12 @@ impl Profile {
             Profile::Pointed { .. } if rise < span / 2.0 => Err(vec![
                 Issue::new(
                     "profile.rise",
-                    format!(
-                        "{rise} m is too low for a pointed arch: at least half the span, {} m",
-                        span / 2.0
-                    ),
+                    format!("{rise} m is too low for a pointed arch: at least half the span, {} m", span / 2.0),
                 )
                 .help("a lower pointed arch needs centres below the springings; give its points"),
             ]),
             Profile::Pointed { .. } => Ok(Curve::pointed(span, rise)),
-            Profile::ThreeCentred { crown_radius, .. } => {
-                three_centred(span, rise, crown_radius).map_err(|i| vec![i])
-            }
+            Profile::ThreeCentred { crown_radius, .. } => three_centred(span, rise, crown_radius).map_err(|i| vec![i]),
             Profile::Points { .. } => unreachable!("returned above"),
         }
     }
@@ -328,25 +266,19 @@ impl Profile {
 /// radius exceeds that of the segmental arc; with more rise the crown arc would turn beyond the upright.
 fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Issue> {
     if rise >= span / 2.0 {
-        let message = format!(
-            "{rise} m is too high for a three-centred arch: less than half the span, {} m",
-            span / 2.0
-        );
+        let message =
+            format!("{rise} m is too high for a three-centred arch: less than half the span, {} m", span / 2.0);
         return Err(Issue::new("profile.rise", message));
     }
     let least = (span * span / 4.0 + rise * rise) / (2.0 * rise);
     let curve = Curve::three_centred(span, rise, crown);
     match curve {
-        Curve::ThreeCentred { side, .. }
-            if crown > least && side > 0.0 && side < crown && crown.is_finite() =>
-        {
+        Curve::ThreeCentred { side, .. } if crown > least && side > 0.0 && side < crown && crown.is_finite() => {
             Ok(curve)
         }
         _ => Err(Issue::new(
             "profile.crown_radius",
-            format!(
-                "{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"
-            ),
+            format!("{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"),
         )),
     }
 }
@@ -362,12 +294,7 @@ fn ring_on(curve: &Curve, thickness: f64, voussoirs: usize) -> Ring {
         intrados.push(if left { mirrored(point) } else { point });
         extrados.push(if left { mirrored(outer) } else { outer });
     }
-    Ring {
-        intrados,
-        extrados,
-        span: 2.0 * curve.half_span(),
-        rise: curve.rise(),
-    }
+    Ring { intrados, extrados, span: 2.0 * curve.half_span(), rise: curve.rise() }
 }
 
 fn mirrored(p: Vec2) -> Vec2 {
@@ -375,12 +302,7 @@ fn mirrored(p: Vec2) -> Vec2 {
 }
 
 /// Moves the end vertices of the extrados along the offset curve onto the support planes.
-fn move_springings(
-    ring: &mut Ring,
-    curve: &Curve,
-    thickness: f64,
-    springing: Springing,
-) -> Result<(), Vec<Issue>> {
+fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Springing) -> Result<(), Vec<Issue>> {
     let last = ring.voussoirs();
     let mut issues = Vec::new();
     for (side, (degrees, key)) in springing.sides().into_iter().enumerate() {
@@ -394,11 +316,7 @@ fn move_springings(
             None => {}
         }
     }
-    if issues.is_empty() {
-        Ok(())
-    } else {
-        Err(issues)
-    }
+    if issues.is_empty() { Ok(()) } else { Err(issues) }
 }
 
 /// Every voussoir must have an area and not cross itself.
@@ -410,18 +328,16 @@ fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<
         issues.push(match springing {
             Some(springing) if k == 0 || k == last => {
                 let (degrees, key) = springing.sides()[usize::from(k == last)];
-                let message = format!("a springing at {degrees} deg cuts voussoir {k} away: it has no area or crosses itself");
+                let message =
+                    format!("a springing at {degrees} deg cuts voussoir {k} away: it has no area or crosses itself");
                 Issue::new(key, message)
             }
-            _ => Issue::new("voussoirs", format!("voussoir {k} has no area or crosses itself")).help("use more voussoirs"),
+            _ => Issue::new("voussoirs", format!("voussoir {k} has no area or crosses itself"))
+                .help("use more voussoirs"),
         });
     }
     issues.dedup_by(|a, b| a.path == b.path);
-    if issues.is_empty() {
-        Ok(())
-    } else {
-        Err(issues)
-    }
+    if issues.is_empty() { Ok(()) } else { Err(issues) }
 }
 
 /// Whether an anticlockwise polygon has an area beyond rounding and does not cross itself.
@@ -439,94 +355,46 @@ fn ring_of_points(
 ) -> Result<Ring, Vec<Issue>> {
     let mut issues = Vec::new();
     if thickness.is_some() {
-        issues.push(
-            Issue::new("thickness", "the points of the profile already fix it")
-                .help("remove this key"),
-        );
+        issues.push(Issue::new("thickness", "the points of the profile already fix it").help("remove this key"));
     }
     if springing.is_some() {
-        issues.push(
-            Issue::new("springing", "the points of the profile already fix it")
-                .help("remove this key"),
-        );
+        issues.push(Issue::new("springing", "the points of the profile already fix it").help("remove this key"));
     }
     if intrados.len() != extrados.len() {
-        let message = format!(
-            "{} points, but the intrados has {}",
-            extrados.len(),
-            intrados.len()
-        );
+        let message = format!("{} points, but the intrados has {}", extrados.len(), intrados.len());
         issues.push(Issue::new("profile.extrados", message).help("give both ends of every joint"));
     }
     if intrados.len() < 2 {
-        issues.push(Issue::new(
-            "profile.intrados",
-            "at least two points: the springings",
-        ));
+        issues.push(Issue::new("profile.intrados", "at least two points: the springings"));
     }
     if let Some(voussoirs) = voussoirs
         && voussoirs + 1 != intrados.len()
     {
-        let message = format!(
-            "{voussoirs}, but {} points make {}",
-            intrados.len(),
-            intrados.len().saturating_sub(1)
-        );
+        let message = format!("{voussoirs}, but {} points make {}", intrados.len(), intrados.len().saturating_sub(1));
         issues.push(Issue::new("voussoirs", message).help("remove this key"));
     }
     for (key, points) in [("intrados", intrados), ("extrados", extrados)] {
-        for (i, point) in points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| !p.iter().all(|x| x.is_finite()))
-        {
-            issues.push(Issue::new(
-                format!("profile.{key}.{i}"),
-                format!("{point:?} is not finite"),
-            ));
+        for (i, point) in points.iter().enumerate().filter(|(_, p)| !p.iter().all(|x| x.is_finite())) {
+            issues.push(Issue::new(format!("profile.{key}.{i}"), format!("{point:?} is not finite")));
         }
     }
     if !issues.is_empty() {
         return Err(issues);
     }
-    let vectors = |points: &[[f64; 2]]| {
-        points
-            .iter()
-            .map(|&[x, y]| Vec2::new(x, y))
-            .collect::<Vec<_>>()
-    };
+    let vectors = |points: &[[f64; 2]]| points.iter().map(|&[x, y]| Vec2::new(x, y)).collect::<Vec<_>>();
     let (intrados, extrados) = (vectors(intrados), vectors(extrados));
     let (first, last) = (intrados[0], intrados[intrados.len() - 1]);
-    let crown = intrados
-        .iter()
-        .fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
-    let ring = Ring {
-        span: last.x - first.x,
-        rise: crown - (first.y + last.y) / 2.0,
-        intrados,
-        extrados,
-    };
+    let crown = intrados.iter().fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
+    let ring = Ring { span: last.x - first.x, rise: crown - (first.y + last.y) / 2.0, intrados, extrados };
     if ring.span <= 0.0 {
-        issues.push(Issue::new(
-            "profile.intrados",
-            "the last point must lie to the right of the first",
-        ));
+        issues.push(Issue::new("profile.intrados", "the last point must lie to the right of the first"));
     }
     for k in (0..ring.voussoirs()).filter(|&k| !is_sound(&ring.voussoir(k))) {
-        let message = format!(
-            "voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over",
-            k + 1
-        );
-        issues.push(
-            Issue::new(format!("profile.intrados.{k}"), message)
-                .help("list both from left to right"),
-        );
+        let message =
+            format!("voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over", k + 1);
+        issues.push(Issue::new(format!("profile.intrados.{k}"), message).help("list both from left to right"));
     }
-    if issues.is_empty() {
-        Ok(ring)
-    } else {
-        Err(issues)
-    }
+    if issues.is_empty() { Ok(ring) } else { Err(issues) }
 }
 
 #[cfg(test)]

@@ -1,10 +1,7 @@
 //! `wall`: bricks in running bond on the ground.
 #![doc = include_str!("wall.md")]
 
-use super::{
-    JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range,
-    pairs_of, take,
-};
+use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue};
 use voussoir_core::card::{Card, check_as};
@@ -84,16 +81,9 @@ impl Wall {
             }
             for (i, row) in rows.iter().enumerate() {
                 if !row.iter().any(|&width| width > 0.0) {
-                    issues.push(Issue::new(
-                        format!("rows.{i}"),
-                        "there is no brick in this row",
-                    ));
+                    issues.push(Issue::new(format!("rows.{i}"), "there is no brick in this row"));
                 }
-                for (j, width) in row
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, w)| !w.is_finite() || w.abs() <= SNAP)
-                {
+                for (j, width) in row.iter().enumerate().filter(|(_, w)| !w.is_finite() || w.abs() <= SNAP) {
                     let message = format!("{width} is no width: > 0 a brick, < 0 an opening");
                     issues.push(Issue::new(format!("rows.{i}.{j}"), message));
                 }
@@ -102,15 +92,9 @@ impl Wall {
         }
         for (key, given) in [("courses", self.courses), ("bricks", self.bricks)] {
             match given {
-                None => issues.push(Issue::new(
-                    key,
-                    "is missing; give courses and bricks, or rows",
-                )),
+                None => issues.push(Issue::new(key, "is missing; give courses and bricks, or rows")),
                 Some(count) if !(1..=MAX_BRICKS).contains(&count) => {
-                    issues.push(Issue::new(
-                        key,
-                        format!("{count} must be from 1 to {MAX_BRICKS}"),
-                    ));
+                    issues.push(Issue::new(key, format!("{count} must be from 1 to {MAX_BRICKS}")));
                 }
                 Some(_) => {}
             }
@@ -121,19 +105,8 @@ impl Wall {
         if !issues.is_empty() {
             return Vec::new();
         }
-        let odd: Vec<_> = std::iter::once(0.5)
-            .chain(vec![1.0; bricks - 1])
-            .chain([0.5])
-            .collect();
-        (0..courses)
-            .map(|course| {
-                if course % 2 == 0 {
-                    vec![1.0; bricks]
-                } else {
-                    odd.clone()
-                }
-            })
-            .collect()
+        let odd: Vec<_> = std::iter::once(0.5).chain(vec![1.0; bricks - 1]).chain([0.5]).collect();
+        (0..courses).map(|course| if course % 2 == 0 { vec![1.0; bricks] } else { odd.clone() }).collect()
     }
 
     /// Sides of the bricks, course by course from the bottom.
@@ -147,10 +120,7 @@ impl Wall {
         if !issues.is_empty() {
             return Err(issues);
         }
-        let mut courses: Vec<_> = widths
-            .iter()
-            .map(|row| course(row, self.brick[0]))
-            .collect();
+        let mut courses: Vec<_> = widths.iter().map(|row| course(row, self.brick[0])).collect();
         for (i, opening) in self.openings.iter().enumerate() {
             if let Err(mut wrong) = self.cut(&mut courses, opening, &format!("openings.{i}")) {
                 issues.append(&mut wrong);
@@ -159,35 +129,20 @@ impl Wall {
         if issues.is_empty() && courses.iter().all(|course| course.is_empty()) {
             issues.push(Issue::new("openings", "no brick is left"));
         }
-        if issues.is_empty() {
-            Ok(courses)
-        } else {
-            Err(issues)
-        }
+        if issues.is_empty() { Ok(courses) } else { Err(issues) }
     }
 
     fn cut(&self, courses: &mut [Course], opening: &Opening, path: &str) -> Result<(), Vec<Issue>> {
         let ([left, bottom], [right, top]) = (opening.from, opening.to);
-        if !(opening
-            .from
-            .iter()
-            .chain(&opening.to)
-            .all(|x| x.is_finite())
-            && left < right
-            && bottom < top)
-        {
-            return Err(vec![Issue::new(
-                path,
-                "from must be the lower left corner, to the upper right one",
-            )]);
+        if !(opening.from.iter().chain(&opening.to).all(|x| x.is_finite()) && left < right && bottom < top) {
+            return Err(vec![Issue::new(path, "from must be the lower left corner, to the upper right one")]);
         }
         let height = self.brick[1];
         let mut issues = Vec::new();
         let mut bed = |key: &str, y: f64| {
             let number = (y / height).round();
             if (y / height - number).abs() > SNAP {
-                let message =
-                    format!("y = {y} m lies between bed joints, which are {height} m apart");
+                let message = format!("y = {y} m lies between bed joints, which are {height} m apart");
                 let near = format!("the nearest is y = {}", number * height);
                 issues.push(Issue::new(format!("{path}.{key}.1"), message).help(near));
             }
@@ -215,11 +170,7 @@ impl Wall {
                 }
             }
         }
-        if any {
-            Ok(())
-        } else {
-            Err(vec![Issue::new(path, "the opening cuts no brick")])
-        }
+        if any { Ok(()) } else { Err(vec![Issue::new(path, "the opening cuts no brick")]) }
     }
 
     fn validate(&self) -> Vec<(String, String)> {
@@ -243,12 +194,7 @@ fn course(row: &[f64], length: f64) -> Course {
 }
 
 fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<Vec2> {
-    vec![
-        Vec2::new(low[0], low[1]),
-        Vec2::new(high[0], low[1]),
-        Vec2::new(high[0], high[1]),
-        Vec2::new(low[0], high[1]),
-    ]
+    vec![Vec2::new(low[0], low[1]), Vec2::new(high[0], low[1]), Vec2::new(high[0], high[1]), Vec2::new(low[0], high[1])]
 }
 
 #[typetag::serde(name = "wall")]
@@ -257,80 +203,36 @@ impl Scene for Wall {
         let mut issues = Vec::new();
         let material = take(material(catalogue, &self.material, "material"), &mut issues);
         let law = take(law(catalogue, &self.joint, "joint"), &mut issues);
-        let courses = self
-            .courses()
-            .map_err(|mut wrong| issues.append(&mut wrong))
-            .ok();
+        let courses = self.courses().map_err(|mut wrong| issues.append(&mut wrong)).ok();
         let (Some(material), Some(law), Some(courses)) = (material, law, courses) else {
             return Err(from_root(issues));
         };
         let [length, height] = self.brick;
-        let end = courses
-            .iter()
-            .flatten()
-            .fold(0.0, |end: f64, brick| end.max(brick[1]));
+        let end = courses.iter().flatten().fold(0.0, |end: f64, brick| end.max(brick[1]));
         let ground = rectangle([-length, -height], [end + length, 0.0]);
-        let mut bodies = vec![Body {
-            name: "ground".into(),
-            vertices: ground,
-            material,
-            fixed: true,
-        }];
+        let mut bodies = vec![Body { name: "ground".into(), vertices: ground, material, fixed: true }];
         for (i, course) in courses.iter().enumerate() {
             let (low, high) = (i as f64 * height, (i + 1) as f64 * height);
             for (j, &[start, end]) in course.iter().enumerate() {
                 let vertices = rectangle([start, low], [end, high]);
-                bodies.push(Body {
-                    name: format!("{i}.{j}"),
-                    vertices,
-                    material,
-                    fixed: false,
-                });
+                bodies.push(Body { name: format!("{i}.{j}"), vertices, material, fixed: false });
             }
         }
         let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
-        let (joints, overlaps) =
-            find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), 0.0));
-        debug_assert!(
-            overlaps.is_empty(),
-            "bricks of a wall overlap: {overlaps:?}"
-        );
+        let (joints, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), 0.0));
+        debug_assert!(overlaps.is_empty(), "bricks of a wall overlap: {overlaps:?}");
         let (width, plane) = (self.width, self.plane.into());
-        Ok(Assembly {
-            catalogue: catalogue.clone(),
-            bodies,
-            joints,
-            width,
-            plane,
-            arch: None,
-        })
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, arch: None })
     }
 }
 
 const SIDE: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
-const COUNT: Shape = Shape::Integer {
-    min: 1,
-    max: MAX_BRICKS as i64,
-};
-const ROW: Shape = Shape::List {
-    of: &Shape::Number(Quantity::Ratio, Range::ANY),
-    min: 1,
-    max: MAX_BRICKS,
-};
+const COUNT: Shape = Shape::Integer { min: 1, max: MAX_BRICKS as i64 };
+const ROW: Shape = Shape::List { of: &Shape::Number(Quantity::Ratio, Range::ANY), min: 1, max: MAX_BRICKS };
 
 const OPENING: &[Parameter] = &[
-    Parameter {
-        name: "from",
-        doc: "lower left corner",
-        shape: POINT,
-        need: Need::Required,
-    },
-    Parameter {
-        name: "to",
-        doc: "upper right corner",
-        shape: POINT,
-        need: Need::Required,
-    },
+    Parameter { name: "from", doc: "lower left corner", shape: POINT, need: Need::Required },
+    Parameter { name: "to", doc: "upper right corner", shape: POINT, need: Need::Required },
 ];
 
 const PARAMETERS: &[Parameter] = &[
@@ -341,11 +243,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "brick",
         doc: "length and height of a brick",
-        shape: Shape::List {
-            of: &SIDE,
-            min: 2,
-            max: 2,
-        },
+        shape: Shape::List { of: &SIDE, min: 2, max: 2 },
         need: Need::Required,
     },
     Parameter {
@@ -354,12 +252,7 @@ const PARAMETERS: &[Parameter] = &[
         shape: Shape::Choice(&["running"]),
         need: Need::Default("\"running\""),
     },
-    Parameter {
-        name: "courses",
-        doc: "number of courses",
-        shape: COUNT,
-        need: Need::Optional("rows is given"),
-    },
+    Parameter { name: "courses", doc: "number of courses", shape: COUNT, need: Need::Optional("rows is given") },
     Parameter {
         name: "bricks",
         doc: "whole bricks in an even course, counted from 0 at the bottom; odd ones begin and end with a half",
@@ -369,21 +262,13 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "rows",
         doc: "from the bottom, widths in brick lengths from the left; a negative number is an opening",
-        shape: Shape::List {
-            of: &ROW,
-            min: 1,
-            max: MAX_BRICKS,
-        },
+        shape: Shape::List { of: &ROW, min: 1, max: MAX_BRICKS },
         need: Need::Optional("courses and bricks are given"),
     },
     Parameter {
         name: "openings",
         doc: "rectangles cut out, between bed joints",
-        shape: Shape::List {
-            of: &Shape::Table(OPENING),
-            min: 0,
-            max: usize::MAX,
-        },
+        shape: Shape::List { of: &Shape::Table(OPENING), min: 0, max: usize::MAX },
         need: Need::Default("[]"),
     },
 ];
@@ -410,13 +295,12 @@ mod tests {
     use serde_json::{Value, json};
 
     fn wall(extra: Value) -> Result<Assembly, Vec<Issue>> {
-        let mut scene = json!({ "scene": "wall", "width": 1.0, "material": "stone", "joint": "dry", "brick": [0.4, 0.175] });
+        let mut scene =
+            json!({ "scene": "wall", "width": 1.0, "material": "stone", "joint": "dry", "brick": [0.4, 0.175] });
         for (key, value) in extra.as_object().unwrap() {
             scene[key] = value.clone();
         }
-        serde_json::from_value::<Box<dyn Scene>>(scene)
-            .unwrap()
-            .build(&catalogue())
+        serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue())
     }
 
     fn counts(extra: Value) -> (usize, usize) {
@@ -436,36 +320,24 @@ mod tests {
             &json!([0.5, 1, -1, 1, 0.5]),
         );
         assert_eq!(counts(three), (46, 102));
-        let four = sequence(
-            &a,
-            &b,
-            &json!([0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5]),
-            &json!([1, -1, 1, -1, 1]),
-        );
+        let four = sequence(&a, &b, &json!([0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5]), &json!([1, -1, 1, -1, 1]));
         assert_eq!(counts(four), (55, 116));
     }
 
     #[test]
     fn courses_and_openings_give_the_wall_that_rows_give() {
         let (even, odd) = (json!([1, 1, 1, 1]), json!([0.5, 1, 1, 1, 0.5]));
-        assert_eq!(
-            counts(json!({ "courses": 3, "bricks": 4 })),
-            counts(json!({ "rows": [even, odd, even] }))
-        );
-        let by_rows =
-            wall(json!({ "rows": [even, [0.5, 1, -1, 1, 0.5], [1, 0.5, -1, 0.5, 1], odd, even] }))
-                .unwrap();
+        assert_eq!(counts(json!({ "courses": 3, "bricks": 4 })), counts(json!({ "rows": [even, odd, even] })));
+        let by_rows = wall(json!({ "rows": [even, [0.5, 1, -1, 1, 0.5], [1, 0.5, -1, 0.5, 1], odd, even] })).unwrap();
         let opening = json!({ "from": [0.6, 0.175], "to": [1.0, 0.35] });
-        let by_cutting = wall(json!({ "courses": 5, "bricks": 4, "openings": [opening, { "from": [0.6, 0.35], "to": [1.0, 0.525] }] })).unwrap();
+        let by_cutting = wall(
+            json!({ "courses": 5, "bricks": 4, "openings": [opening, { "from": [0.6, 0.35], "to": [1.0, 0.525] }] }),
+        )
+        .unwrap();
         assert_eq!(by_rows.joints.len(), by_cutting.joints.len());
         for (one, other) in by_rows.bodies.iter().zip(&by_cutting.bodies) {
             assert_eq!(one.name, other.name);
-            assert!(
-                one.vertices
-                    .iter()
-                    .zip(&other.vertices)
-                    .all(|(a, b)| (a - b).norm() < 1e-12)
-            );
+            assert!(one.vertices.iter().zip(&other.vertices).all(|(a, b)| (a - b).norm() < 1e-12));
         }
     }
 
@@ -475,19 +347,10 @@ mod tests {
         assert_eq!(path(json!({ "courses": 2 })), "scene.bricks");
         assert_eq!(path(json!({ "rows": [[1, 0.0]] })), "scene.rows.0.1");
         assert_eq!(path(json!({ "rows": [[-1]] })), "scene.rows.0");
-        assert_eq!(
-            path(json!({ "rows": [[1]], "courses": 1 })),
-            "scene.courses"
-        );
-        assert_eq!(
-            path(json!({ "courses": 2, "bricks": 2, "brick": [0.4, 0.0] })),
-            "scene.brick.1"
-        );
+        assert_eq!(path(json!({ "rows": [[1]], "courses": 1 })), "scene.courses");
+        assert_eq!(path(json!({ "courses": 2, "bricks": 2, "brick": [0.4, 0.0] })), "scene.brick.1");
         let cut = |from: [f64; 2], to: [f64; 2]| json!({ "courses": 4, "bricks": 4, "openings": [{ "from": from, "to": to }] });
-        assert_eq!(
-            path(cut([0.4, 0.1], [0.8, 0.35])),
-            "scene.openings.0.from.1"
-        );
+        assert_eq!(path(cut([0.4, 0.1], [0.8, 0.35])), "scene.openings.0.from.1");
         assert_eq!(path(cut([0.4, 0.35], [0.8, 0.175])), "scene.openings.0");
         assert_eq!(path(cut([4.0, 0.0], [5.0, 0.175])), "scene.openings.0");
     }

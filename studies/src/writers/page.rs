@@ -4,14 +4,8 @@ use crate::figures::format::{escape, format_short, format_value};
 use voussoir_core::limit::Status;
 
 /// Order of statuses in the summary.
-pub(super) const STATUSES: [Status; 6] = [
-    Status::Collapse,
-    Status::Stands,
-    Status::Unbounded,
-    Status::NoEquilibrium,
-    Status::LimitPoint,
-    Status::Stalled,
-];
+pub(super) const STATUSES: [Status; 6] =
+    [Status::Collapse, Status::Stands, Status::Unbounded, Status::NoEquilibrium, Status::LimitPoint, Status::Stalled];
 
 /// The page's style sheet.
 pub(super) const STYLE: &str = "

@@ -84,11 +84,8 @@ fn summary(study: &StudyOutput) -> String {
         if factors.len() > 1 {
             let (low, high) =
                 factors.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &f| (l.min(f), h.max(f)));
-            text += &format!(
-                " Load factors at collapse run from {} to {}.",
-                format_number(low, 4),
-                format_number(high, 4)
-            );
+            text +=
+                &format!(" Load factors at collapse run from {} to {}.", format_number(low, 4), format_number(high, 4));
         }
     }
     let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.id).collect();
@@ -120,16 +117,13 @@ fn case_table(study: &StudyOutput) -> String {
     let rows = cases.iter().zip(&loads).map(|(case, load)| {
         let mut row = vec![case.id.to_string()];
         row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
-        row.extend(
-            study.sweep_keys.iter().map(|key| case.parameters.get(key).map(page::value).unwrap_or_default()),
-        );
+        row.extend(study.sweep_keys.iter().map(|key| case.parameters.get(key).map(page::value).unwrap_or_default()));
         row.push(status_word(case.status).replace('_', " "));
         row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));
         let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
         row.extend(with_load.then_some(force));
         row.push(
-            case.bounds
-                .map_or(String::new(), |[a, b]| format!("{} … {}", format_number(a, 7), format_number(b, 7))),
+            case.bounds.map_or(String::new(), |[a, b]| format!("{} … {}", format_number(a, 7), format_number(b, 7))),
         );
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| {
             format!("{}{}", kind_words(m.kind), if m.unique == Some(false) { ", not unique" } else { "" })

@@ -8,8 +8,7 @@ pub struct ResultsJson;
 
 impl Writer for ResultsJson {
     fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
-        let text =
-            serde_json::to_string_pretty(study.results).expect("results hold no map with other keys than text");
+        let text = serde_json::to_string_pretty(study.results).expect("results hold no map with other keys than text");
         vec![("results.json".into(), text + "\n")]
     }
 }

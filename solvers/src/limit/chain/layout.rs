@@ -30,10 +30,7 @@ pub fn chains(problem: &LimitProblem) -> Option<Vec<Chain>> {
             (None, None) => return None,
         }
     }
-    if joints_of
-        .iter()
-        .any(|joints| joints.is_empty() || joints.len() > 2)
-    {
+    if joints_of.iter().any(|joints| joints.is_empty() || joints.len() > 2) {
         return None;
     }
     let mut used = vec![false; problem.joints.len()];
@@ -42,10 +39,7 @@ pub fn chains(problem: &LimitProblem) -> Option<Vec<Chain>> {
         if used[first] {
             continue;
         }
-        let mut chain = Chain {
-            links: Vec::new(),
-            closed: false,
-        };
+        let mut chain = Chain { links: Vec::new(), closed: false };
         let (mut joint, mut behind) = (first, None);
         loop {
             used[joint] = true;
@@ -102,10 +96,7 @@ impl Forms {
                 for (position, wrench) in transmitted(chain, wrenches).into_iter().enumerate() {
                     let joint = chain.links[position].0;
                     let forces = resolved(problem, chain, position, wrench * (factor / force));
-                    (0..3).for_each(|i| {
-                        values[joint * stride + i * (variables + 1) + redundants + place] =
-                            forces[i]
-                    });
+                    (0..3).for_each(|i| values[joint * stride + i * (variables + 1) + redundants + place] = forces[i]);
                 }
             }
             if chain.closed {
@@ -114,9 +105,7 @@ impl Forms {
                     wrench[k] = if k == 2 { problem.length } else { 1.0 };
                     for (position, &(joint, _)) in chain.links.iter().enumerate() {
                         let forces = resolved(problem, chain, position, wrench);
-                        (0..3).for_each(|i| {
-                            values[joint * stride + i * (variables + 1) + offset + k] = forces[i]
-                        });
+                        (0..3).for_each(|i| values[joint * stride + i * (variables + 1) + offset + k] = forces[i]);
                     }
                 }
                 offset += 3;
@@ -129,10 +118,7 @@ impl Forms {
 /// The wrench transmitted at each joint onto what lies ahead, with zero redundants: for a closed
 /// chain relative to that at its middle, so that neither end collects all the rounding.
 fn transmitted(chain: &Chain, wrenches: &Wrenches) -> Vec<Vector3<f64>> {
-    let load = |link: &(usize, Option<usize>)| {
-        link.1
-            .map_or(Vector3::zeros(), |g| Vector3::from(wrenches[g]))
-    };
+    let load = |link: &(usize, Option<usize>)| link.1.map_or(Vector3::zeros(), |g| Vector3::from(wrenches[g]));
     let mut sums = vec![Vector3::zeros(); chain.links.len()];
     // Ahead of joint k: R_k + load = R_{k+1}.
     if chain.closed {
@@ -154,12 +140,7 @@ fn transmitted(chain: &Chain, wrenches: &Wrenches) -> Vec<Vector3<f64>> {
 }
 
 /// (N_0, N_1, T) of a joint that transmits `wrench` (about the pole) onto what lies ahead.
-fn resolved(
-    problem: &LimitProblem,
-    chain: &Chain,
-    position: usize,
-    wrench: Vector3<f64>,
-) -> [f64; 3] {
+fn resolved(problem: &LimitProblem, chain: &Chain, position: usize, wrench: Vector3<f64>) -> [f64; 3] {
     let (index, ahead) = chain.links[position];
     let joint = &problem.joints[index];
     let sign = if joint.plus == ahead { 1.0 } else { -1.0 };
@@ -169,9 +150,5 @@ fn resolved(
     let height = (joint.ends[1] - joint.ends[0]).norm();
     // N_1 at end 1 turns clockwise about end 0.
     let n_1 = -about_end / height;
-    [
-        force.dot(&joint.normal) - n_1,
-        n_1,
-        force.dot(&joint.tangent),
-    ]
+    [force.dot(&joint.normal) - n_1, n_1, force.dot(&joint.tangent)]
 }

@@ -19,9 +19,7 @@ use serde::{Deserialize, Serialize};
 use simplex::{Outcome, Program, Solved};
 use voussoir_core::assembly::Wrenches;
 use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::limit::{
-    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Velocity,
-};
+use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Velocity};
 use voussoir_core::schema::PluginKind;
 
 /// Limit analysis of chains.
@@ -39,9 +37,9 @@ impl LimitSolver for LimitChain {
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
-        chains(problem).is_none().then(|| {
-            "its bodies do not form chains between supports; limit_conic takes any scene".into()
-        })
+        chains(problem)
+            .is_none()
+            .then(|| "its bodies do not form chains between supports; limit_conic takes any scene".into())
     }
 }
 
@@ -79,36 +77,23 @@ fn unit(problem: &LimitProblem, wrenches: &Wrenches) -> f64 {
 
 impl<'a> ChainEngine<'a> {
     fn new(problem: &'a LimitProblem) -> Option<Self> {
-        Some(ChainEngine {
-            problem,
-            chains: chains(problem)?,
-            pivots: 0,
-            newton_iterations: 0,
-            programs: 0,
-        })
+        Some(ChainEngine { problem, chains: chains(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
     }
 
     /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given.
     fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>) -> Verdict {
         let force = unit(self.problem, fixed);
-        let columns: Vec<_> = varying
-            .iter()
-            .map(|v| (*v, force / unit(self.problem, v)))
-            .collect();
+        let columns: Vec<_> = varying.iter().map(|v| (*v, force / unit(self.problem, v))).collect();
         let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &columns, force);
         let program = Program::new(self.problem, &forms, force).with_margin();
         match self.run(&program) {
-            Outcome::Optimal(solved) if solved.value >= -1e-12 => {
-                Verdict::Field(program.forces(&solved.point))
-            }
+            Outcome::Optimal(solved) if solved.value >= -1e-12 => Verdict::Field(program.forces(&solved.point)),
             Outcome::Optimal(solved) => {
                 let motion = program.motion(self.problem, &self.chains, &solved.columns);
                 let excess = -solved.value * force;
                 Verdict::Motion(scaled(motion, 1.0 / excess))
             }
-            Outcome::Unbounded(_) | Outcome::Infeasible => {
-                Verdict::Failed("the margin program has no optimum".into())
-            }
+            Outcome::Unbounded(_) | Outcome::Infeasible => Verdict::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Verdict::Failed(why),
         }
     }
@@ -129,11 +114,7 @@ fn scaled(mut motion: Vec<Velocity>, factor: f64) -> Vec<Velocity> {
 
 /// Power of wrenches about the problem's pole on a motion.
 fn power(wrenches: &Wrenches, motion: &[Velocity]) -> f64 {
-    wrenches
-        .iter()
-        .zip(motion)
-        .map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2])
-        .sum()
+    wrenches.iter().zip(motion).map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2]).sum()
 }
 
 impl Engine for ChainEngine<'_> {
@@ -151,21 +132,10 @@ impl Engine for ChainEngine<'_> {
             magnitude => magnitude,
         };
         let factor_unit = force / unit(self.problem, varying);
-        let forms = Forms::new(
-            self.problem,
-            &self.chains,
-            (fixed, 1.0),
-            &[(varying, factor_unit)],
-            force,
-        );
+        let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &[(varying, factor_unit)], force);
         let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
         match self.run(&program) {
-            Outcome::Optimal(Solved {
-                value,
-                point,
-                columns,
-                capped: false,
-            }) => {
+            Outcome::Optimal(Solved { value, point, columns, capped: false }) => {
                 let (columns, unique) = centre(&program, &point, columns);
                 let motion = program.motion(self.problem, &self.chains, &columns);
                 let power = power(varying, &motion);
@@ -182,16 +152,13 @@ impl Engine for ChainEngine<'_> {
                 Greatest::Unbounded(
                     forces
                         .into_iter()
-                        .map(|f| JointForce {
-                            normal: f.normal.map(|n| n / factor_unit),
-                            shear: f.shear / factor_unit,
-                        })
+                        .map(|f| JointForce { normal: f.normal.map(|n| n / factor_unit), shear: f.shear / factor_unit })
                         .collect(),
                 )
             }
-            Outcome::Infeasible => Greatest::Failed(
-                "no admissible field: the start is on the verge of collapse".into(),
-            ),
+            Outcome::Infeasible => {
+                Greatest::Failed("no admissible field: the start is on the verge of collapse".into())
+            }
             Outcome::Failed(why) => Greatest::Failed(why),
         }
     }

@@ -6,60 +6,36 @@ use nalgebra::{DMatrix, DVector};
 /// The analytic centre of all optimal multipliers {y ≥ 0 : Σ y_i a_i = c} over the rows active at
 /// `point`, and whether there is only one. `found` is one of them. The centre does not depend on
 /// the scale of rows and is symmetric where the scene is.
-pub fn centre(
-    program: &Program,
-    point: &[f64],
-    found: Vec<(Column, f64)>,
-) -> (Vec<(Column, f64)>, bool) {
+pub fn centre(program: &Program, point: &[f64], found: Vec<(Column, f64)>) -> (Vec<(Column, f64)>, bool) {
     let mut columns: Vec<Column> = found.iter().map(|(column, _)| *column).collect();
     for column in program.active(point) {
         if column != Column::Cap && !columns.iter().any(|other| same(*other, column)) {
             columns.push(column);
         }
     }
-    let gradients: Vec<DVector<f64>> = columns
-        .iter()
-        .map(|&column| program.gradient(column))
-        .collect();
+    let gradients: Vec<DVector<f64>> = columns.iter().map(|&column| program.gradient(column)).collect();
     let matrix = DMatrix::from_columns(&gradients);
     if rank(&matrix) == columns.len() {
         return (found, true);
     }
     let mut start = DVector::zeros(columns.len());
-    found
-        .iter()
-        .enumerate()
-        .for_each(|(i, (_, weight))| start[i] = *weight);
+    found.iter().enumerate().for_each(|(i, (_, weight))| start[i] = *weight);
     let Some(interior) = interior_point(&matrix, &start) else {
         return (found, false);
     };
     let scale = interior.amax();
-    let support: Vec<usize> = (0..columns.len())
-        .filter(|&i| interior[i] > 1e-9 * scale)
-        .collect();
+    let support: Vec<usize> = (0..columns.len()).filter(|&i| interior[i] > 1e-9 * scale).collect();
     let reduced = matrix.select_columns(&support);
     if rank(&reduced) == support.len() {
         return (found, true);
     }
     let weights = analytic_centre(&reduced, interior.select_rows(&support));
-    (
-        support
-            .iter()
-            .zip(weights.iter())
-            .map(|(&i, &weight)| (columns[i], weight))
-            .collect(),
-        false,
-    )
+    (support.iter().zip(weights.iter()).map(|(&i, &weight)| (columns[i], weight)).collect(), false)
 }
 
 fn same(a: Column, b: Column) -> bool {
     match (a, b) {
-        (
-            Column::Tangent { joint, end, .. },
-            Column::Tangent {
-                joint: j, end: e, ..
-            },
-        ) => (joint, end) == (j, e),
+        (Column::Tangent { joint, end, .. }, Column::Tangent { joint: j, end: e, .. }) => (joint, end) == (j, e),
         _ => a == b,
     }
 }
@@ -112,11 +88,8 @@ fn carry(matrix: &DMatrix<f64>, start: &DVector<f64>, target: usize) -> Option<D
         let pseudo = b.clone().svd(true, true);
         let entering = (0..k).filter(|i| !basis.contains(i)).find_map(|i| {
             let change = pseudo.solve(&matrix.column(i).into_owned(), 1e-12).ok()?;
-            let gain = f64::from(i == target)
-                - basis
-                    .iter()
-                    .position(|&j| j == target)
-                    .map_or(0.0, |place| change[place]);
+            let gain =
+                f64::from(i == target) - basis.iter().position(|&j| j == target).map_or(0.0, |place| change[place]);
             (gain > 1e-10).then_some((i, change))
         });
         let Some((entering, change)) = entering else {
@@ -146,10 +119,7 @@ fn analytic_centre(matrix: &DMatrix<f64>, start: DVector<f64>) -> DVector<f64> {
         let squared = DMatrix::from_diagonal(&y.map(|v| v * v));
         let normal = matrix * &squared * matrix.transpose();
         let residual = &target - matrix * &y;
-        let Ok(nu) = normal
-            .svd(true, true)
-            .solve(&(matrix * &y - residual), 1e-13)
-        else {
+        let Ok(nu) = normal.svd(true, true).solve(&(matrix * &y - residual), 1e-13) else {
             break;
         };
         let step = &y - &squared * matrix.transpose() * nu;

@@ -71,10 +71,7 @@ struct Basis {
 }
 
 enum Ending {
-    Optimal {
-        point: DVector<f64>,
-        weights: DVector<f64>,
-    },
+    Optimal { point: DVector<f64>, weights: DVector<f64> },
     NoLeaving,
     Stuck(String),
 }
@@ -82,14 +79,7 @@ enum Ending {
 impl<'a> Program<'a> {
     /// Maximises the last factor of `forms`.
     pub fn new(problem: &'a LimitProblem, forms: &'a Forms, force: f64) -> Self {
-        Program {
-            problem,
-            forms,
-            force,
-            margin: false,
-            cap: f64::INFINITY,
-            variables: forms.variables,
-        }
+        Program { problem, forms, force, margin: false, cap: f64::INFINITY, variables: forms.variables }
     }
 
     /// Maximises the least slack of all rows instead, up to 1.
@@ -117,39 +107,25 @@ impl<'a> Program<'a> {
         std::array::from_fn(|i| {
             let form = self.form(joint, i);
             let (coefficients, last) = form.split_at(self.forms.variables);
-            coefficients
-                .iter()
-                .zip(point)
-                .map(|(a, x)| a * x)
-                .sum::<f64>()
-                + constant * last[0]
+            coefficients.iter().zip(point).map(|(a, x)| a * x).sum::<f64>() + constant * last[0]
         })
     }
 
     fn slack_variable(&self, point: &[f64]) -> f64 {
-        if self.margin {
-            point[self.variables - 1]
-        } else {
-            0.0
-        }
+        if self.margin { point[self.variables - 1] } else { 0.0 }
     }
 
     fn block(&self, joint: usize) -> Option<StressBlock> {
         self.problem.joints[joint]
             .strength
             .block
-            .map(|b| StressBlock {
-                tension: b.tension / self.force,
-                total: b.total / self.force,
-            })
+            .map(|b| StressBlock { tension: b.tension / self.force, total: b.total / self.force })
     }
 
     /// Coefficients of a column over (N_0, N_1, T); none for cap and artificials.
     fn weights(&self, column: Column) -> Option<(usize, [f64; 3])> {
         match column {
-            Column::Row { joint, row } => {
-                Some((joint, self.problem.joints[joint].strength.rows[row].normal))
-            }
+            Column::Row { joint, row } => Some((joint, self.problem.joints[joint].strength.rows[row].normal)),
             Column::Tangent { joint, end, u } => {
                 let slope = 2.0 * u / self.block(joint)?.total;
                 let mut weights = [slope, slope, 0.0];
@@ -187,9 +163,7 @@ impl<'a> Program<'a> {
             };
         };
         let mut beta = match column {
-            Column::Row { joint, row } => {
-                self.problem.joints[joint].strength.rows[row].bound / self.force
-            }
+            Column::Row { joint, row } => self.problem.joints[joint].strength.rows[row].bound / self.force,
             Column::Tangent { joint, u, .. } => {
                 let block = self.block(joint).expect("tangents belong to stress blocks");
                 u * u / block.total - 2.0 * u / block.total * block.tension + block.tension
@@ -218,13 +192,8 @@ impl<'a> Program<'a> {
             let strength = &self.problem.joints[joint].strength;
             for (row, r) in strength.rows.iter().enumerate() {
                 let column = Column::Row { joint, row };
-                let s = if self.margin && self.has_margin(column) {
-                    slack
-                } else {
-                    0.0
-                };
-                let carried =
-                    r.normal[0] * forces[0] + r.normal[1] * forces[1] + r.normal[2] * forces[2];
+                let s = if self.margin && self.has_margin(column) { slack } else { 0.0 };
+                let carried = r.normal[0] * forces[0] + r.normal[1] * forces[1] + r.normal[2] * forces[2];
                 visit(column, carried + s - constant * r.bound / self.force);
             }
             let Some(block) = self.block(joint) else {
@@ -237,14 +206,7 @@ impl<'a> Program<'a> {
                 if constant == 0.0 {
                     // The tangents at both ends of the parabola bound its recession cone.
                     visit(Column::Tangent { joint, end, u: 0.0 }, slack - w);
-                    visit(
-                        Column::Tangent {
-                            joint,
-                            end,
-                            u: block.total,
-                        },
-                        slack + 2.0 * u - w,
-                    );
+                    visit(Column::Tangent { joint, end, u: block.total }, slack + 2.0 * u - w);
                 } else {
                     let at = u.clamp(0.0, block.total);
                     let violation = (2.0 * u - at) * at / block.total - w + slack;
@@ -266,10 +228,7 @@ impl<'a> Program<'a> {
                 Column::Tangent { .. } if constant != 0.0 => BLOCK_TOLERANCE,
                 _ => ROW_TOLERANCE,
             };
-            if violation > tolerance * size
-                && worst.is_none_or(|(_, w)| violation > w)
-                && !basis.contains(&column)
-            {
+            if violation > tolerance * size && worst.is_none_or(|(_, w)| violation > w) && !basis.contains(&column) {
                 worst = Some((column, violation));
             }
         });
@@ -297,27 +256,21 @@ impl<'a> Program<'a> {
     pub fn solve(&self) -> (Outcome, Work) {
         let mut work = Work::default();
         let m = self.variables;
-        let columns: Vec<_> = (0..m)
-            .map(|variable| {
-                if variable == m - 1 && self.cap.is_finite() {
-                    Column::Cap
-                } else {
-                    Column::Artificial { variable }
-                }
-            })
-            .collect();
-        let mut basis = Basis {
-            columns,
-            matrix: DMatrix::identity(m, m),
-            origin: DMatrix::identity(m, m),
-        };
+        let columns: Vec<_> =
+            (0..m)
+                .map(|variable| {
+                    if variable == m - 1 && self.cap.is_finite() {
+                        Column::Cap
+                    } else {
+                        Column::Artificial { variable }
+                    }
+                })
+                .collect();
+        let mut basis = Basis { columns, matrix: DMatrix::identity(m, m), origin: DMatrix::identity(m, m) };
         if !self.cap.is_finite() {
             match self.iterate(&mut basis, true, &mut work) {
                 Ending::Optimal { point, .. } if point[m - 1] > 1e-9 => {
-                    return (
-                        Outcome::Unbounded((point.clone() / point[m - 1]).as_slice().to_vec()),
-                        work,
-                    );
+                    return (Outcome::Unbounded((point.clone() / point[m - 1]).as_slice().to_vec()), work);
                 }
                 Ending::Optimal { .. } => {}
                 Ending::NoLeaving => {
@@ -339,14 +292,11 @@ impl<'a> Program<'a> {
     fn costs(&self, basis: &Basis, phase_one: bool) -> DVector<f64> {
         DVector::from_iterator(
             self.variables,
-            basis
-                .columns
-                .iter()
-                .map(|&column| match (phase_one, column) {
-                    (true, Column::Artificial { .. }) => 1.0,
-                    (true, _) => 0.0,
-                    (false, _) => self.column(column).1,
-                }),
+            basis.columns.iter().map(|&column| match (phase_one, column) {
+                (true, Column::Artificial { .. }) => 1.0,
+                (true, _) => 0.0,
+                (false, _) => self.column(column).1,
+            }),
         )
     }
 
@@ -360,25 +310,21 @@ impl<'a> Program<'a> {
             let lu = basis.matrix.clone().lu();
             let transposed = basis.matrix.transpose().lu();
             let costs = self.costs(basis, phase_one);
-            let (Some(weights), Some(mut point)) = (lu.solve(&objective), transposed.solve(&costs))
-            else {
+            let (Some(weights), Some(mut point)) = (lu.solve(&objective), transposed.solve(&costs)) else {
                 return Ending::Stuck("the simplex basis became singular".into());
             };
             // One step of refinement: λ is read off this point.
             if let Some(step) = transposed.solve(&(&costs - basis.matrix.transpose() * &point)) {
                 point += step;
             }
-            let Some((column, _)) = self.entering(point.as_slice(), constant, &basis.columns)
-            else {
+            let Some((column, _)) = self.entering(point.as_slice(), constant, &basis.columns) else {
                 return Ending::Optimal { point, weights };
             };
             let a = self.gradient(column);
             let Some(change) = lu.solve(&a) else {
                 return Ending::Stuck("the simplex basis became singular".into());
             };
-            let reference = lu
-                .solve(&basis.origin)
-                .unwrap_or_else(|| DMatrix::identity(m, m));
+            let reference = lu.solve(&basis.origin).unwrap_or_else(|| DMatrix::identity(m, m));
             let Some(leaving) = leaving(&weights, &change, &reference) else {
                 return Ending::NoLeaving;
             };
@@ -417,22 +363,13 @@ impl<'a> Program<'a> {
     }
 
     /// Turns the last basis into an answer; where stress blocks are active, Newton's method on them.
-    fn finish(
-        &self,
-        basis: &Basis,
-        point: DVector<f64>,
-        weights: DVector<f64>,
-        work: &mut Work,
-    ) -> Outcome {
+    fn finish(&self, basis: &Basis, point: DVector<f64>, weights: DVector<f64>, work: &mut Work) -> Outcome {
         let mut merged: Vec<(Column, f64)> = Vec::new();
         for (&column, &weight) in basis.columns.iter().zip(weights.iter()) {
             let same = |other: &Column| match (column, *other) {
-                (
-                    Column::Tangent { joint, end, .. },
-                    Column::Tangent {
-                        joint: j, end: e, ..
-                    },
-                ) => (joint, end) == (j, e),
+                (Column::Tangent { joint, end, .. }, Column::Tangent { joint: j, end: e, .. }) => {
+                    (joint, end) == (j, e)
+                }
                 _ => false,
             };
             match merged.iter_mut().find(|(other, _)| same(other)) {
@@ -442,32 +379,18 @@ impl<'a> Program<'a> {
         }
         merged.retain(|(column, _)| !matches!(column, Column::Artificial { .. }));
         let mut point = point.as_slice().to_vec();
-        if merged
-            .iter()
-            .any(|(column, _)| matches!(column, Column::Tangent { .. }))
+        if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. }))
             && let Err(why) = self.newton(&mut point, &mut merged, work)
         {
             return Outcome::Failed(why);
         }
-        let capped = merged
-            .iter()
-            .any(|&(column, weight)| column == Column::Cap && weight > 1e-9);
+        let capped = merged.iter().any(|&(column, weight)| column == Column::Cap && weight > 1e-9);
         merged.retain(|&(column, weight)| column != Column::Cap && weight > 1e-14);
-        Outcome::Optimal(Solved {
-            value: point[self.variables - 1],
-            point,
-            columns: merged,
-            capped,
-        })
+        Outcome::Optimal(Solved { value: point[self.variables - 1], point, columns: merged, capped })
     }
 
     /// Stationarity Σ y_i ∇c_i(v) = c with c_i(v) = 0 for the columns given.
-    fn newton(
-        &self,
-        point: &mut [f64],
-        columns: &mut [(Column, f64)],
-        work: &mut Work,
-    ) -> Result<(), String> {
+    fn newton(&self, point: &mut [f64], columns: &mut [(Column, f64)], work: &mut Work) -> Result<(), String> {
         let (m, k) = (self.variables, columns.len());
         for _ in 0..30 {
             work.newton_iterations += 1;
@@ -477,19 +400,12 @@ impl<'a> Program<'a> {
             for (place, (column, weight)) in columns.iter_mut().enumerate() {
                 if let Column::Tangent { joint, u, .. } = column {
                     let forces = self.evaluate(*joint, point, 1.0);
-                    let block = self
-                        .block(*joint)
-                        .expect("tangents belong to stress blocks");
+                    let block = self.block(*joint).expect("tangents belong to stress blocks");
                     *u = forces[0] + forces[1] + block.tension;
                     let gradient = DVector::from_fn(m, |i, _| {
-                        if i < self.forms.variables {
-                            self.form(*joint, 0)[i] + self.form(*joint, 1)[i]
-                        } else {
-                            0.0
-                        }
+                        if i < self.forms.variables { self.form(*joint, 0)[i] + self.form(*joint, 1)[i] } else { 0.0 }
                     });
-                    let curvature =
-                        &gradient * gradient.transpose() * (2.0 * *weight / block.total);
+                    let curvature = &gradient * gradient.transpose() * (2.0 * *weight / block.total);
                     kkt.view_mut((0, 0), (m, m)).add_assign_matrix(&curvature);
                 }
                 let (a, beta) = self.column(*column);
@@ -498,8 +414,7 @@ impl<'a> Program<'a> {
                     kkt[(m + place, i)] = a[i];
                     residual[i] += *weight * a[i];
                 }
-                residual[m + place] =
-                    a.iter().zip(point.iter()).map(|(a, x)| a * x).sum::<f64>() - beta;
+                residual[m + place] = a.iter().zip(point.iter()).map(|(a, x)| a * x).sum::<f64>() - beta;
             }
             let size = point.iter().fold(1.0f64, |s, x| s.max(x.abs()));
             if residual.amax() <= 4e-15 * size {
@@ -509,20 +424,14 @@ impl<'a> Program<'a> {
                 return Err("Newton's method on the stress blocks met a singular system".into());
             };
             (0..m).for_each(|i| point[i] -= step[i]);
-            columns
-                .iter_mut()
-                .enumerate()
-                .for_each(|(i, (_, weight))| *weight -= step[m + i]);
+            columns.iter_mut().enumerate().for_each(|(i, (_, weight))| *weight -= step[m + i]);
             if step.rows(0, m).amax() <= 1e-15 * size {
                 break;
             }
         }
         let mut worst = 0.0f64;
         self.scan(point, 1.0, |_, violation| worst = worst.max(violation));
-        let least = columns
-            .iter()
-            .map(|(_, weight)| *weight)
-            .fold(f64::INFINITY, f64::min);
+        let least = columns.iter().map(|(_, weight)| *weight).fold(f64::INFINITY, f64::min);
         if worst > 1e-11 || least < -1e-11 || !worst.is_finite() {
             return Err(format!(
                 "Newton's method on the stress blocks left a violation of {worst:.1e} and a multiplier of {least:.1e}"
@@ -532,34 +441,22 @@ impl<'a> Program<'a> {
     }
 
     fn joint_force(&self, forces: [f64; 3]) -> JointForce {
-        JointForce {
-            normal: [forces[0] * self.force, forces[1] * self.force],
-            shear: forces[2] * self.force,
-        }
+        JointForce { normal: [forces[0] * self.force, forces[1] * self.force], shear: forces[2] * self.force }
     }
 
     /// Joint forces [N] at a point.
     pub fn forces(&self, point: &[f64]) -> Vec<JointForce> {
-        (0..self.problem.joints.len())
-            .map(|joint| self.joint_force(self.evaluate(joint, point, 1.0)))
-            .collect()
+        (0..self.problem.joints.len()).map(|joint| self.joint_force(self.evaluate(joint, point, 1.0))).collect()
     }
 
     /// Joint forces [N] along a direction, without the fixed loads.
     pub fn directions(&self, direction: &[f64]) -> Vec<JointForce> {
-        (0..self.problem.joints.len())
-            .map(|joint| self.joint_force(self.evaluate(joint, direction, 0.0)))
-            .collect()
+        (0..self.problem.joints.len()).map(|joint| self.joint_force(self.evaluate(joint, direction, 0.0))).collect()
     }
 
     /// Velocities of the groups about the pole from the multipliers of the columns: each yielding
     /// row moves its joint by −y times its normal; motions add up along the chain.
-    pub fn motion(
-        &self,
-        problem: &LimitProblem,
-        chains: &[Chain],
-        columns: &[(Column, f64)],
-    ) -> Vec<Velocity> {
+    pub fn motion(&self, problem: &LimitProblem, chains: &[Chain], columns: &[(Column, f64)]) -> Vec<Velocity> {
         let mut rates = vec![[0.0; 3]; problem.joints.len()];
         for &(column, weight) in columns {
             if let Some((joint, weights)) = self.weights(column) {
@@ -576,11 +473,7 @@ impl<'a> Program<'a> {
                 let rotation = (open_0 - open_1) / height;
                 let lever = joint.ends[0] - problem.pole;
                 let at_end: Vector2<f64> = joint.normal * open_0 + joint.tangent * slip;
-                let twist = Vector3::new(
-                    at_end.x + rotation * lever.y,
-                    at_end.y - rotation * lever.x,
-                    rotation,
-                );
+                let twist = Vector3::new(at_end.x + rotation * lever.y, at_end.y - rotation * lever.x, rotation);
                 velocity += if joint.plus == ahead { twist } else { -twist };
                 if let Some(group) = ahead {
                     motion[group] = velocity.into();
@@ -603,11 +496,7 @@ impl AddAssignMatrix for nalgebra::DMatrixViewMut<'_, f64> {
 
 /// The place that leaves: least y/d over d > 0, ties by the lexicographic rule on the rows of
 /// `reference`, which keeps degenerate pivots from cycling.
-fn leaving(
-    weights: &DVector<f64>,
-    change: &DVector<f64>,
-    reference: &DMatrix<f64>,
-) -> Option<usize> {
+fn leaving(weights: &DVector<f64>, change: &DVector<f64>, reference: &DMatrix<f64>) -> Option<usize> {
     let largest = change.amax();
     let candidates = (0..change.len()).filter(|&k| change[k] > 1e-11 * largest.max(1e-300));
     candidates.min_by(|&a, &b| {
@@ -618,10 +507,7 @@ fn leaving(
             return x.total_cmp(&y);
         }
         for column in 0..reference.ncols() {
-            let (x, y) = (
-                ratio(a, reference[(a, column)]),
-                ratio(b, reference[(b, column)]),
-            );
+            let (x, y) = (ratio(a, reference[(a, column)]), ratio(b, reference[(b, column)]));
             if !close(x, y) {
                 return x.total_cmp(&y);
             }

@@ -54,26 +54,14 @@ pub fn solve(system: &System) -> Word {
         push(first, end, -2.0 * kappa);
         push(first + 2, end, 2.0 * kappa);
         block.normal.iter().for_each(|&j| push(first + 1, j, -2.0));
-        right.extend([
-            scaled + kappa * tension,
-            2.0 * tension,
-            scaled - kappa * tension,
-        ]);
+        right.extend([scaled + kappa * tension, 2.0 * tension, scaled - kappa * tension]);
     }
     let a = CscMatrix::new_from_triplets(right.len(), system.variables, rows, columns, values);
     let p = CscMatrix::<f64>::zeros((system.variables, system.variables));
     let mut q = vec![0.0; system.variables];
     q[system.theta] = -1.0;
-    let mut cones = vec![
-        SupportedConeT::ZeroConeT(e),
-        SupportedConeT::NonnegativeConeT(l),
-    ];
-    cones.extend(
-        system
-            .blocks
-            .iter()
-            .map(|_| SupportedConeT::SecondOrderConeT(3)),
-    );
+    let mut cones = vec![SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(l)];
+    cones.extend(system.blocks.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
     let settings = DefaultSettings::<f64> {
         verbose: false,
         max_iter: 200,
@@ -86,10 +74,7 @@ pub fn solve(system: &System) -> Word {
     let mut solver = match DefaultSolver::new(&p, &q, &a, &right, &cones, settings) {
         Ok(solver) => solver,
         Err(error) => {
-            return Word::Other(
-                format!("the conic solver refused the problem: {error:?}"),
-                0,
-            );
+            return Word::Other(format!("the conic solver refused the problem: {error:?}"), 0);
         }
     };
     solver.solve();
@@ -97,13 +82,10 @@ pub fn solve(system: &System) -> Word {
     let iterations = u64::from(solution.iterations);
     let finite = solution.x.iter().chain(&solution.z).all(|v| v.is_finite());
     match solution.status {
-        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-            Word::Unbounded(iterations)
+        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => Word::Unbounded(iterations),
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            Word::Other("the conic solver found no admissible field".into(), iterations)
         }
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Word::Other(
-            "the conic solver found no admissible field".into(),
-            iterations,
-        ),
         // Whatever it calls its end, the polish and the certificate decide what the pair is worth.
         _ if finite => {
             let z = &solution.z;
@@ -119,9 +101,6 @@ pub fn solve(system: &System) -> Word {
             };
             Word::Pair(pair, iterations)
         }
-        status => Word::Other(
-            format!("the conic solver ended with {status:?}"),
-            iterations,
-        ),
+        status => Word::Other(format!("the conic solver ended with {status:?}"), iterations),
     }
 }

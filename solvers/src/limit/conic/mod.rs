@@ -26,14 +26,7 @@ pub struct LimitConic {}
 #[typetag::serde(name = "limit_conic")]
 impl LimitSolver for LimitConic {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
-        answer(
-            problem,
-            question,
-            &mut ConicEngine {
-                problem,
-                work: Counters::new(),
-            },
-        )
+        answer(problem, question, &mut ConicEngine { problem, work: Counters::new() })
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {
@@ -89,10 +82,7 @@ impl ConicEngine<'_> {
                         polished.error
                     ));
                 }
-                Optimum::Found {
-                    pair: polished.pair,
-                    unique: polished.unique,
-                }
+                Optimum::Found { pair: polished.pair, unique: polished.unique }
             }
             Word::Unbounded(iterations) => {
                 self.count("interior_point_iterations", iterations);
@@ -175,11 +165,8 @@ impl Engine for ConicEngine<'_> {
                     return Greatest::Capped(system.forces(&pair.x));
                 }
                 let mut motion = system.motion(&pair.equations);
-                let power: f64 = varying
-                    .iter()
-                    .zip(&motion)
-                    .map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2])
-                    .sum();
+                let power: f64 =
+                    varying.iter().zip(&motion).map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2]).sum();
                 motion.iter_mut().flatten().for_each(|v| *v /= power);
                 return Greatest::Collapse {
                     factor: pair.x[system.theta] * unit,

@@ -55,38 +55,20 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
 }
 
 fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polished> {
-    let items: Vec<Item> = (0..system.rows.len())
-        .map(Item::Row)
-        .chain((0..system.blocks.len()).map(Item::Block))
-        .collect();
-    let mut active: Vec<bool> = items
-        .iter()
-        .map(|&item| multiplier(approximate, item) > -value(system, item, &approximate.x))
-        .collect();
+    let items: Vec<Item> =
+        (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
+    let mut active: Vec<bool> =
+        items.iter().map(|&item| multiplier(approximate, item) > -value(system, item, &approximate.x)).collect();
     let mut best: Option<Polished> = None;
     let (mut factorisations, mut iterations) = (0, 0);
     for _ in 0..6 {
-        let chosen: Vec<Item> = items
-            .iter()
-            .zip(&active)
-            .filter(|(_, a)| **a)
-            .map(|(item, _)| *item)
-            .collect();
-        let mut newton = Newton {
-            system,
-            active: &chosen,
-            pair: clipped(approximate, &items, &active),
-            delta,
-        };
+        let chosen: Vec<Item> = items.iter().zip(&active).filter(|(_, a)| **a).map(|(item, _)| *item).collect();
+        let mut newton = Newton { system, active: &chosen, pair: clipped(approximate, &items, &active), delta };
         let Some(work) = newton.run() else { break };
         factorisations += work.0;
         iterations += work.1;
         let pair = newton.pair;
-        let scale = pair
-            .rows
-            .iter()
-            .chain(&pair.blocks)
-            .fold(1.0f64, |m, y| m.max(y.abs()));
+        let scale = pair.rows.iter().chain(&pair.blocks).fold(1.0f64, |m, y| m.max(y.abs()));
         let mut error = work.2;
         let mut changed = false;
         for (item, active) in items.iter().zip(&mut active) {
@@ -103,23 +85,13 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
         }
         if best.as_ref().is_none_or(|b| error < b.error) {
             let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
-            best = Some(Polished {
-                pair,
-                error,
-                unique,
-                factorisations,
-                iterations,
-            });
+            best = Some(Polished { pair, error, unique, factorisations, iterations });
         }
         if !changed || best.as_ref().is_some_and(|b| b.error < 1e-13) {
             break;
         }
     }
-    best.map(|b| Polished {
-        factorisations,
-        iterations,
-        ..b
-    })
+    best.map(|b| Polished { factorisations, iterations, ..b })
 }
 
 /// The pair with the multipliers of inactive rows set to zero.
@@ -154,8 +126,7 @@ impl Newton<'_> {
         let mut residual = vec![0.0; n + e + self.active.len()];
         residual[system.theta] = -1.0;
         for (i, row) in system.equations.iter().enumerate() {
-            row.iter()
-                .for_each(|&(j, v)| residual[j] += v * self.pair.equations[i]);
+            row.iter().for_each(|&(j, v)| residual[j] += v * self.pair.equations[i]);
             residual[n + i] = dot(row, &self.pair.x) - system.right[i];
         }
         for (k, (item, row)) in self.active.iter().zip(gradients).enumerate() {
@@ -170,10 +141,7 @@ impl Newton<'_> {
     fn run(&mut self) -> Option<(u64, u64, f64)> {
         let system = self.system;
         let (n, e) = (system.variables, system.equations.len());
-        let curved = self
-            .active
-            .iter()
-            .any(|item| matches!(item, Item::Block(_)));
+        let curved = self.active.iter().any(|item| matches!(item, Item::Block(_)));
         let mut factorised: Option<Factorised> = None;
         let (mut factorisations, mut iterations) = (0, 0);
         let mut best = (f64::INFINITY, self.pair.clone());
@@ -219,10 +187,7 @@ impl Newton<'_> {
                 let block = &self.system.blocks[*k];
                 let curvature = 2.0 * self.pair.blocks[*k].max(0.0) / block.strength.total;
                 for &i in &block.normal {
-                    block
-                        .normal
-                        .iter()
-                        .for_each(|&j| entries.push((i, j, curvature)));
+                    block.normal.iter().for_each(|&j| entries.push((i, j, curvature)));
                 }
             }
         }
@@ -256,18 +221,12 @@ fn saddle(system: &System, gradients: &[Row], delta: f64) -> Entries {
 /// support: inverse iteration for the least singular value of J, whose columns are the rows with
 /// positive multipliers.
 fn has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64, delta: f64) -> Option<bool> {
-    let support: Vec<Item> = active
-        .iter()
-        .copied()
-        .filter(|item| multiplier(pair, *item) > 1e-10 * scale)
-        .collect();
+    let support: Vec<Item> = active.iter().copied().filter(|item| multiplier(pair, *item) > 1e-10 * scale).collect();
     let rows = gradients(system, &support, &pair.x);
     let (n, m) = (system.variables, system.equations.len() + rows.len());
     let factorised = Factorised::new(n + m, n, &saddle(system, &rows, delta))?;
     // A fixed, irregular start: no symmetry of the scene is orthogonal to it.
-    let mut v: Vec<f64> = (0..m)
-        .map(|i| 1.0 + 0.37 * ((i as f64 * 0.754_877_666 + 0.1).fract() - 0.5))
-        .collect();
+    let mut v: Vec<f64> = (0..m).map(|i| 1.0 + 0.37 * ((i as f64 * 0.754_877_666 + 0.1).fract() - 0.5)).collect();
     let mut least = f64::INFINITY;
     for _ in 0..8 {
         let norm = v.iter().map(|a| a * a).sum::<f64>().sqrt();

@@ -34,14 +34,7 @@ impl Block {
     /// ∇φ at x.
     pub fn gradient(&self, x: &[f64]) -> Row {
         let slope = 2.0 * self.state(x).0 / self.strength.total;
-        (0..2)
-            .map(|i| {
-                (
-                    self.normal[i],
-                    slope - if i == self.end { 2.0 } else { 0.0 },
-                )
-            })
-            .collect()
+        (0..2).map(|i| (self.normal[i], slope - if i == self.end { 2.0 } else { 0.0 })).collect()
     }
 }
 
@@ -125,24 +118,13 @@ impl System {
                     .collect();
                 if !entries.is_empty() {
                     rows.push(entries);
-                    bounds.push(if loads.strengths {
-                        row.bound / force
-                    } else {
-                        0.0
-                    });
+                    bounds.push(if loads.strengths { row.bound / force } else { 0.0 });
                 }
             }
             match joint.strength.block {
                 Some(block) if loads.strengths => {
-                    let strength = StressBlock {
-                        tension: block.tension / force,
-                        total: block.total / force,
-                    };
-                    blocks.extend((0..2).map(|end| Block {
-                        normal: [first, first + 1],
-                        end,
-                        strength,
-                    }));
+                    let strength = StressBlock { tension: block.tension / force, total: block.total / force };
+                    blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
                 }
                 Some(_) => {
                     // A bounded normal force has no direction to grow in.
@@ -177,39 +159,20 @@ impl System {
             bounds.push(cap);
             rows.len() - 1
         });
-        System {
-            variables,
-            theta,
-            equations,
-            right,
-            rows,
-            bounds,
-            cap,
-            blocks,
-            joints,
-            force,
-            length,
-        }
+        System { variables, theta, equations, right, rows, bounds, cap, blocks, joints, force, length }
     }
 
     /// Joint forces [N].
     pub fn forces(&self, x: &[f64]) -> Vec<JointForce> {
         let force = |&(first, shear): &(usize, bool)| JointForce {
             normal: [x[first] * self.force, x[first + 1] * self.force],
-            shear: if shear {
-                x[first + 2] * self.force
-            } else {
-                0.0
-            },
+            shear: if shear { x[first + 2] * self.force } else { 0.0 },
         };
         self.joints.iter().map(force).collect()
     }
 
     /// Velocities about the pole from the multipliers of equilibrium, up to a common factor.
     pub fn motion(&self, multipliers: &[f64]) -> Vec<Velocity> {
-        multipliers
-            .chunks(3)
-            .map(|q| [q[0], q[1], q[2] / self.length])
-            .collect()
+        multipliers.chunks(3).map(|q| [q[0], q[1], q[2] / self.length]).collect()
     }
 }
