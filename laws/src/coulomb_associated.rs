@@ -5,7 +5,7 @@ use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::card::{Capability, Card, check_as};
 use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::schema::{Parameter, PluginKind};
+use voussoir_core::schema::PluginKind;
 
 /// Dry friction with associated flow.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -4,9 +4,11 @@
 //! nothing) and reads study files, expands them into cases, answers them and writes results.
 #![forbid(unsafe_code)]
 
+pub mod config;
 pub mod loads;
 pub mod results;
 pub mod scenes;
+pub mod study;
 
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;
