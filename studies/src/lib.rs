@@ -5,10 +5,15 @@
 #![forbid(unsafe_code)]
 
 pub mod answer;
+pub mod config;
 pub mod figures;
+pub mod kinds;
 pub mod loads;
+pub mod plan;
 pub mod results;
 pub mod scenes;
+pub mod study;
+pub mod verify;
 pub mod writers;
 
 pub use voussoir_core as core;

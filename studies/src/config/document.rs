@@ -1,0 +1,449 @@
+//! A TOML document as a tree in which every key and value knows where it was written.
+//!
+//! Only the form is read here; what keys mean is checked in [`super::check`].
+
+use crate::config::report::Mistake;
+use std::fmt;
+use std::sync::Arc;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Where something was written.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Origin {
+    /// In a file; line and column count from 1, columns in characters.
+    File {
+        /// Its name as it was given.
+        file: Arc<str>,
+        /// From 1.
+        line: usize,
+        /// From 1.
+        column: usize,
+    },
+    /// On the command line, as `--set KEY=…`.
+    Set(Arc<str>),
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Origin::File { file, line, column } => write!(out, "{file}:{line}:{column}"),
+            Origin::Set(key) => write!(out, "--set {key}"),
+        }
+    }
+}
+
+/// A value and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// The value.
+    pub value: Value,
+    /// Its place; for a `[table]` the place of its header.
+    pub origin: Origin,
+}
+
+/// A TOML value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// Text.
+    String(String),
+    /// A whole number.
+    Integer(i64),
+    /// A number, possibly nan or inf.
+    Float(f64),
+    /// `true` or `false`.
+    Boolean(bool),
+    /// A date or time, which no key of a study takes.
+    Date(String),
+    /// A list.
+    Array(Vec<Node>),
+    /// A table, in the order of the file.
+    Table(Table),
+}
+
+/// A table in the order of the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// Its entries.
+    pub entries: Vec<Entry>,
+}
+
+/// A key with its value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where the key stands.
+    pub origin: Origin,
+    /// Its value.
+    pub node: Node,
+}
+
+impl Table {
+    /// The entry under `key`.
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    /// The value under `key`.
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    /// The value under `key`, to be changed.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        self.entries
+            .iter_mut()
+            .find(|entry| entry.key == key)
+            .map(|entry| &mut entry.node)
+    }
+
+    /// The keys in order.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().map(|entry| entry.key.as_str())
+    }
+}
+
+impl Node {
+    /// The table, if it is one.
+    pub fn table(&self) -> Option<&Table> {
+        match &self.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// The list, if it is one.
+    pub fn array(&self) -> Option<&[Node]> {
+        match &self.value {
+            Value::Array(nodes) => Some(nodes),
+            _ => None,
+        }
+    }
+
+    /// The text, if it is one.
+    pub fn text(&self) -> Option<&str> {
+        match &self.value {
+            Value::String(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The number, if it is one.
+    pub fn number(&self) -> Option<f64> {
+        match self.value {
+            Value::Integer(whole) => Some(whole as f64),
+            Value::Float(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// What kind of value it is, in words.
+    pub fn describe(&self) -> String {
+        match &self.value {
+            Value::String(text) => format!("the text \"{text}\""),
+            Value::Integer(whole) => format!("the number {whole}"),
+            Value::Float(number) => format!("the number {number}"),
+            Value::Boolean(value) => format!("{value}"),
+            Value::Date(_) => "a date".into(),
+            Value::Array(_) => "a list".into(),
+            Value::Table(_) => "a table".into(),
+        }
+    }
+
+    /// The entry or list element at a dotted path with list indices, or its nearest ancestor that
+    /// exists: the place where it was written.
+    pub fn place(&self, path: &str) -> Origin {
+        let mut node = self;
+        let mut origin = &self.origin;
+        for segment in crate::config::overlay::segments(path) {
+            match &node.value {
+                Value::Table(table) => match table.entry(&segment) {
+                    Some(entry) => {
+                        // A value's own place says more than its key's, except for tables with a header.
+                        origin = &entry.node.origin;
+                        node = &entry.node;
+                    }
+                    None => break,
+                },
+                Value::Array(nodes) => {
+                    match segment.parse::<usize>().ok().and_then(|i| nodes.get(i)) {
+                        Some(next) => {
+                            origin = &next.origin;
+                            node = next;
+                        }
+                        None => break,
+                    }
+                }
+                _ => break,
+            }
+        }
+        origin.clone()
+    }
+
+    /// The same value as plain TOML.
+    pub fn to_toml(&self) -> toml::Value {
+        match &self.value {
+            Value::String(text) | Value::Date(text) => toml::Value::String(text.clone()),
+            Value::Integer(whole) => toml::Value::Integer(*whole),
+            Value::Float(number) => toml::Value::Float(*number),
+            Value::Boolean(value) => toml::Value::Boolean(*value),
+            Value::Array(nodes) => toml::Value::Array(nodes.iter().map(Node::to_toml).collect()),
+            Value::Table(table) => toml::Value::Table(
+                table
+                    .entries
+                    .iter()
+                    .map(|entry| (entry.key.clone(), entry.node.to_toml()))
+                    .collect(),
+            ),
+        }
+    }
+
+    /// The same value as JSON; a number that is not finite becomes `null`.
+    pub fn to_json(&self) -> serde_json::Value {
+        match &self.value {
+            Value::String(text) | Value::Date(text) => text.clone().into(),
+            Value::Integer(whole) => (*whole).into(),
+            Value::Float(number) => (*number).into(),
+            Value::Boolean(value) => (*value).into(),
+            Value::Array(nodes) => nodes.iter().map(Node::to_json).collect(),
+            Value::Table(table) => serde_json::Value::Object(
+                table
+                    .entries
+                    .iter()
+                    .map(|entry| (entry.key.clone(), entry.node.to_json()))
+                    .collect(),
+            ),
+        }
+    }
+
+    /// Gives the whole tree one origin.
+    pub fn set_origin(&mut self, to: &Origin) {
+        self.origin = to.clone();
+        match &mut self.value {
+            Value::Array(nodes) => nodes.iter_mut().for_each(|node| node.set_origin(to)),
+            Value::Table(table) => {
+                for entry in &mut table.entries {
+                    entry.origin = to.clone();
+                    entry.node.set_origin(to);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Reads a document. Errors are all syntax errors found.
+pub fn parse(text: &str, file: &str) -> Result<Node, Vec<Mistake>> {
+    let reader = Reader::new(text, file);
+    let (root, errors) = DeTable::parse_recoverable(text);
+    let mut mistakes: Vec<Mistake> = Vec::new();
+    for error in &errors {
+        let origin = reader.origin(error.span().map_or(0, |span| span.start));
+        let mistake = reader.syntax_mistake(origin, error, text);
+        if !mistakes
+            .iter()
+            .any(|earlier| earlier.origin == mistake.origin)
+        {
+            mistakes.push(mistake);
+        }
+    }
+    if !mistakes.is_empty() {
+        return Err(mistakes);
+    }
+    let node = reader.table(root.get_ref(), reader.origin(0), &mut mistakes);
+    if mistakes.is_empty() {
+        Ok(node)
+    } else {
+        Err(mistakes)
+    }
+}
+
+/// Reads one value, as it stands behind an `=`; everything in it gets the origin `origin`.
+/// `None` where the text is no TOML value.
+pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
+    let Ok(Node {
+        value: Value::Table(mut table),
+        ..
+    }) = parse(&format!("value = {text}"), "")
+    else {
+        return None;
+    };
+    if table.entries.len() != 1 {
+        return None;
+    }
+    let mut node = table.entries.pop()?.node;
+    node.set_origin(origin);
+    Some(node)
+}
+
+struct Reader {
+    file: Arc<str>,
+    /// Byte where each line starts.
+    lines: Vec<usize>,
+    text: String,
+}
+
+impl Reader {
+    fn new(text: &str, file: &str) -> Self {
+        let lines = std::iter::once(0)
+            .chain(text.match_indices('\n').map(|(at, _)| at + 1))
+            .collect();
+        Reader {
+            file: file.into(),
+            lines,
+            text: text.into(),
+        }
+    }
+
+    fn origin(&self, byte: usize) -> Origin {
+        let line = self.lines.partition_point(|&start| start <= byte);
+        let start = self.lines[line - 1];
+        let column = self
+            .text
+            .get(start..byte)
+            .map_or(1, |before| before.chars().count() + 1);
+        Origin::File {
+            file: self.file.clone(),
+            line,
+            column,
+        }
+    }
+
+    fn syntax_mistake(&self, origin: Origin, error: &toml::de::Error, text: &str) -> Mistake {
+        let message = error.message();
+        if message.contains("duplicate key") {
+            let key = error
+                .span()
+                .and_then(|span| text.get(span))
+                .unwrap_or_default()
+                .trim();
+            return Mistake::new(&origin, key, "is given twice in the same table")
+                .help("keep one of the two");
+        }
+        Mistake::new(&origin, "", format!("this is not TOML: {message}"))
+    }
+
+    fn table(&self, table: &DeTable<'_>, origin: Origin, mistakes: &mut Vec<Mistake>) -> Node {
+        let entries = table
+            .iter()
+            .map(|(key, value)| {
+                let place = self.origin(key.span().start);
+                Entry {
+                    key: key.get_ref().to_string(),
+                    node: self.node(value, &place, mistakes),
+                    origin: place,
+                }
+            })
+            .collect();
+        Node {
+            value: Value::Table(Table { entries }),
+            origin,
+        }
+    }
+
+    /// `key` is the place of the key, which tables with a header are known by.
+    fn node(
+        &self,
+        value: &Spanned<DeValue<'_>>,
+        key: &Origin,
+        mistakes: &mut Vec<Mistake>,
+    ) -> Node {
+        let origin = self.origin(value.span().start);
+        let value = match value.get_ref() {
+            DeValue::String(text) => Value::String(text.to_string()),
+            DeValue::Integer(whole) => match i64::from_str_radix(whole.as_str(), whole.radix()) {
+                Ok(whole) => Value::Integer(whole),
+                Err(_) => {
+                    let message = format!("{whole} is too large for a whole number");
+                    mistakes.push(
+                        Mistake::new(&origin, "", message).help("write it with a decimal point"),
+                    );
+                    Value::Integer(0)
+                }
+            },
+            DeValue::Float(number) => Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(value) => Value::Boolean(*value),
+            DeValue::Datetime(date) => Value::Date(date.to_string()),
+            DeValue::Array(values) => Value::Array(
+                values
+                    .iter()
+                    .map(|value| self.node(value, &self.origin(value.span().start), mistakes))
+                    .collect(),
+            ),
+            DeValue::Table(table) => {
+                let inline = self.text.as_bytes().get(self.byte(&origin)) == Some(&b'{');
+                let origin = if inline { origin } else { key.clone() };
+                return self.table(table, origin, mistakes);
+            }
+        };
+        Node { value, origin }
+    }
+
+    fn byte(&self, origin: &Origin) -> usize {
+        let Origin::File { line, column, .. } = origin else {
+            return 0;
+        };
+        let start = self.lines[line - 1];
+        self.text[start..]
+            .char_indices()
+            .nth(column - 1)
+            .map_or(self.text.len(), |(at, _)| start + at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(origin: &Origin) -> (usize, usize) {
+        match origin {
+            Origin::File { line, column, .. } => (*line, *column),
+            Origin::Set(_) => (0, 0),
+        }
+    }
+
+    #[test]
+    fn values_and_headers_know_their_place() {
+        let text = "name = \"x\"\n[scene]\nµ = 1 # two-byte key\nprofile = { rise = 2.0 }\n\n[[stages]]\nname = \"live\"\n\n[joints.dry]\nlaw = \"coulomb\"\n";
+        let root = parse(text, "a.toml").unwrap();
+        assert_eq!(at(&root.place("scene")), (2, 2));
+        assert_eq!(at(&root.place("scene.µ")), (3, 5));
+        assert_eq!(at(&root.place("scene.profile.rise")), (4, 20));
+        assert_eq!(
+            at(&root.place("scene.profile.span")),
+            (4, 11),
+            "an absent key is its table's"
+        );
+        assert_eq!(at(&root.place("stages.0.name")), (7, 8));
+        assert_eq!(at(&root.place("stages.0.factor")), (6, 1));
+        assert_eq!(at(&root.place("joints.dry.friction")), (9, 9));
+    }
+
+    #[test]
+    fn order_of_keys_is_kept() {
+        let root = parse("[b]\nz = 1\na = 2\n[a]\n", "a.toml").unwrap();
+        assert_eq!(root.table().unwrap().keys().collect::<Vec<_>>(), ["b", "a"]);
+        assert_eq!(
+            root.table()
+                .unwrap()
+                .get("b")
+                .unwrap()
+                .table()
+                .unwrap()
+                .keys()
+                .collect::<Vec<_>>(),
+            ["z", "a"]
+        );
+    }
+
+    #[test]
+    fn several_syntax_errors_are_found_at_once() {
+        let mistakes = parse("a = \nb = 1\nc = [1,, 2]\nb = 3\n", "a.toml").unwrap_err();
+        let lines: Vec<_> = mistakes
+            .iter()
+            .map(|mistake| at(&mistake.origin).0)
+            .collect();
+        assert_eq!(lines, [1, 3, 4]);
+    }
+}

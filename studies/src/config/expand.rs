@@ -1,0 +1,500 @@
+//! Variants and sweeps: the cases of a study. Variants are outermost, then the axes of the sweep
+//! in the order of the file, the first slowest.
+
+use crate::config::document::{Node, Origin, Table, Value};
+use crate::config::overlay::{join, set};
+use crate::config::report::{Mistake, suggest};
+use serde_json::{Map, Value as Json};
+
+/// Greatest number of cases.
+pub const MAX_CASES: usize = 1_000_000;
+
+/// Keys that change together.
+#[derive(Debug)]
+struct Axis {
+    keys: Vec<(String, Origin)>,
+    /// For each step a value per key.
+    values: Vec<Vec<Node>>,
+}
+
+#[derive(Debug)]
+struct Variant {
+    name: Option<String>,
+    set: Vec<(String, Origin, Node)>,
+}
+
+/// The cases of a study, made one at a time.
+#[derive(Debug)]
+pub struct Plan {
+    base: Node,
+    variants: Vec<Variant>,
+    axes: Vec<Axis>,
+}
+
+/// One case before its check.
+#[derive(Debug)]
+pub struct Expanded {
+    /// Name of its variant.
+    pub variant: Option<String>,
+    /// Swept key → value.
+    pub parameters: Map<String, Json>,
+    /// The whole study file of this case, without `sweep` and `variants`.
+    pub root: Node,
+}
+
+/// `x` rounded to 12 significant digits, so that 5.69 − 9 · 0.30 is 2.99.
+pub fn rounded(x: f64) -> f64 {
+    if x.is_finite() {
+        format!("{x:.11e}").parse().unwrap_or(x)
+    } else {
+        x
+    }
+}
+
+impl Plan {
+    /// Reads `sweep` and `variants` of a study file; all mistakes in them.
+    pub fn new(root: &Node) -> Result<Self, Vec<Mistake>> {
+        let mut mistakes = Vec::new();
+        let table = root.table().cloned().unwrap_or_default();
+        let axes = table
+            .get("sweep")
+            .map(|node| axes(node, &mut mistakes))
+            .unwrap_or_default();
+        let mut variants = table
+            .get("variants")
+            .map(|node| read_variants(node, &mut mistakes))
+            .unwrap_or_default();
+        let swept: Vec<&str> = axes
+            .iter()
+            .flat_map(|axis| &axis.keys)
+            .map(|(key, _)| key.as_str())
+            .collect();
+        for (index, (key, origin)) in axes.iter().flat_map(|axis| &axis.keys).enumerate() {
+            if swept[..index].contains(&key.as_str()) {
+                mistakes.push(
+                    Mistake::new(origin, key, "is swept twice").help("keep one of the two axes"),
+                );
+            }
+        }
+        for (key, origin, _) in variants.iter().flat_map(|variant| &variant.set) {
+            if swept.contains(&key.as_str()) {
+                let help = "remove it from the sweep or from the variant";
+                mistakes.push(
+                    Mistake::new(origin, key, "is set by a variant, but swept too").help(help),
+                );
+            }
+        }
+        if variants.is_empty() {
+            variants.push(Variant {
+                name: None,
+                set: Vec::new(),
+            });
+        }
+        let base = Table {
+            entries: table
+                .entries
+                .into_iter()
+                .filter(|e| e.key != "sweep" && e.key != "variants")
+                .collect(),
+        };
+        let plan = Plan {
+            base: Node {
+                value: Value::Table(base),
+                origin: root.origin.clone(),
+            },
+            variants,
+            axes,
+        };
+        let count = plan.axes.iter().try_fold(plan.variants.len(), |n, axis| {
+            n.checked_mul(axis.values.len())
+        });
+        if count.is_none_or(|count| count > MAX_CASES) {
+            let count = count.map_or("far too many".into(), |count| count.to_string());
+            let message = format!("makes {count} cases; a study holds at most {MAX_CASES}");
+            mistakes.push(
+                Mistake::new(&root.place("sweep"), "sweep", message)
+                    .help("use fewer values per axis"),
+            );
+        }
+        if mistakes.is_empty() {
+            Ok(plan)
+        } else {
+            Err(mistakes)
+        }
+    }
+
+    /// Keys that are swept.
+    pub fn swept(&self) -> impl Iterator<Item = &str> {
+        self.axes
+            .iter()
+            .flat_map(|axis| &axis.keys)
+            .map(|(key, _)| key.as_str())
+    }
+
+    /// Number of cases.
+    pub fn count(&self) -> usize {
+        self.axes
+            .iter()
+            .map(|axis| axis.values.len())
+            .product::<usize>()
+            * self.variants.len()
+    }
+
+    /// Case `id < count()`.
+    pub fn case(&self, id: usize) -> Result<Expanded, Vec<Mistake>> {
+        let mut rest = id;
+        let mut steps = vec![0; self.axes.len()];
+        for (step, axis) in steps.iter_mut().zip(&self.axes).rev() {
+            (*step, rest) = (rest % axis.values.len(), rest / axis.values.len());
+        }
+        let variant = &self.variants[rest];
+        let (mut root, mut mistakes, mut parameters) = (self.base.clone(), Vec::new(), Map::new());
+        for (key, origin, value) in &variant.set {
+            mistakes.extend(set(&mut root, key, value.clone(), origin).err());
+        }
+        for (axis, &step) in self.axes.iter().zip(&steps) {
+            for ((key, origin), value) in axis.keys.iter().zip(&axis.values[step]) {
+                parameters.insert(key.clone(), value.to_json());
+                mistakes.extend(set(&mut root, key, value.clone(), origin).err());
+            }
+        }
+        if mistakes.is_empty() {
+            Ok(Expanded {
+                variant: variant.name.clone(),
+                parameters,
+                root,
+            })
+        } else {
+            Err(mistakes)
+        }
+    }
+}
+
+fn read_variants(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Variant> {
+    let mut out: Vec<Variant> = Vec::new();
+    for (index, node) in node.array().unwrap_or_default().iter().enumerate() {
+        let Some(table) = node.table() else { continue };
+        let name = table.get("name").and_then(Node::text).map(str::to_string);
+        if name.is_some() && out.iter().any(|earlier| earlier.name == name) {
+            let key = join(&join("variants", &index.to_string()), "name");
+            let message = format!(
+                "two variants are called \"{}\"",
+                name.clone().unwrap_or_default()
+            );
+            let place = table.get("name").map_or(&node.origin, |name| &name.origin);
+            mistakes.push(
+                Mistake::new(place, key, message).help("give each variant a name of its own"),
+            );
+        }
+        let set = table
+            .get("set")
+            .and_then(Node::table)
+            .map(|set| set.entries.as_slice())
+            .unwrap_or_default();
+        let set = set
+            .iter()
+            .map(|e| (e.key.clone(), e.origin.clone(), e.node.clone()))
+            .collect();
+        out.push(Variant { name, set });
+    }
+    out
+}
+
+fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
+    let Some(table) = node.table() else {
+        let message = format!(
+            "must be a table from keys to axes, but is {}",
+            node.describe()
+        );
+        mistakes.push(Mistake::new(&node.origin, "sweep", message));
+        return Vec::new();
+    };
+    let mut axes = Vec::new();
+    for entry in &table.entries {
+        if entry.key != "zip" {
+            if let Some(values) = axis(&entry.node, &join("sweep", &entry.key), mistakes) {
+                let values = values.into_iter().map(|value| vec![value]).collect();
+                axes.push(Axis {
+                    keys: vec![(entry.key.clone(), entry.origin.clone())],
+                    values,
+                });
+            }
+            continue;
+        }
+        let mut keys = Vec::new();
+        let mut columns: Vec<Vec<Node>> = Vec::new();
+        for entry in entry
+            .node
+            .table()
+            .map(|table| table.entries.as_slice())
+            .unwrap_or_default()
+        {
+            let path = join("sweep.zip", &entry.key);
+            let Some(values) = axis(&entry.node, &path, mistakes) else {
+                continue;
+            };
+            if let Some(first) = columns.first()
+                && first.len() != values.len()
+            {
+                let message = format!(
+                    "has {} values, but {} has {}; keys in [sweep.zip] change together",
+                    values.len(),
+                    keys_name(&keys),
+                    first.len()
+                );
+                mistakes.push(
+                    Mistake::new(&entry.node.origin, path, message)
+                        .help("give both the same number of values"),
+                );
+                continue;
+            }
+            keys.push((entry.key.clone(), entry.origin.clone()));
+            columns.push(values);
+        }
+        let steps = columns.first().map_or(0, Vec::len);
+        if steps > 0 {
+            let values = (0..steps)
+                .map(|i| columns.iter().map(|column| column[i].clone()).collect())
+                .collect();
+            axes.push(Axis { keys, values });
+        }
+    }
+    axes
+}
+
+fn keys_name(keys: &[(String, Origin)]) -> &str {
+    keys.first().map_or("", |(key, _)| key)
+}
+
+const FORMS: &str = "write { list = [1.0, 2.0] }, { from = 1.0, to = 2.0, step = 0.5 } or { from = 1.0, to = 2.0, count = 3 }, and the swept key in quotes: \"scene.profile.rise\"";
+
+/// The values of one axis; `None` where it has mistakes.
+fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
+    let before = mistakes.len();
+    let Some(table) = node.table() else {
+        mistakes.push(
+            Mistake::new(
+                &node.origin,
+                path,
+                format!("must be a table, but is {}", node.describe()),
+            )
+            .help(FORMS),
+        );
+        return None;
+    };
+    for entry in &table.entries {
+        let names = ["list", "from", "to", "step", "count"];
+        if !names.contains(&entry.key.as_str()) {
+            let help = match voussoir_core::card::nearest(&entry.key, names) {
+                Some(_) => suggest(&entry.key, &names, "keys here"),
+                None => FORMS.into(),
+            };
+            mistakes.push(
+                Mistake::new(
+                    &entry.origin,
+                    join(path, &entry.key),
+                    "is not a key of an axis",
+                )
+                .help(help),
+            );
+        }
+    }
+    if mistakes.len() > before {
+        return None;
+    }
+    let given: Vec<&str> = table.keys().collect();
+    let values = match (table.get("list"), given.len()) {
+        (Some(list), 1) => listed(list, &join(path, "list"), mistakes),
+        (None, 3) if !(given.contains(&"step") && given.contains(&"count")) => {
+            spaced(node, table, path, mistakes)
+        }
+        _ => {
+            let message = format!("has the keys {}, which is no axis", given.join(", "));
+            mistakes.push(Mistake::new(&node.origin, path, message).help(FORMS));
+            None
+        }
+    };
+    values.filter(|_| mistakes.len() == before)
+}
+
+fn listed(list: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
+    let Some(nodes) = list.array().filter(|nodes| !nodes.is_empty()) else {
+        let message = "must be a list of at least one value";
+        mistakes.push(Mistake::new(&list.origin, path, message));
+        return None;
+    };
+    let mut values = nodes.to_vec();
+    for (index, node) in values.iter_mut().enumerate() {
+        match &mut node.value {
+            Value::Float(number) => *number = rounded(*number),
+            Value::Integer(_) | Value::String(_) | Value::Boolean(_) => {}
+            _ => {
+                let message = format!(
+                    "a swept value is a number, a text, true or false, but this is {}",
+                    node.describe()
+                );
+                let help = "sweep a single number of it (its index from 0 is part of the key), or use variants";
+                mistakes.push(
+                    Mistake::new(&node.origin, join(path, &index.to_string()), message).help(help),
+                );
+            }
+        }
+    }
+    Some(values)
+}
+
+fn spaced(
+    node: &Node,
+    table: &Table,
+    path: &str,
+    mistakes: &mut Vec<Mistake>,
+) -> Option<Vec<Node>> {
+    let mut number = |key: &str| -> Option<f64> {
+        let value = table.get(key)?;
+        let number = value.number().filter(|number| number.is_finite());
+        if number.is_none() {
+            let message = format!("must be a finite number, but is {}", value.describe());
+            mistakes.push(Mistake::new(&value.origin, join(path, key), message));
+        }
+        number
+    };
+    let (from, to, step, count) = (
+        number("from"),
+        number("to"),
+        number("step"),
+        number("count"),
+    );
+    let (from, to) = (from?, to?);
+    let mut wrong = |key: &str, message: String, help: &str| -> Option<Vec<Node>> {
+        mistakes.push(Mistake::new(&table.get(key)?.origin, join(path, key), message).help(help));
+        None
+    };
+    let (count, step) = match (step, count) {
+        (Some(0.0), _) => {
+            return wrong(
+                "step",
+                "is zero, so the sweep would never end".into(),
+                "give a step towards `to`",
+            );
+        }
+        (Some(step), _) => {
+            if (to - from) * step < 0.0 {
+                let message =
+                    format!("{step} leads away from {to}, since the sweep starts at {from}");
+                return wrong(
+                    "step",
+                    message,
+                    "change the sign of the step, or swap from and to",
+                );
+            }
+            ((to - from) / step + 1e-9, Some(step))
+        }
+        (None, Some(count)) => {
+            if count < 1.0 || count.fract() != 0.0 {
+                return wrong(
+                    "count",
+                    format!("must be a whole number of at least 1, but is {count}"),
+                    "give the number of values",
+                );
+            }
+            (count - 1.0, None)
+        }
+        (None, None) => return None,
+    };
+    if count >= MAX_CASES as f64 {
+        let key = if step.is_some() { "step" } else { "count" };
+        return wrong(
+            key,
+            format!(
+                "makes {:.0} values; a study holds at most {MAX_CASES}",
+                count.floor() + 1.0
+            ),
+            "use fewer values",
+        );
+    }
+    let last = count.floor();
+    let at = |i: f64| match step {
+        Some(step) => from + i * step,
+        None if last == 0.0 => from,
+        None => from + (to - from) * (i / last),
+    };
+    let numbers: Vec<f64> = (0..=last as usize).map(|i| rounded(at(i as f64))).collect();
+    let written_whole = table
+        .entries
+        .iter()
+        .all(|entry| matches!(entry.node.value, Value::Integer(_)));
+    let whole = written_whole && numbers.iter().all(|number| number.fract() == 0.0);
+    let value = |number: f64| {
+        if whole {
+            Value::Integer(number as i64)
+        } else {
+            Value::Float(number)
+        }
+    };
+    Some(
+        numbers
+            .into_iter()
+            .map(|number| Node {
+                value: value(number),
+                origin: node.origin.clone(),
+            })
+            .collect(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::document::parse;
+
+    fn plan(text: &str) -> Result<Plan, Vec<Mistake>> {
+        Plan::new(&parse(text, "a.toml").unwrap())
+    }
+
+    fn column(plan: &Plan, key: &str) -> Vec<Json> {
+        (0..plan.count())
+            .map(|id| plan.case(id).unwrap().parameters[key].clone())
+            .collect()
+    }
+
+    #[test]
+    fn the_value_used_is_the_rounded_one() {
+        let plan = plan("[scene]\nrise = 1.0\n[sweep]\n\"scene.rise\" = { from = 5.69, to = 0.29, step = -0.30 }").unwrap();
+        let rises = column(&plan, "scene.rise");
+        assert_eq!(rises.len(), 19);
+        assert_eq!(rises[9].as_f64(), Some(2.99));
+        assert_eq!(rises[18].as_f64(), Some(0.29));
+        assert_eq!(
+            plan.case(9).unwrap().root.to_json()["scene"]["rise"].as_f64(),
+            Some(2.99)
+        );
+    }
+
+    #[test]
+    fn variants_are_outermost_and_the_first_axis_is_slowest() {
+        let text = "[sweep]\n\"a\" = { list = [1, 2] }\n\"b\" = { from = 0, to = 4, count = 3 }\n[[variants]]\nname = \"x\"\n[[variants]]\nname = \"y\"\nset = { c = true }";
+        let plan = plan(text).unwrap();
+        assert_eq!(plan.count(), 12);
+        assert_eq!(column(&plan, "a")[..6], [1, 1, 1, 2, 2, 2].map(Json::from));
+        assert_eq!(column(&plan, "b")[..4], [0, 2, 4, 0].map(Json::from));
+        assert_eq!(plan.case(5).unwrap().variant.as_deref(), Some("x"));
+        assert_eq!(plan.case(6).unwrap().root.to_json()["c"], true);
+    }
+
+    #[test]
+    fn keys_under_zip_change_together() {
+        let plan =
+            plan("[sweep.zip]\n\"a\" = { list = [1, 2] }\n\"b\" = { list = [3, 4] }").unwrap();
+        assert_eq!(
+            (column(&plan, "a"), column(&plan, "b")),
+            (vec![1.into(), 2.into()], vec![3.into(), 4.into()])
+        );
+    }
+
+    #[test]
+    fn too_many_cases_are_a_mistake() {
+        let axis = "{ from = 1, to = 2000, step = 1 }";
+        let mistakes = plan(&format!("[sweep]\n\"a\" = {axis}\n\"b\" = {axis}")).unwrap_err();
+        assert!(mistakes[0].message.contains("makes 4000000 cases"));
+    }
+}

@@ -1,0 +1,180 @@
+//! JSON Schema (draft 2020-12) of study files, for editors: the study's schema and all cards.
+
+use crate::config::check::{common_parameters, common_words};
+use crate::config::document::{Origin, parse_value};
+use serde_json::{Map, Value as Json, json};
+use voussoir_core::card::{Card, cards_of};
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+
+/// The schema of study files.
+pub fn json_schema() -> Json {
+    let mut definitions = Map::new();
+    for kind in [
+        PluginKind::InterfaceLaw,
+        PluginKind::BulkMaterial,
+        PluginKind::Scene,
+        PluginKind::LimitSolver,
+    ] {
+        let mut choices = Vec::new();
+        for word in common_words(kind) {
+            choices.push(plugin(
+                &mut definitions,
+                kind,
+                word,
+                "chosen by the program",
+                &[],
+            ));
+        }
+        for Card {
+            tag,
+            summary,
+            parameters,
+            ..
+        } in cards_of(kind)
+        {
+            choices.push(plugin(&mut definitions, kind, tag, summary, parameters));
+        }
+        definitions.insert(name_of(kind), json!({ "oneOf": choices }));
+    }
+    let mut root = table(crate::study::STUDY, None);
+    root["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+    root["title"] = "Voussoir study".into();
+    root["$defs"] = Json::Object(definitions);
+    root
+}
+
+fn name_of(kind: PluginKind) -> String {
+    kind.describe().replace(' ', "_")
+}
+
+fn plugin(
+    defs: &mut Map<String, Json>,
+    kind: PluginKind,
+    tag: &str,
+    summary: &str,
+    own: &[Parameter],
+) -> Json {
+    let common = common_parameters(kind)
+        .iter()
+        .filter(|p| own.iter().all(|o| o.name != p.name));
+    let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
+    // Keys of other plug-ins of the kind are accepted, so that swapping one is a single line.
+    for other in cards_of(kind).iter().flat_map(|card| card.parameters) {
+        if parameters.iter().all(|p| p.name != other.name) {
+            parameters.push(other.optional("not used here"));
+        }
+    }
+    let mut schema = table(&parameters, Some((kind.tag_key(), tag)));
+    schema["description"] = summary.into();
+    let name = format!("{}_{tag}", name_of(kind));
+    defs.insert(name.clone(), schema);
+    json!({ "$ref": format!("#/$defs/{name}") })
+}
+
+fn table(parameters: &[Parameter], tag: Option<(&str, &str)>) -> Json {
+    let mut properties = Map::new();
+    let mut required = Vec::new();
+    if let Some((key, word)) = tag {
+        properties.insert(key.into(), json!({ "const": word }));
+        required.push(Json::from(key));
+    }
+    for parameter in parameters {
+        let mut schema = shape(&parameter.shape);
+        let mut text = parameter.doc.to_string();
+        if let Shape::Number(quantity, _) = parameter.shape
+            && quantity != Quantity::Ratio
+        {
+            text = format!("{text} [{}]", quantity.unit());
+        }
+        match parameter.need {
+            Need::Required => required.push(parameter.name.into()),
+            Need::Optional(otherwise) => text = format!("{text}; if absent: {otherwise}"),
+            Need::Default(value) => {
+                if let Some(value) = parse_value(value, &Origin::Set("".into())) {
+                    schema["default"] = value.to_json();
+                }
+            }
+        }
+        schema["description"] = text.into();
+        properties.insert(parameter.name.into(), schema);
+    }
+    json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
+}
+
+fn number(range: &Range) -> Json {
+    let mut schema = json!({ "type": "number" });
+    if range.min.is_finite() {
+        schema[if range.min_open {
+            "exclusiveMinimum"
+        } else {
+            "minimum"
+        }] = range.min.into();
+    }
+    if range.max.is_finite() {
+        schema[if range.max_open {
+            "exclusiveMaximum"
+        } else {
+            "maximum"
+        }] = range.max.into();
+    }
+    schema
+}
+
+fn shape(of: &Shape) -> Json {
+    match of {
+        Shape::Number(_, range) => json!({ "anyOf": [number(range), { "type": "string" }] }),
+        Shape::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Shape::Boolean => json!({ "type": "boolean" }),
+        Shape::Text | Shape::Reference(_) => json!({ "type": "string" }),
+        Shape::Choice(words) => json!({ "enum": words }),
+        Shape::List { of, min, max } => {
+            let mut schema = json!({ "type": "array", "items": shape(of), "minItems": min });
+            if *max < usize::MAX {
+                schema["maxItems"] = (*max).into();
+            }
+            schema
+        }
+        Shape::Table(parameters) => table(parameters, None),
+        Shape::Tagged { key, variants } => {
+            let choices: Vec<_> = variants
+                .iter()
+                .map(|variant| {
+                    let mut schema = table(variant.parameters, Some((key, variant.tag)));
+                    schema["description"] = variant.doc.into();
+                    schema
+                })
+                .collect();
+            json!({ "oneOf": choices })
+        }
+        Shape::Either(shapes) => json!({ "anyOf": shapes.iter().map(shape).collect::<Vec<_>>() }),
+        Shape::Plugin(kind) => json!({ "$ref": format!("#/$defs/{}", name_of(*kind)) }),
+        Shape::Map(of) => json!({ "type": "object", "additionalProperties": shape(of) }),
+        Shape::Free => json!({}),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reference_has_a_definition_and_every_law_its_own() {
+        let schema = json_schema();
+        let text = schema.to_string();
+        for target in text
+            .split("\"#/$defs/")
+            .skip(1)
+            .filter_map(|rest| rest.split('"').next())
+        {
+            assert!(schema["$defs"].get(target).is_some(), "{target}");
+        }
+        let coulomb = &schema["$defs"]["interface_law_coulomb"];
+        assert_eq!(coulomb["properties"]["law"]["const"], "coulomb");
+        assert_eq!(
+            coulomb["properties"]["friction"]["anyOf"][0]["minimum"],
+            0.0
+        );
+        assert_eq!(coulomb["additionalProperties"], false);
+    }
+}
