@@ -107,10 +107,10 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
             let lower = check.field(claim).then_some(claim.field_factor);
             let upper = check.upper_bound(claim);
             match (lower, upper, claim.factor) {
-                (Some(lower), Some(upper), Some(factor)) => {
+                (Some(lower), Some((upper, uncertain)), Some(factor)) => {
                     let scale = lower.abs().max(upper.abs()).max(check.factor_scale());
                     let spread = (upper - lower).abs().max((factor - lower).abs()) / scale;
-                    check.residual("gap", spread, gap);
+                    check.residual("gap", spread, gap.max(uncertain / scale));
                     bounds = Some([lower.min(upper), upper.max(lower)]);
                 }
                 _ => check.fail("a collapse needs a factor, an admissible field and a mechanism"),
@@ -266,9 +266,7 @@ impl Check<'_> {
         self.residual("ray_strength", self.violation(ray, false) / scale, ROUNDING);
     }
 
-    /// Power of fixed and varying loads, power dissipated, and the greatest motion that no force of
-    /// the law could do, relative to the greatest jump.
-    fn powers(&self, motion: &[CentroidVelocity]) -> (f64, f64, f64, f64) {
+    fn powers(&self, motion: &[CentroidVelocity]) -> Powers {
         let (mut fixed, mut varying) = (0.0, 0.0);
         for body in self.free_bodies() {
             let c = self.assembly.inertia(body).centroid;
@@ -279,7 +277,7 @@ impl Check<'_> {
         }
         let jumps = jumps(self.assembly, motion);
         let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
-        let (mut dissipated, mut impossible) = (0.0, 0.0f64);
+        let (mut dissipated, mut impossible, mut uncertain) = (0.0, 0.0f64, 0.0);
         for (joint, jump) in self.assembly.joints.iter().zip(&jumps) {
             let Bond::Law(law) = joint.bond else {
                 impossible = impossible.max(jump.size());
@@ -291,18 +289,23 @@ impl Check<'_> {
                     impossible = impossible.max(-(ray[0] * open + ray[1] * jump.slip));
                 }
             }
-            dissipated += support_integral(&polygon.vertices, jump) * joint.height() * self.assembly.width;
+            let area = joint.height() * self.assembly.width;
+            dissipated += support_integral(&polygon.vertices, jump) * area;
+            let strongest = polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+            uncertain += 8.0 * f64::EPSILON * strongest * area * jump.size();
         }
-        (fixed, varying, dissipated, impossible / largest)
+        Powers { fixed, varying, dissipated, uncertain, impossible: impossible / largest }
     }
 
-    fn upper_bound(&mut self, claim: &Claim) -> Option<f64> {
+    /// The factor that the motion proves, and by how much rounding of its jumps can change it where
+    /// strengths are far beyond the forces.
+    fn upper_bound(&mut self, claim: &Claim) -> Option<(f64, f64)> {
         let motion = claim.motion?;
-        let (fixed, varying, dissipated, impossible) = self.powers(motion);
+        let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
         self.held(motion);
         let flows = self.residual("flow", impossible, ROUNDING);
         let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
-        (flows && scaled).then(|| (dissipated - fixed) / varying)
+        (flows && scaled).then(|| ((dissipated - fixed) / varying, uncertain / varying.abs()))
     }
 
     /// Held bodies do not move.
@@ -317,7 +320,7 @@ impl Check<'_> {
             return self.fail("no motion that refutes equilibrium");
         };
         self.held(motion);
-        let (fixed, varying, dissipated, impossible) = self.powers(motion);
+        let Powers { fixed, varying, dissipated, impossible, .. } = self.powers(motion);
         self.residual("flow", impossible, ROUNDING);
         let excess = fixed + claim.start * varying - dissipated;
         let largest = largest_jump(&jumps(self.assembly, motion));
@@ -339,6 +342,20 @@ impl Check<'_> {
             }
         }
     }
+}
+
+/// Powers on a motion.
+struct Powers {
+    /// Of the fixed loads.
+    fixed: f64,
+    /// Of the varying loads.
+    varying: f64,
+    /// Dissipated in the joints.
+    dissipated: f64,
+    /// Rounding of the jumps times the strengths: what of `dissipated` means nothing.
+    uncertain: f64,
+    /// The greatest motion that no force of a law could do, relative to the greatest jump.
+    impossible: f64,
 }
 
 /// ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area.

@@ -195,7 +195,7 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
             }
         }
     }
-    let block = greatest.is_finite().then(|| StressBlock { tension, total: (greatest - least) * area });
+    let block = greatest.is_finite().then_some(StressBlock { tension, total: (greatest - least) * area });
     Ok(JointStrength { rows, block })
 }
 

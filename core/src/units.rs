@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(read(Quantity::Length, "1e-1 m"), 0.1);
         assert_eq!(read(Quantity::Force, "-1_000"), -1000.0);
         assert!((read(Quantity::Density, "21.582 kN/m3") - 2200.0).abs() < 1e-9);
-        assert!((read(Quantity::Stress, "1 psi") - 6894.757_293_168).abs() < 1e-6);
+        assert!((read(Quantity::Stress, "1 psi") - 6_894.757_293_168).abs() < 1e-6);
         assert!((read(Quantity::Radians, "180 deg") - std::f64::consts::PI).abs() < 1e-15);
     }
 

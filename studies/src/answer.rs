@@ -86,12 +86,10 @@ pub fn answer(question: &Question) -> CaseResult {
             hinges,
         };
         // Stages answered by this one's check of its start.
-        for earlier in done.len()..index {
-            let carried = result.status != Status::NoEquilibrium && result.status != Status::Stalled;
-            let Target::Factor(factor) = stages[earlier].target else {
-                continue;
-            };
-            let status = if carried { Status::Stands } else { result.status };
+        let carried = !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
+        let status = if carried { Status::Stands } else { result.status };
+        for (earlier, covered) in stages.iter().enumerate().take(index).skip(done.len()) {
+            let Target::Factor(factor) = covered.target else { continue };
             done.push(stage(earlier, status, carried.then_some(factor), Vec::new()));
         }
         let reached = match (result.status, stages[index].target) {
@@ -279,8 +277,8 @@ fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactF
             if force.normal[0] >= 0.0 && force.normal[1] >= 0.0 && sum > 0.0 { force.normal[end] / sum } else { 0.5 }
         };
         let shears = [force.shear * share(0), force.shear - force.shear * share(0)];
-        for end in 0..2 {
-            let force = [force.normal[end], shears[end]];
+        for (end, shear) in shears.into_iter().enumerate() {
+            let force = [force.normal[end], shear];
             contacts.push(ContactForce { joint: joint.joint, point: joint.ends[end], force });
         }
     }

@@ -201,8 +201,8 @@ impl<'a> Program<'a> {
             };
             let tension = constant * block.tension;
             let u = forces[0] + forces[1] + tension;
-            for end in 0..2 {
-                let w = 2.0 * forces[end] + tension;
+            for (end, normal) in forces.into_iter().take(2).enumerate() {
+                let w = 2.0 * normal + tension;
                 if constant == 0.0 {
                     // The tangents at both ends of the parabola bound its recession cone.
                     visit(Column::Tangent { joint, end, u: 0.0 }, slack - w);
