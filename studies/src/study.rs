@@ -23,12 +23,7 @@ use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
 use voussoir_core::units::Quantity;
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
-    Parameter {
-        name,
-        doc,
-        shape,
-        need,
-    }
+    Parameter { name, doc, shape, need }
 }
 
 static LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
@@ -38,22 +33,8 @@ static MATERIAL: Shape = Shape::Plugin(PluginKind::BulkMaterial);
 static LAW: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
 
 static SETTLEMENT: Shape = Shape::Table(&[
-    key(
-        "support",
-        Shape::Text,
-        Need::Required,
-        "left, right, or the name of a fixed block",
-    ),
-    key(
-        "displacement",
-        Shape::List {
-            of: &LENGTH,
-            min: 2,
-            max: 2,
-        },
-        Need::Default("[0.0, 0.0]"),
-        "movement [x, y]",
-    ),
+    key("support", Shape::Text, Need::Required, "left, right, or the name of a fixed block"),
+    key("displacement", Shape::List { of: &LENGTH, min: 2, max: 2 }, Need::Default("[0.0, 0.0]"), "movement [x, y]"),
     Parameter::number(
         "rotation",
         Quantity::Radians,
@@ -64,32 +45,19 @@ static SETTLEMENT: Shape = Shape::Table(&[
 ]);
 
 static STAGE: Shape = Shape::Table(&[
-    key(
-        "name",
-        Shape::Text,
-        Need::Required,
-        "name of the stage, unique in the study",
-    ),
+    key("name", Shape::Text, Need::Required, "name of the stage, unique in the study"),
     key(
         "gravity",
         Shape::Either(&[
             Shape::Number(Quantity::Acceleration, Range::NON_NEGATIVE),
-            Shape::List {
-                of: &ACCELERATION,
-                min: 2,
-                max: 2,
-            },
+            Shape::List { of: &ACCELERATION, min: 2, max: 2 },
         ]),
         Need::Optional("gravity stays as it was"),
         "gravity from this stage on: downwards, or a vector [gx, gy]",
     ),
     key(
         "loads",
-        Shape::List {
-            of: &LOAD,
-            min: 0,
-            max: usize::MAX,
-        },
+        Shape::List { of: &LOAD, min: 0, max: usize::MAX },
         Need::Default("[]"),
         "loads, multiplied by the stage's factor",
     ),
@@ -99,34 +67,13 @@ static STAGE: Shape = Shape::Table(&[
         Need::Optional("the stage goes to its factor"),
         "\"collapse\": raise the factor until collapse",
     ),
-    Parameter::number(
-        "factor",
-        Quantity::Ratio,
-        Range::ANY,
-        "factor of this stage's loads",
-    )
-    .optional("1.0, unless until is given"),
-    Parameter::number(
-        "factor_min",
-        Quantity::Ratio,
-        Range::ANY,
-        "least factor searched",
-    )
-    .optional("0"),
-    Parameter::number(
-        "factor_max",
-        Quantity::Ratio,
-        Range::ANY,
-        "greatest factor searched",
-    )
-    .optional("unlimited"),
+    Parameter::number("factor", Quantity::Ratio, Range::ANY, "factor of this stage's loads")
+        .optional("1.0, unless until is given"),
+    Parameter::number("factor_min", Quantity::Ratio, Range::ANY, "least factor searched").optional("0"),
+    Parameter::number("factor_max", Quantity::Ratio, Range::ANY, "greatest factor searched").optional("unlimited"),
     key(
         "settlement",
-        Shape::List {
-            of: &SETTLEMENT,
-            min: 0,
-            max: usize::MAX,
-        },
+        Shape::List { of: &SETTLEMENT, min: 0, max: usize::MAX },
         Need::Default("[]"),
         "movements of supports",
     ),
@@ -140,23 +87,13 @@ static STOP: Shape = Shape::Table(&[
         "displacement of the load point behind a peak",
     )
     .optional("not a limit"),
-    Parameter::number(
-        "factor",
-        Quantity::Ratio,
-        Range::ANY,
-        "load factor at which a path ends",
-    )
-    .optional("not a limit"),
+    Parameter::number("factor", Quantity::Ratio, Range::ANY, "load factor at which a path ends")
+        .optional("not a limit"),
 ]);
 
 /// Keys of `[solver]` that every solver has.
 pub static SOLVER: &[Parameter] = &[
-    key(
-        "kinematics",
-        Shape::Choice(&["small", "finite"]),
-        Need::Default("\"small\""),
-        "small or finite displacements",
-    ),
+    key("kinematics", Shape::Choice(&["small", "finite"]), Need::Default("\"small\""), "small or finite displacements"),
     key(
         "continuation",
         Shape::Free,
@@ -170,111 +107,44 @@ pub static SOLVER: &[Parameter] = &[
         "relative tolerance of certificates",
     )
     .default("1e-9"),
-    key(
-        "stop",
-        STOP,
-        Need::Optional("the path ends at collapse"),
-        "how far to go behind a peak",
-    ),
+    key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go behind a peak"),
 ];
 
 static AXIS: Shape = Shape::Table(&[
     key(
         "list",
-        Shape::List {
-            of: &FREE,
-            min: 1,
-            max: usize::MAX,
-        },
+        Shape::List { of: &FREE, min: 1, max: usize::MAX },
         Need::Optional("from and to are given"),
         "the values",
     ),
     Parameter::number("from", Quantity::Ratio, Range::ANY, "first value").optional("list is given"),
     Parameter::number("to", Quantity::Ratio, Range::ANY, "last value").optional("list is given"),
-    Parameter::number("step", Quantity::Ratio, Range::ANY, "step towards `to`")
-        .optional("count is given"),
-    key(
-        "count",
-        Shape::Integer {
-            min: 1,
-            max: 1_000_000,
-        },
-        Need::Optional("step is given"),
-        "number of values",
-    ),
+    Parameter::number("step", Quantity::Ratio, Range::ANY, "step towards `to`").optional("count is given"),
+    key("count", Shape::Integer { min: 1, max: 1_000_000 }, Need::Optional("step is given"), "number of values"),
 ]);
 static AXES: Shape = Shape::Either(&[AXIS, Shape::Map(&AXIS)]);
 
 static VARIANT: Shape = Shape::Table(&[
-    key(
-        "name",
-        Shape::Text,
-        Need::Required,
-        "name of the variant, unique in the study",
-    ),
-    key(
-        "set",
-        Shape::Map(&FREE),
-        Need::Default("{}"),
-        "dotted keys in quotes, with the values they take",
-    ),
+    key("name", Shape::Text, Need::Required, "name of the variant, unique in the study"),
+    key("set", Shape::Map(&FREE), Need::Default("{}"), "dotted keys in quotes, with the values they take"),
 ]);
 
 static OUTPUT: Shape = Shape::Table(&[
-    key(
-        "curve",
-        Shape::Boolean,
-        Need::Default("false"),
-        "force-displacement points",
-    ),
-    key(
-        "figures",
-        Shape::Boolean,
-        Need::Default("true"),
-        "figures and the report",
-    ),
-    key(
-        "vtu",
-        Shape::Boolean,
-        Need::Default("false"),
-        "files for ParaView",
-    ),
+    key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
+    key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
+    key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView"),
 ]);
 
 /// The keys of a study file.
 pub static STUDY: &[Parameter] = &[
     key("name", Shape::Text, Need::Required, "name of the study"),
-    key(
-        "kind",
-        Shape::Text,
-        Need::Default("\"run\""),
-        "what is done with the cases",
-    ),
-    key(
-        "scene",
-        Shape::Plugin(PluginKind::Scene),
-        Need::Required,
-        "the geometry",
-    ),
-    key(
-        "materials",
-        Shape::Map(&MATERIAL),
-        Need::Required,
-        "materials of blocks by name",
-    ),
-    key(
-        "joints",
-        Shape::Map(&LAW),
-        Need::Default("{}"),
-        "laws of joints by name",
-    ),
+    key("kind", Shape::Text, Need::Default("\"run\""), "what is done with the cases"),
+    key("scene", Shape::Plugin(PluginKind::Scene), Need::Required, "the geometry"),
+    key("materials", Shape::Map(&MATERIAL), Need::Required, "materials of blocks by name"),
+    key("joints", Shape::Map(&LAW), Need::Default("{}"), "laws of joints by name"),
     key(
         "stages",
-        Shape::List {
-            of: &STAGE,
-            min: 1,
-            max: usize::MAX,
-        },
+        Shape::List { of: &STAGE, min: 1, max: usize::MAX },
         Need::Required,
         "stages of loading, [[stages]], in order",
     ),
@@ -292,20 +162,11 @@ pub static STUDY: &[Parameter] = &[
     ),
     key(
         "variants",
-        Shape::List {
-            of: &VARIANT,
-            min: 0,
-            max: usize::MAX,
-        },
+        Shape::List { of: &VARIANT, min: 0, max: usize::MAX },
         Need::Optional("no variants"),
         "each overrides any keys",
     ),
-    key(
-        "output",
-        OUTPUT,
-        Need::Default("{}"),
-        "what is written besides the results",
-    ),
+    key("output", OUTPUT, Need::Default("{}"), "what is written besides the results"),
 ];
 
 /// Whether equilibrium is that of the undeformed geometry.
@@ -409,9 +270,8 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
     for (path, _) in sets {
         if plan.swept().any(|swept| swept == path) {
             let message = "is swept, so setting it has no effect";
-            let help = "change the axis, for example --set 'sweep.\"scene.thickness\".list=[0.5]'";
-            mistakes
-                .push(Mistake::new(&Origin::Set(path.as_str().into()), path, message).help(help));
+            let help = format!("change the axis instead: --set 'sweep.\"{path}\".list=[…]'");
+            mistakes.push(Mistake::new(&Origin::Set(path.as_str().into()), path, message).help(help));
         }
     }
     let count = plan.count();
@@ -453,25 +313,12 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
         return Err(mistakes);
     }
     let first = cases.first().map(|case| &case.resolved);
-    let text_of = |name: &str| {
-        first
-            .and_then(|case| case[name].as_str())
-            .unwrap_or_default()
-            .to_string()
-    };
-    let flag = |name: &str| {
-        first
-            .and_then(|case| case["output"][name].as_bool())
-            .unwrap_or(false)
-    };
+    let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
+    let flag = |name: &str| first.and_then(|case| case["output"][name].as_bool()).unwrap_or(false);
     Ok(Study {
         name: text_of("name"),
         kind: text_of("kind"),
-        output: Output {
-            curve: flag("curve"),
-            figures: flag("figures"),
-            vtu: flag("vtu"),
-        },
+        output: Output { curve: flag("curve"), figures: flag("figures"), vtu: flag("vtu") },
         cases,
         resolved: root.to_toml(),
     })
@@ -482,31 +329,13 @@ fn check_variants(root: &Node, mistakes: &mut Vec<Mistake>) {
         return;
     };
     let mut checker = Checker::new(root);
-    checker.check(
-        variants,
-        &Shape::List {
-            of: &VARIANT,
-            min: 0,
-            max: usize::MAX,
-        },
-        "variants",
-    );
+    checker.check(variants, &Shape::List { of: &VARIANT, min: 0, max: usize::MAX }, "variants");
     mistakes.append(&mut checker.mistakes);
 }
 
 fn describe_case(case: &Expanded) -> String {
-    let variant = case
-        .variant
-        .iter()
-        .map(|name| format!("variant \"{name}\""));
-    variant
-        .chain(
-            case.parameters
-                .iter()
-                .map(|(key, value)| format!("{key} = {value}")),
-        )
-        .collect::<Vec<_>>()
-        .join(", ")
+    let variant = case.variant.iter().map(|name| format!("variant \"{name}\""));
+    variant.chain(case.parameters.iter().map(|(key, value)| format!("{key} = {value}"))).collect::<Vec<_>>().join(", ")
 }
 
 /// The mistakes of one case, gathered while it is built.
@@ -517,33 +346,23 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     fn wrong(&mut self, key: &str, message: impl Into<String>, help: impl Into<String>) {
-        self.mistakes
-            .push(Mistake::new(&self.root.place(key), key, message).help(help));
+        self.mistakes.push(Mistake::new(&self.root.place(key), key, message).help(help));
     }
 
     fn issues(&mut self, issues: Vec<Issue>) {
         for issue in issues {
-            let mut mistake =
-                Mistake::new(&self.root.place(&issue.path), issue.path, issue.message);
+            let mut mistake = Mistake::new(&self.root.place(&issue.path), issue.path, issue.message);
             mistake.help = issue.help;
             self.mistakes.push(mistake);
         }
     }
 
-    fn plugins<T: serde::de::DeserializeOwned>(
-        &mut self,
-        name: &str,
-        tables: &Json,
-    ) -> Option<Vec<(String, T)>> {
+    fn plugins<T: serde::de::DeserializeOwned>(&mut self, name: &str, tables: &Json) -> Option<Vec<(String, T)>> {
         let mut out = Vec::new();
         for (entry, table) in tables.as_object()? {
             match serde_json::from_value(table.clone()) {
                 Ok(plugin) => out.push((entry.clone(), plugin)),
-                Err(error) => self.wrong(
-                    &join(name, entry),
-                    format!("cannot be read: {error}"),
-                    "correct this table",
-                ),
+                Err(error) => self.wrong(&join(name, entry), format!("cannot be read: {error}"), "correct this table"),
             }
         }
         Some(out)
@@ -551,79 +370,52 @@ impl Builder<'_> {
 }
 
 fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
-    let Expanded {
-        variant,
-        parameters,
-        root,
-    } = expanded;
+    let Expanded { variant, parameters, root } = expanded;
     let mut checker = Checker::new(&root);
     checker.gravity = gravity_of(&root);
     let Some(table) = root.table() else {
         return Err(vec![Mistake::new(&root.origin, "", "must be a table")]);
     };
     let names: Vec<_> = STUDY.iter().map(|parameter| parameter.name).collect();
-    for entry in table
-        .entries
-        .iter()
-        .filter(|entry| !names.contains(&entry.key.as_str()))
-    {
+    // A key that is written wrongly is not missing as well.
+    let mut misspelt = Vec::new();
+    for entry in table.entries.iter().filter(|entry| !names.contains(&entry.key.as_str())) {
+        misspelt.extend(voussoir_core::card::nearest(&entry.key, names.iter().copied()));
         let help = suggest(&entry.key, &names, "keys here");
-        checker
-            .mistakes
-            .push(Mistake::new(&entry.origin, &entry.key, "is not a key of a study").help(help));
+        checker.mistakes.push(Mistake::new(&entry.origin, &entry.key, "is not a key of a study").help(help));
     }
     let mut resolved = Map::new();
-    for parameter in STUDY
-        .iter()
-        .filter(|p| p.name != "sweep" && p.name != "variants")
-    {
+    for parameter in STUDY.iter().filter(|p| p.name != "sweep" && p.name != "variants") {
+        if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
+            continue;
+        }
         if let Ok(Some(value)) = checker.parameter(&root, table, parameter, "") {
             resolved.insert(parameter.name.into(), value);
         }
     }
-    let Checker {
-        mistakes, unused, ..
-    } = checker;
-    let mut builder = Builder {
-        root: &root,
-        mistakes,
-    };
-    let mut notes: Vec<String> = unused
-        .into_iter()
-        .map(|unused| format!("{} is not used by {}", unused.key, unused.by))
-        .collect();
+    let Checker { mistakes, unused, .. } = checker;
+    let mut builder = Builder { root: &root, mistakes };
+    let mut notes: Vec<String> =
+        unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
 
     check_kind_and_output(&mut builder, &resolved);
     let catalogue = catalogue(&mut builder, &resolved);
     let assembly = catalogue.and_then(|catalogue| assembly(&mut builder, &resolved, &catalogue));
-    let stages = resolved
-        .get("stages")
-        .and_then(|stages| build_stages(&mut builder, stages, assembly.as_ref()));
-    let solver = resolved
-        .get("solver")
-        .and_then(|solver| choose_solver(&mut builder, solver, &resolved, assembly.as_ref()));
+    let stages = resolved.get("stages").and_then(|stages| build_stages(&mut builder, stages, assembly.as_ref()));
+    let solver =
+        resolved.get("solver").and_then(|solver| choose_solver(&mut builder, solver, &resolved, assembly.as_ref()));
     notes.extend(unused_by_limit_analysis(&resolved));
     match (assembly, stages, solver) {
-        (Some(assembly), Some(stages), Some(solver)) if builder.mistakes.is_empty() => Ok(Case {
-            id,
-            variant,
-            parameters,
-            assembly,
-            stages,
-            solver,
-            notes,
-            resolved: Json::Object(resolved),
-        }),
+        (Some(assembly), Some(stages), Some(solver)) if builder.mistakes.is_empty() => {
+            Ok(Case { id, variant, parameters, assembly, stages, solver, notes, resolved: Json::Object(resolved) })
+        }
         _ => Err(builder.mistakes),
     }
 }
 
 fn check_kind_and_output(builder: &mut Builder<'_>, resolved: &Map<String, Json>) {
     if let Some(kind) = resolved.get("kind").and_then(Json::as_str) {
-        let mut kinds: Vec<_> = cards_of(PluginKind::StudyKind)
-            .iter()
-            .map(|card| card.tag)
-            .collect();
+        let mut kinds: Vec<_> = cards_of(PluginKind::StudyKind).iter().map(|card| card.tag).collect();
         if !kinds.contains(&"run") {
             kinds.insert(0, "run");
         }
@@ -632,75 +424,40 @@ fn check_kind_and_output(builder: &mut Builder<'_>, resolved: &Map<String, Json>
             builder.wrong("kind", format!("there is no study kind \"{kind}\""), help);
         }
     }
-    if resolved
-        .get("output")
-        .is_some_and(|output| output["vtu"] == true)
-    {
-        builder.wrong(
-            "output.vtu",
-            "files for ParaView are not available yet",
-            "set vtu = false",
-        );
+    if resolved.get("output").is_some_and(|output| output["vtu"] == true) {
+        builder.wrong("output.vtu", "files for ParaView are not available yet", "set vtu = false");
     }
 }
 
 fn catalogue(builder: &mut Builder<'_>, resolved: &Map<String, Json>) -> Option<Catalogue> {
-    let materials = resolved
-        .get("materials")
-        .and_then(|t| builder.plugins::<Box<dyn BulkMaterial>>("materials", t));
-    let laws = resolved
-        .get("joints")
-        .and_then(|t| builder.plugins::<Box<dyn InterfaceLaw>>("joints", t));
+    let materials = resolved.get("materials").and_then(|t| builder.plugins::<Box<dyn BulkMaterial>>("materials", t));
+    let laws = resolved.get("joints").and_then(|t| builder.plugins::<Box<dyn InterfaceLaw>>("joints", t));
     let (materials, laws) = (materials?, laws?);
     Some(Catalogue {
-        materials: materials
-            .into_iter()
-            .map(|(name, material)| (name, Arc::from(material)))
-            .collect(),
-        laws: laws
-            .into_iter()
-            .map(|(name, law)| (name, Arc::from(law)))
-            .collect(),
+        materials: materials.into_iter().map(|(name, material)| (name, Arc::from(material))).collect(),
+        laws: laws.into_iter().map(|(name, law)| (name, Arc::from(law))).collect(),
     })
 }
 
-fn assembly(
-    builder: &mut Builder<'_>,
-    resolved: &Map<String, Json>,
-    catalogue: &Catalogue,
-) -> Option<Assembly> {
+fn assembly(builder: &mut Builder<'_>, resolved: &Map<String, Json>, catalogue: &Catalogue) -> Option<Assembly> {
     let scene: Box<dyn Scene> = match serde_json::from_value(resolved.get("scene")?.clone()) {
         Ok(scene) => scene,
         Err(error) => {
-            builder.wrong(
-                "scene",
-                format!("cannot be read: {error}"),
-                "correct this table",
-            );
+            builder.wrong("scene", format!("cannot be read: {error}"), "correct this table");
             return None;
         }
     };
-    scene
-        .build(catalogue)
-        .map_err(|issues| builder.issues(issues))
-        .ok()
+    scene.build(catalogue).map_err(|issues| builder.issues(issues)).ok()
 }
 
-fn build_stages(
-    builder: &mut Builder<'_>,
-    stages: &Json,
-    assembly: Option<&Assembly>,
-) -> Option<Vec<Stage>> {
+fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Assembly>) -> Option<Vec<Stage>> {
     let stages = stages.as_array()?;
     let before = builder.mistakes.len();
     let mut out: Vec<Stage> = Vec::new();
     for (index, stage) in stages.iter().enumerate() {
         let at = format!("stages.{index}");
         let name = stage["name"].as_str().unwrap_or_default().to_string();
-        if stages[..index]
-            .iter()
-            .any(|earlier| earlier["name"] == stage["name"])
-        {
+        if stages[..index].iter().any(|earlier| earlier["name"] == stage["name"]) {
             builder.wrong(
                 &join(&at, "name"),
                 format!("two stages are called \"{name}\""),
@@ -709,13 +466,8 @@ fn build_stages(
         }
         let collapse = stage["until"] == "collapse";
         if collapse && stage.get("factor").is_some() {
-            let help =
-                "keep until to raise the loads to collapse, or factor to stop at that factor";
-            builder.wrong(
-                &join(&at, "factor"),
-                "is given besides until = \"collapse\"",
-                help,
-            );
+            let help = "keep until to raise the loads to collapse, or factor to stop at that factor";
+            builder.wrong(&join(&at, "factor"), "is given besides until = \"collapse\"", help);
         }
         if collapse && index + 1 < stages.len() {
             let help = "make it the last stage, or give this stage a factor";
@@ -726,35 +478,15 @@ fn build_stages(
             );
         }
         let factor = |key: &str| stage.get(key).and_then(Json::as_f64);
-        let (least, greatest) = (
-            factor("factor_min").unwrap_or(0.0),
-            factor("factor_max").unwrap_or(f64::INFINITY),
-        );
+        let (least, greatest) = (factor("factor_min").unwrap_or(0.0), factor("factor_max").unwrap_or(f64::INFINITY));
         if least > greatest {
-            let named = if factor("factor_max").is_some() {
-                "factor_max"
-            } else {
-                "factor_min"
-            };
-            let message =
-                format!("the search would go from factor_min = {least} to factor_max = {greatest}");
-            builder.wrong(
-                &join(&at, named),
-                message,
-                "factor_min must be at most factor_max",
-            );
+            let named = if factor("factor_max").is_some() { "factor_max" } else { "factor_min" };
+            let message = format!("the search would go from factor_min = {least} to factor_max = {greatest}");
+            builder.wrong(&join(&at, named), message, "factor_min must be at most factor_max");
         }
-        if stage["settlement"]
-            .as_array()
-            .is_some_and(|list| !list.is_empty())
-            && !offers(Capability::Settlement)
-        {
+        if stage["settlement"].as_array().is_some_and(|list| !list.is_empty()) && !offers(Capability::Settlement) {
             let help = "remove the settlement; limit analysis knows loads only";
-            builder.wrong(
-                &join(&at, "settlement"),
-                "no registered solver offers settlements",
-                help,
-            );
+            builder.wrong(&join(&at, "settlement"), "no registered solver offers settlements", help);
         }
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         for (number, load) in stage["loads"].as_array().into_iter().flatten().enumerate() {
@@ -762,11 +494,7 @@ fn build_stages(
             let load: Load = match serde_json::from_value(load.clone()) {
                 Ok(load) => load,
                 Err(error) => {
-                    builder.wrong(
-                        &path,
-                        format!("cannot be read: {error}"),
-                        "correct this load",
-                    );
+                    builder.wrong(&path, format!("cannot be read: {error}"), "correct this load");
                     continue;
                 }
             };
@@ -774,9 +502,7 @@ fn build_stages(
             match place(&load, assembly, &path) {
                 Ok((placed, accelerated)) => {
                     let (groups, _) = assembly.rigid_groups();
-                    let held = placed
-                        .iter()
-                        .find(|f| groups[f.body].is_none() && assembly.is_rigid(f.body));
+                    let held = placed.iter().find(|f| groups[f.body].is_none() && assembly.is_rigid(f.body));
                     if let Some(force) = held {
                         let name = &assembly.bodies[force.body].name;
                         let message = format!(
@@ -795,49 +521,25 @@ fn build_stages(
             && assembly.is_some()
             && builder.mistakes.len() == before
             && forces.iter().all(|force| force.force.norm() == 0.0)
-            && accelerations
-                .iter()
-                .all(|acceleration| acceleration.norm() == 0.0)
+            && accelerations.iter().all(|acceleration| acceleration.norm() == 0.0)
         {
-            let help =
-                "give this stage a load that is not zero; gravity is not multiplied by the factor";
-            builder.wrong(
-                &join(&at, "until"),
-                "\"collapse\" needs a load to raise, but this stage has none",
-                help,
-            );
+            let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
+            builder.wrong(&join(&at, "until"), "\"collapse\" needs a load to raise, but this stage has none", help);
         }
         let gravity = match &stage["gravity"] {
-            Json::Array(vector) => Some(Vec2::new(
-                vector[0].as_f64().unwrap_or(0.0),
-                vector[1].as_f64().unwrap_or(0.0),
-            )),
+            Json::Array(vector) => {
+                Some(Vec2::new(vector[0].as_f64().unwrap_or(0.0), vector[1].as_f64().unwrap_or(0.0)))
+            }
             number => number.as_f64().map(|down| Vec2::new(0.0, -down)),
         };
-        let target = if collapse {
-            Target::Collapse
-        } else {
-            Target::Factor(factor("factor").unwrap_or(1.0))
-        };
-        out.push(Stage {
-            name,
-            gravity,
-            forces,
-            accelerations,
-            target,
-            factor_min: least,
-            factor_max: greatest,
-        });
+        let target = if collapse { Target::Collapse } else { Target::Factor(factor("factor").unwrap_or(1.0)) };
+        out.push(Stage { name, gravity, forces, accelerations, target, factor_min: least, factor_max: greatest });
     }
     Some(out)
 }
 
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
-    cards_of(PluginKind::LimitSolver)
-        .into_iter()
-        .filter(|card| fit(card))
-        .map(|card| card.tag)
-        .collect()
+    cards_of(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
 }
 
 fn offers(capability: Capability) -> bool {
@@ -845,11 +547,7 @@ fn offers(capability: Capability) -> bool {
 }
 
 fn or_none(tags: &[&str]) -> String {
-    if tags.is_empty() {
-        "none registered".into()
-    } else {
-        tags.join(", ")
-    }
+    if tags.is_empty() { "none registered".into() } else { tags.join(", ") }
 }
 
 fn choose_solver(
@@ -860,44 +558,24 @@ fn choose_solver(
 ) -> Option<SolverChoice> {
     let tag = solver["solver"].as_str()?.to_string();
     let chosen = card(PluginKind::LimitSolver, &tag);
-    let kinematics = if solver["kinematics"] == "finite" {
-        Kinematics::Finite
-    } else {
-        Kinematics::Small
-    };
+    let kinematics = if solver["kinematics"] == "finite" { Kinematics::Finite } else { Kinematics::Small };
     let finite = |card: &Card| card.provides.contains(&Capability::FiniteDisplacements);
-    if kinematics == Kinematics::Finite
-        && !chosen.map_or_else(|| offers(Capability::FiniteDisplacements), finite)
-    {
+    if kinematics == Kinematics::Finite && !chosen.map_or_else(|| offers(Capability::FiniteDisplacements), finite) {
         let able = solvers_that(finite);
         let message = match able.is_empty() {
             true => "no registered solver offers finite displacements".to_string(),
-            false => format!(
-                "solver \"{tag}\" does not offer finite displacements; solvers that do: {}",
-                able.join(", ")
-            ),
+            false => {
+                format!("solver \"{tag}\" does not offer finite displacements; solvers that do: {}", able.join(", "))
+            }
         };
         builder.wrong("solver.kinematics", message, "set kinematics = \"small\"");
     }
     if let (Some(assembly), Some(chosen)) = (assembly, chosen) {
-        let used = |law: usize| {
-            assembly
-                .joints
-                .iter()
-                .any(|joint| joint.bond == Bond::Law(law))
-        };
-        let laws = assembly
-            .catalogue
-            .laws
-            .iter()
-            .enumerate()
-            .filter(|(law, _)| used(*law));
+        let used = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
+        let laws = assembly.catalogue.laws.iter().enumerate().filter(|(law, _)| used(*law));
         let laws = laws.map(|(_, (name, _))| ("joints", name, PluginKind::InterfaceLaw));
-        let materials = assembly
-            .catalogue
-            .materials
-            .iter()
-            .map(|(name, _)| ("materials", name, PluginKind::BulkMaterial));
+        let materials =
+            assembly.catalogue.materials.iter().map(|(name, _)| ("materials", name, PluginKind::BulkMaterial));
         for (table, name, kind) in laws.chain(materials) {
             let law = resolved[table][name]["law"].as_str().unwrap_or_default();
             let Some(card) = card(kind, law) else {
@@ -924,12 +602,7 @@ fn choose_solver(
     let mut table = solver.as_object()?.clone();
     table.retain(|key, _| key == "solver" || own(key));
     let tolerance = solver["tolerance"].as_f64().unwrap_or(1e-9);
-    Some(SolverChoice {
-        tag,
-        table: Json::Object(table),
-        tolerance,
-        kinematics,
-    })
+    Some(SolverChoice { tag, table: Json::Object(table), tolerance, kinematics })
 }
 
 /// Which kind of law a capability is asked of.
@@ -942,26 +615,13 @@ fn concerns(capability: Capability) -> PluginKind {
 
 fn unused_by_limit_analysis(resolved: &Map<String, Json>) -> Vec<String> {
     let mut notes = Vec::new();
-    for (name, law) in resolved
-        .get("joints")
-        .and_then(Json::as_object)
-        .into_iter()
-        .flatten()
-    {
-        for stiffness in ["normal_stiffness", "shear_stiffness"]
-            .iter()
-            .filter(|key| law.get(**key).is_some())
-        {
-            notes.push(format!(
-                "joints.{name}.{stiffness} has no influence on a limit load"
-            ));
+    for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
+        for stiffness in ["normal_stiffness", "shear_stiffness"].iter().filter(|key| law.get(**key).is_some()) {
+            notes.push(format!("joints.{name}.{stiffness} has no influence on a limit load"));
         }
     }
     for key in ["continuation", "stop"] {
-        if resolved
-            .get("solver")
-            .is_some_and(|solver| solver.get(key).is_some())
-        {
+        if resolved.get("solver").is_some_and(|solver| solver.get(key).is_some()) {
             notes.push(format!("solver.{key} is not used by limit analysis"));
         }
     }

@@ -6,7 +6,7 @@ use crate::config::overlay::join;
 use crate::config::report::{Mistake, any_of, suggest};
 use serde_json::{Map, Value as Json};
 use voussoir_core::card::{Card, card, cards_of};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir_core::schema::{Need, Parameter, PluginKind, Shape, Variant};
 use voussoir_core::units::{Quantity, STANDARD_GRAVITY};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
@@ -33,20 +33,12 @@ pub struct Checker<'a> {
 
 /// Keys that every plug-in of a kind has besides those of its card.
 pub fn common_parameters(kind: PluginKind) -> &'static [Parameter] {
-    if kind == PluginKind::LimitSolver {
-        crate::study::SOLVER
-    } else {
-        &[]
-    }
+    if kind == PluginKind::LimitSolver { crate::study::SOLVER } else { &[] }
 }
 
 /// Words that the tag may be besides the registered tags.
 pub fn common_words(kind: PluginKind) -> &'static [&'static str] {
-    if kind == PluginKind::LimitSolver {
-        &["auto"]
-    } else {
-        &[]
-    }
+    if kind == PluginKind::LimitSolver { &["auto"] } else { &[] }
 }
 
 /// The magnitude of the first gravity in the study's stages; standard gravity where there is none.
@@ -55,29 +47,22 @@ pub fn gravity_of(root: &Node) -> f64 {
         Value::String(text) => Quantity::Acceleration.parse(text, STANDARD_GRAVITY).ok(),
         _ => node.number(),
     };
-    let stages = root
-        .table()
-        .and_then(|table| table.get("stages")?.array())
-        .unwrap_or_default();
-    let given = stages
-        .iter()
-        .find_map(|stage| stage.table()?.get("gravity"));
+    let stages = root.table().and_then(|table| table.get("stages")?.array()).unwrap_or_default();
+    let given = stages.iter().find_map(|stage| stage.table()?.get("gravity"));
     let size = given.and_then(|node| match node.array() {
         Some([x, y]) => Some(number(x)?.hypot(number(y)?)),
         _ => number(node).map(f64::abs),
     });
-    size.filter(|size| size.is_finite() && *size > 0.0)
-        .unwrap_or(STANDARD_GRAVITY)
+    size.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(STANDARD_GRAVITY)
 }
 
 /// What a shape takes, in words.
 pub fn describe(shape: &Shape) -> String {
     match shape {
         Shape::Number(Quantity::Ratio, _) => "a number".into(),
-        Shape::Number(quantity, _) => format!(
-            "a number in {0} or a text with a unit such as \"1 {0}\"",
-            quantity.unit()
-        ),
+        Shape::Number(quantity, _) => {
+            format!("a number in {0} or a text with a unit such as \"1 {0}\"", quantity.unit())
+        }
         Shape::Integer { .. } => "a whole number".into(),
         Shape::Boolean => "true or false".into(),
         Shape::Text => "a text in quotes".into(),
@@ -98,11 +83,7 @@ pub fn describe(shape: &Shape) -> String {
 }
 
 fn any_shape(shapes: &[Shape]) -> String {
-    shapes
-        .iter()
-        .map(describe)
-        .collect::<Vec<_>>()
-        .join(", or ")
+    shapes.iter().map(describe).collect::<Vec<_>>().join(", or ")
 }
 
 /// Whether a value has the outer form of a shape.
@@ -110,18 +91,14 @@ fn fits(node: &Node, shape: &Shape) -> bool {
     match (shape, &node.value) {
         (Shape::Free, _) => true,
         (Shape::Either(shapes), _) => shapes.iter().any(|shape| fits(node, shape)),
-        (Shape::Number(..), Value::Integer(_) | Value::Float(_))
-        | (Shape::Integer { .. }, Value::Integer(_)) => true,
-        (Shape::Number(..), Value::String(text)) => text
-            .trim_start()
-            .starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.')),
+        (Shape::Number(..), Value::Integer(_) | Value::Float(_)) | (Shape::Integer { .. }, Value::Integer(_)) => true,
+        (Shape::Number(..), Value::String(text)) => {
+            text.trim_start().starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'))
+        }
         (Shape::Boolean, Value::Boolean(_)) => true,
         (Shape::Text | Shape::Choice(_) | Shape::Reference(_), Value::String(_)) => true,
         (Shape::List { .. }, Value::Array(_)) => true,
-        (
-            Shape::Table(_) | Shape::Map(_) | Shape::Tagged { .. } | Shape::Plugin(_),
-            Value::Table(_),
-        ) => true,
+        (Shape::Table(_) | Shape::Map(_) | Shape::Tagged { .. } | Shape::Plugin(_), Value::Table(_)) => true,
         _ => false,
     }
 }
@@ -129,12 +106,7 @@ fn fits(node: &Node, shape: &Shape) -> bool {
 impl<'a> Checker<'a> {
     /// A check of values in the study `root`.
     pub fn new(root: &'a Node) -> Self {
-        Checker {
-            root,
-            gravity: gravity_of(root),
-            mistakes: Vec::new(),
-            unused: Vec::new(),
-        }
+        Checker { root, gravity: gravity_of(root), mistakes: Vec::new(), unused: Vec::new() }
     }
 
     fn wrong(&mut self, origin: &Origin, key: &str, message: impl Into<String>) -> Option<Json> {
@@ -142,15 +114,8 @@ impl<'a> Checker<'a> {
         None
     }
 
-    fn wrong_with_help(
-        &mut self,
-        origin: &Origin,
-        key: &str,
-        message: String,
-        help: String,
-    ) -> Option<Json> {
-        self.mistakes
-            .push(Mistake::new(origin, key, message).help(help));
+    fn wrong_with_help(&mut self, origin: &Origin, key: &str, message: String, help: String) -> Option<Json> {
+        self.mistakes.push(Mistake::new(origin, key, message).help(help));
         None
     }
 
@@ -158,50 +123,36 @@ impl<'a> Checker<'a> {
     pub fn check(&mut self, node: &Node, shape: &Shape, key: &str) -> Option<Json> {
         let found = self.mistakes.len();
         let value = match (shape, &node.value) {
-            (
-                Shape::Number(quantity, range),
-                Value::Integer(_) | Value::Float(_) | Value::String(_),
-            ) => {
+            (Shape::Number(quantity, range), Value::Integer(_) | Value::Float(_) | Value::String(_)) => {
                 let number = match &node.value {
                     Value::String(text) => match quantity.parse(text, self.gravity) {
                         Ok(number) => number,
-                        Err(why) => return self.wrong(&node.origin, key, why),
+                        Err(why) => {
+                            let help = format!("write {}", describe(shape));
+                            return self.wrong_with_help(&node.origin, key, why, help);
+                        }
                     },
                     _ => node.number().unwrap_or(f64::NAN),
                 };
-                let unit = if *quantity == Quantity::Ratio {
-                    String::new()
-                } else {
-                    format!(" {}", quantity.unit())
-                };
+                let unit = if *quantity == Quantity::Ratio { String::new() } else { format!(" {}", quantity.unit()) };
                 if !number.is_finite() {
                     return self.wrong(
                         &node.origin,
                         key,
-                        format!("{number} is not a finite number"),
+                        format!("{} is not a finite number", number.to_string().to_lowercase()),
                     );
                 }
                 if !range.contains(number) {
-                    let message = format!(
-                        "{number}{unit} is out of range: it must be {}",
-                        range.describe()
-                    );
+                    let message = format!("{number}{unit} is out of range: it must be {}", range.describe());
                     return self.wrong(&node.origin, key, message);
                 }
                 Some(number.into())
             }
             (Shape::Integer { min, max }, Value::Integer(whole)) => {
                 if whole < min || whole > max {
-                    let range = if *max == i64::MAX {
-                        format!("at least {min}")
-                    } else {
-                        format!("from {min} to {max}")
-                    };
-                    return self.wrong(
-                        &node.origin,
-                        key,
-                        format!("{whole} is out of range: it must be {range}"),
-                    );
+                    let range =
+                        if *max == i64::MAX { format!("at least {min}") } else { format!("from {min} to {max}") };
+                    return self.wrong(&node.origin, key, format!("{whole} is out of range: it must be {range}"));
                 }
                 Some((*whole).into())
             }
@@ -209,10 +160,7 @@ impl<'a> Checker<'a> {
             (Shape::Text, Value::String(text)) => Some(text.clone().into()),
             (Shape::Choice(words), Value::String(text)) => {
                 if !words.contains(&text.as_str()) {
-                    let (message, help) = (
-                        format!("\"{text}\" is not a choice here"),
-                        suggest(text, words, "choices"),
-                    );
+                    let (message, help) = (format!("\"{text}\" is not a choice here"), suggest(text, words, "choices"));
                     return self.wrong_with_help(&node.origin, key, message, help);
                 }
                 Some(text.clone().into())
@@ -241,7 +189,11 @@ impl<'a> Checker<'a> {
                     self.wrong(
                         &node.origin,
                         key,
-                        format!("the list has {} entries; it needs {wanted}", nodes.len()),
+                        format!(
+                            "the list has {} {}; it needs {wanted}",
+                            nodes.len(),
+                            if nodes.len() == 1 { "entry" } else { "entries" }
+                        ),
                     );
                 }
                 let entries: Vec<_> = nodes
@@ -249,47 +201,23 @@ impl<'a> Checker<'a> {
                     .enumerate()
                     .map(|(i, node)| self.check(node, of, &join(key, &i.to_string())))
                     .collect();
-                entries
-                    .into_iter()
-                    .collect::<Option<Vec<_>>>()
-                    .map(Json::Array)
+                entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
             }
-            (Shape::Table(parameters), Value::Table(table)) => {
-                self.table(node, table, parameters, &[], key)
-            }
+            (Shape::Table(parameters), Value::Table(table)) => self.table(node, table, parameters, &[], &[], key),
             (Shape::Map(of), Value::Table(table)) => {
                 let entries: Vec<_> = table
                     .entries
                     .iter()
-                    .map(|entry| {
-                        Some((
-                            entry.key.clone(),
-                            self.check(&entry.node, of, &join(key, &entry.key))?,
-                        ))
-                    })
+                    .map(|entry| Some((entry.key.clone(), self.check(&entry.node, of, &join(key, &entry.key))?)))
                     .collect();
-                entries
-                    .into_iter()
-                    .collect::<Option<Map<_, _>>>()
-                    .map(Json::Object)
+                entries.into_iter().collect::<Option<Map<_, _>>>().map(Json::Object)
             }
-            (
-                Shape::Tagged {
-                    key: tag_key,
-                    variants,
-                },
-                Value::Table(table),
-            ) => {
+            (Shape::Tagged { key: tag_key, variants }, Value::Table(table)) => {
                 let tags: Vec<_> = variants.iter().map(|variant| variant.tag).collect();
                 let tag = self.tag(node, table, tag_key, &tags, tag_key, key)?;
-                let parameters = variants
-                    .iter()
-                    .find(|variant| variant.tag == tag)?
-                    .parameters;
+                let parameters = variants.iter().find(|variant| variant.tag == tag)?.parameters;
                 let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
-                if let Some(Json::Object(rest)) =
-                    self.table(node, table, parameters, &[tag_key], key)
-                {
+                if let Some(Json::Object(rest)) = self.table(node, table, parameters, &[tag_key], variants, key) {
                     out.extend(rest);
                 }
                 Some(Json::Object(out))
@@ -311,22 +239,12 @@ impl<'a> Checker<'a> {
     fn finite(&mut self, node: &Node, key: &str) {
         match &node.value {
             Value::Float(number) if !number.is_finite() => {
-                self.wrong(
-                    &node.origin,
-                    key,
-                    format!("{number} is not a finite number"),
-                );
+                self.wrong(&node.origin, key, format!("{} is not a finite number", number.to_string().to_lowercase()));
             }
             Value::Array(nodes) => {
-                nodes
-                    .iter()
-                    .enumerate()
-                    .for_each(|(i, node)| self.finite(node, &join(key, &i.to_string())));
+                nodes.iter().enumerate().for_each(|(i, node)| self.finite(node, &join(key, &i.to_string())));
             }
-            Value::Table(table) => table
-                .entries
-                .iter()
-                .for_each(|e| self.finite(&e.node, &join(key, &e.key))),
+            Value::Table(table) => table.entries.iter().for_each(|e| self.finite(&e.node, &join(key, &e.key))),
             _ => {}
         }
     }
@@ -371,11 +289,7 @@ impl<'a> Checker<'a> {
             return None;
         };
         let Some(tag) = value.text() else {
-            let message = format!(
-                "must be {}, but is {}",
-                any_of(tags.iter().copied()),
-                value.describe()
-            );
+            let message = format!("must be {}, but is {}", any_of(tags.iter().copied()), value.describe());
             self.wrong(&value.origin, &join(key, tag_key), message);
             return None;
         };
@@ -395,29 +309,32 @@ impl<'a> Checker<'a> {
         table: &Table,
         parameters: &[Parameter],
         skip: &[&str],
+        others: &[Variant],
         key: &str,
     ) -> Option<Json> {
+        // A key that is written wrongly is not missing as well.
+        let mut misspelt = Vec::new();
         for entry in &table.entries {
-            let known = skip.contains(&entry.key.as_str())
-                || parameters.iter().any(|p| p.name == entry.key);
+            let known = skip.contains(&entry.key.as_str()) || parameters.iter().any(|p| p.name == entry.key);
             if !known {
-                let names: Vec<_> = skip
-                    .iter()
-                    .copied()
-                    .chain(parameters.iter().map(|p| p.name))
-                    .collect();
-                let help = suggest(&entry.key, &names, "keys here");
-                self.wrong_with_help(
-                    &entry.origin,
-                    &join(key, &entry.key),
-                    "is not a key here".into(),
-                    help,
-                );
+                let names: Vec<_> = skip.iter().copied().chain(parameters.iter().map(|p| p.name)).collect();
+                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                misspelt.extend(near.filter(|name| table.get(name).is_none()));
+                let elsewhere = others.iter().find(|other| other.parameters.iter().any(|p| p.name == entry.key));
+                let help = match (near, elsewhere) {
+                    (None, Some(other)) => format!("it belongs to \"{}\"", other.tag),
+                    _ => suggest(&entry.key, &names, "keys here"),
+                };
+                self.wrong_with_help(&entry.origin, &join(key, &entry.key), "is not a key here".into(), help);
             }
         }
         let mut out = Map::new();
         let mut sound = true;
         for parameter in parameters {
+            if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
+                sound = false;
+                continue;
+            }
             match self.parameter(node, table, parameter, key) {
                 Ok(Some(value)) => _ = out.insert(parameter.name.into(), value),
                 Ok(None) => {}
@@ -437,10 +354,7 @@ impl<'a> Checker<'a> {
     ) -> Result<Option<Json>, ()> {
         let path = join(key, parameter.name);
         if let Some(value) = table.get(parameter.name) {
-            return self
-                .check(value, &parameter.shape, &path)
-                .map(Some)
-                .ok_or(());
+            return self.check(value, &parameter.shape, &path).map(Some).ok_or(());
         }
         match parameter.need {
             Need::Required => {
@@ -451,9 +365,7 @@ impl<'a> Checker<'a> {
             Need::Optional(_) => Ok(None),
             Need::Default(text) => {
                 let value = parse_value(text, &node.origin).ok_or(())?;
-                self.check(&value, &parameter.shape, &path)
-                    .map(Some)
-                    .ok_or(())
+                self.check(&value, &parameter.shape, &path).map(Some).ok_or(())
             }
         }
     }
@@ -462,50 +374,35 @@ impl<'a> Checker<'a> {
         let tag_key = kind.tag_key();
         let registered = cards_of(kind);
         let words = common_words(kind);
-        let tags: Vec<_> = words
-            .iter()
-            .copied()
-            .chain(registered.iter().map(|card| card.tag))
-            .collect();
+        let tags: Vec<_> = words.iter().copied().chain(registered.iter().map(|card| card.tag)).collect();
         let tag = match (table.get(tag_key), words.first()) {
             (None, Some(word)) => word,
             _ => self.tag(node, table, tag_key, &tags, kind.describe(), key)?,
         };
         let chosen: Option<&Card> = card(kind, tag);
         let own: &[Parameter] = chosen.map_or(&[], |card| card.parameters);
-        let common = common_parameters(kind)
-            .iter()
-            .filter(|p| own.iter().all(|o| o.name != p.name));
-        let parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
-        let mut skip = vec![tag_key];
+        let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
+        let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
+        let (mut skip, mut misspelt, found) = (vec![tag_key], Vec::new(), self.mistakes.len());
         for entry in &table.entries {
             if parameters.iter().any(|p| p.name == entry.key) || entry.key == tag_key {
                 continue;
             }
-            let others: Vec<&Parameter> = registered
-                .iter()
-                .flat_map(|card| card.parameters)
-                .filter(|p| p.name == entry.key)
-                .collect();
+            let others: Vec<&Parameter> =
+                registered.iter().flat_map(|card| card.parameters).filter(|p| p.name == entry.key).collect();
             let path = join(key, &entry.key);
             if others.is_empty() {
-                let mut names: Vec<_> = parameters.iter().map(|p| p.name).collect();
-                let near =
-                    voussoir_core::card::nearest(&entry.key, names.iter().copied()).is_some();
-                if !near {
-                    let all = registered
-                        .iter()
-                        .flat_map(|card| card.parameters)
-                        .map(|p| p.name);
+                let mut names: Vec<_> = std::iter::once(tag_key).chain(parameters.iter().map(|p| p.name)).collect();
+                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                misspelt.extend(near);
+                if near.is_none() {
+                    let all = registered.iter().flat_map(|card| card.parameters).map(|p| p.name);
                     if let Some(name) = voussoir_core::card::nearest(&entry.key, all) {
                         names = vec![name];
                     }
                 }
                 let help = suggest(&entry.key, &names, "keys here");
-                let message = format!(
-                    "is not a key of {} \"{tag}\", nor of any other",
-                    kind.describe()
-                );
+                let message = format!("is not a key of {} \"{tag}\", nor of any other", kind.describe());
                 self.wrong_with_help(&entry.origin, &path, message, help);
             } else {
                 let before = self.mistakes.len();
@@ -519,18 +416,19 @@ impl<'a> Checker<'a> {
                         self.mistakes.truncate(wrong);
                     }
                 }
-                self.unused.push(Unused {
-                    key: path,
-                    by: format!("{} \"{tag}\"", kind.describe()),
-                });
+                self.unused.push(Unused { key: path, by: format!("{} \"{tag}\"", kind.describe()) });
             }
             skip.push(&entry.key);
         }
-        let rest = self.table(node, table, &parameters, &skip, key)?;
+        // A key that is written wrongly is not missing as well.
+        parameters.retain(|p| table.get(p.name).is_some() || !misspelt.contains(&p.name));
+        let rest = self.table(node, table, &parameters, &skip, &[], key)?;
         let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
         out.extend(rest.as_object().cloned().unwrap_or_default());
         let value = Json::Object(out);
-        if let Some(card) = chosen {
+        if let Some(card) = chosen
+            && self.mistakes.len() == found
+        {
             // A card's check reads the concrete type, which knows neither the tag nor common keys.
             let own: Map<_, _> = value
                 .as_object()?
@@ -539,11 +437,7 @@ impl<'a> Checker<'a> {
                 .map(|(name, value)| (name.clone(), value.clone()))
                 .collect();
             for (name, message) in (card.check)(&Json::Object(own)) {
-                let path = if name.is_empty() {
-                    key.to_string()
-                } else {
-                    format!("{key}.{name}")
-                };
+                let path = if name.is_empty() { key.to_string() } else { format!("{key}.{name}") };
                 self.wrong(&self.root.place(&path), &path, message);
             }
         }

@@ -92,10 +92,7 @@ impl Table {
 
     /// The value under `key`, to be changed.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
-        self.entries
-            .iter_mut()
-            .find(|entry| entry.key == key)
-            .map(|entry| &mut entry.node)
+        self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
     }
 
     /// The keys in order.
@@ -166,15 +163,13 @@ impl Node {
                     }
                     None => break,
                 },
-                Value::Array(nodes) => {
-                    match segment.parse::<usize>().ok().and_then(|i| nodes.get(i)) {
-                        Some(next) => {
-                            origin = &next.origin;
-                            node = next;
-                        }
-                        None => break,
+                Value::Array(nodes) => match segment.parse::<usize>().ok().and_then(|i| nodes.get(i)) {
+                    Some(next) => {
+                        origin = &next.origin;
+                        node = next;
                     }
-                }
+                    None => break,
+                },
                 _ => break,
             }
         }
@@ -190,11 +185,7 @@ impl Node {
             Value::Boolean(value) => toml::Value::Boolean(*value),
             Value::Array(nodes) => toml::Value::Array(nodes.iter().map(Node::to_toml).collect()),
             Value::Table(table) => toml::Value::Table(
-                table
-                    .entries
-                    .iter()
-                    .map(|entry| (entry.key.clone(), entry.node.to_toml()))
-                    .collect(),
+                table.entries.iter().map(|entry| (entry.key.clone(), entry.node.to_toml())).collect(),
             ),
         }
     }
@@ -208,11 +199,7 @@ impl Node {
             Value::Boolean(value) => (*value).into(),
             Value::Array(nodes) => nodes.iter().map(Node::to_json).collect(),
             Value::Table(table) => serde_json::Value::Object(
-                table
-                    .entries
-                    .iter()
-                    .map(|entry| (entry.key.clone(), entry.node.to_json()))
-                    .collect(),
+                table.entries.iter().map(|entry| (entry.key.clone(), entry.node.to_json())).collect(),
             ),
         }
     }
@@ -241,32 +228,22 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<Mistake>> {
     for error in &errors {
         let origin = reader.origin(error.span().map_or(0, |span| span.start));
         let mistake = reader.syntax_mistake(origin, error, text);
-        if !mistakes
-            .iter()
-            .any(|earlier| earlier.origin == mistake.origin)
-        {
+        if !mistakes.iter().any(|earlier| earlier.origin == mistake.origin) {
             mistakes.push(mistake);
         }
     }
     if !mistakes.is_empty() {
+        crate::config::report::sort(&mut mistakes);
         return Err(mistakes);
     }
     let node = reader.table(root.get_ref(), reader.origin(0), &mut mistakes);
-    if mistakes.is_empty() {
-        Ok(node)
-    } else {
-        Err(mistakes)
-    }
+    if mistakes.is_empty() { Ok(node) } else { Err(mistakes) }
 }
 
 /// Reads one value, as it stands behind an `=`; everything in it gets the origin `origin`.
 /// `None` where the text is no TOML value.
 pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
-    let Ok(Node {
-        value: Value::Table(mut table),
-        ..
-    }) = parse(&format!("value = {text}"), "")
-    else {
+    let Ok(Node { value: Value::Table(mut table), .. }) = parse(&format!("value = {text}"), "") else {
         return None;
     };
     if table.entries.len() != 1 {
@@ -286,40 +263,22 @@ struct Reader {
 
 impl Reader {
     fn new(text: &str, file: &str) -> Self {
-        let lines = std::iter::once(0)
-            .chain(text.match_indices('\n').map(|(at, _)| at + 1))
-            .collect();
-        Reader {
-            file: file.into(),
-            lines,
-            text: text.into(),
-        }
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Reader { file: file.into(), lines, text: text.into() }
     }
 
     fn origin(&self, byte: usize) -> Origin {
         let line = self.lines.partition_point(|&start| start <= byte);
         let start = self.lines[line - 1];
-        let column = self
-            .text
-            .get(start..byte)
-            .map_or(1, |before| before.chars().count() + 1);
-        Origin::File {
-            file: self.file.clone(),
-            line,
-            column,
-        }
+        let column = self.text.get(start..byte).map_or(1, |before| before.chars().count() + 1);
+        Origin::File { file: self.file.clone(), line, column }
     }
 
     fn syntax_mistake(&self, origin: Origin, error: &toml::de::Error, text: &str) -> Mistake {
         let message = error.message();
         if message.contains("duplicate key") {
-            let key = error
-                .span()
-                .and_then(|span| text.get(span))
-                .unwrap_or_default()
-                .trim();
-            return Mistake::new(&origin, key, "is given twice in the same table")
-                .help("keep one of the two");
+            let key = error.span().and_then(|span| text.get(span)).unwrap_or_default().trim();
+            return Mistake::new(&origin, key, "is given twice in the same table").help("keep one of the two");
         }
         Mistake::new(&origin, "", format!("this is not TOML: {message}"))
     }
@@ -329,26 +288,14 @@ impl Reader {
             .iter()
             .map(|(key, value)| {
                 let place = self.origin(key.span().start);
-                Entry {
-                    key: key.get_ref().to_string(),
-                    node: self.node(value, &place, mistakes),
-                    origin: place,
-                }
+                Entry { key: key.get_ref().to_string(), node: self.node(value, &place, mistakes), origin: place }
             })
             .collect();
-        Node {
-            value: Value::Table(Table { entries }),
-            origin,
-        }
+        Node { value: Value::Table(Table { entries }), origin }
     }
 
     /// `key` is the place of the key, which tables with a header are known by.
-    fn node(
-        &self,
-        value: &Spanned<DeValue<'_>>,
-        key: &Origin,
-        mistakes: &mut Vec<Mistake>,
-    ) -> Node {
+    fn node(&self, value: &Spanned<DeValue<'_>>, key: &Origin, mistakes: &mut Vec<Mistake>) -> Node {
         let origin = self.origin(value.span().start);
         let value = match value.get_ref() {
             DeValue::String(text) => Value::String(text.to_string()),
@@ -356,9 +303,7 @@ impl Reader {
                 Ok(whole) => Value::Integer(whole),
                 Err(_) => {
                     let message = format!("{whole} is too large for a whole number");
-                    mistakes.push(
-                        Mistake::new(&origin, "", message).help("write it with a decimal point"),
-                    );
+                    mistakes.push(Mistake::new(&origin, "", message).help("write it with a decimal point"));
                     Value::Integer(0)
                 }
             },
@@ -366,10 +311,7 @@ impl Reader {
             DeValue::Boolean(value) => Value::Boolean(*value),
             DeValue::Datetime(date) => Value::Date(date.to_string()),
             DeValue::Array(values) => Value::Array(
-                values
-                    .iter()
-                    .map(|value| self.node(value, &self.origin(value.span().start), mistakes))
-                    .collect(),
+                values.iter().map(|value| self.node(value, &self.origin(value.span().start), mistakes)).collect(),
             ),
             DeValue::Table(table) => {
                 let inline = self.text.as_bytes().get(self.byte(&origin)) == Some(&b'{');
@@ -385,10 +327,7 @@ impl Reader {
             return 0;
         };
         let start = self.lines[line - 1];
-        self.text[start..]
-            .char_indices()
-            .nth(column - 1)
-            .map_or(self.text.len(), |(at, _)| start + at)
+        self.text[start..].char_indices().nth(column - 1).map_or(self.text.len(), |(at, _)| start + at)
     }
 }
 
@@ -405,16 +344,12 @@ mod tests {
 
     #[test]
     fn values_and_headers_know_their_place() {
-        let text = "name = \"x\"\n[scene]\nµ = 1 # two-byte key\nprofile = { rise = 2.0 }\n\n[[stages]]\nname = \"live\"\n\n[joints.dry]\nlaw = \"coulomb\"\n";
+        let text = "name = \"x\"\n[scene]\n\"µ\" = 1 # two-byte key\nprofile = { rise = 2.0 }\n\n[[stages]]\nname = \"live\"\n\n[joints.dry]\nlaw = \"coulomb\"\n";
         let root = parse(text, "a.toml").unwrap();
         assert_eq!(at(&root.place("scene")), (2, 2));
-        assert_eq!(at(&root.place("scene.µ")), (3, 5));
+        assert_eq!(at(&root.place("scene.µ")), (3, 7));
         assert_eq!(at(&root.place("scene.profile.rise")), (4, 20));
-        assert_eq!(
-            at(&root.place("scene.profile.span")),
-            (4, 11),
-            "an absent key is its table's"
-        );
+        assert_eq!(at(&root.place("scene.profile.span")), (4, 11), "an absent key is its table's");
         assert_eq!(at(&root.place("stages.0.name")), (7, 8));
         assert_eq!(at(&root.place("stages.0.factor")), (6, 1));
         assert_eq!(at(&root.place("joints.dry.friction")), (9, 9));
@@ -424,26 +359,13 @@ mod tests {
     fn order_of_keys_is_kept() {
         let root = parse("[b]\nz = 1\na = 2\n[a]\n", "a.toml").unwrap();
         assert_eq!(root.table().unwrap().keys().collect::<Vec<_>>(), ["b", "a"]);
-        assert_eq!(
-            root.table()
-                .unwrap()
-                .get("b")
-                .unwrap()
-                .table()
-                .unwrap()
-                .keys()
-                .collect::<Vec<_>>(),
-            ["z", "a"]
-        );
+        assert_eq!(root.table().unwrap().get("b").unwrap().table().unwrap().keys().collect::<Vec<_>>(), ["z", "a"]);
     }
 
     #[test]
     fn several_syntax_errors_are_found_at_once() {
         let mistakes = parse("a = \nb = 1\nc = [1,, 2]\nb = 3\n", "a.toml").unwrap_err();
-        let lines: Vec<_> = mistakes
-            .iter()
-            .map(|mistake| at(&mistake.origin).0)
-            .collect();
+        let lines: Vec<_> = mistakes.iter().map(|mistake| at(&mistake.origin).0).collect();
         assert_eq!(lines, [1, 3, 4]);
     }
 }

@@ -44,11 +44,7 @@ pub struct Expanded {
 
 /// `x` rounded to 12 significant digits, so that 5.69 − 9 · 0.30 is 2.99.
 pub fn rounded(x: f64) -> f64 {
-    if x.is_finite() {
-        format!("{x:.11e}").parse().unwrap_or(x)
-    } else {
-        x
-    }
+    if x.is_finite() { format!("{x:.11e}").parse().unwrap_or(x) } else { x }
 }
 
 impl Plan {
@@ -56,88 +52,43 @@ impl Plan {
     pub fn new(root: &Node) -> Result<Self, Vec<Mistake>> {
         let mut mistakes = Vec::new();
         let table = root.table().cloned().unwrap_or_default();
-        let axes = table
-            .get("sweep")
-            .map(|node| axes(node, &mut mistakes))
-            .unwrap_or_default();
-        let mut variants = table
-            .get("variants")
-            .map(|node| read_variants(node, &mut mistakes))
-            .unwrap_or_default();
-        let swept: Vec<&str> = axes
-            .iter()
-            .flat_map(|axis| &axis.keys)
-            .map(|(key, _)| key.as_str())
-            .collect();
+        let axes = table.get("sweep").map(|node| axes(node, &mut mistakes)).unwrap_or_default();
+        let mut variants = table.get("variants").map(|node| read_variants(node, &mut mistakes)).unwrap_or_default();
+        let swept: Vec<&str> = axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str()).collect();
         for (index, (key, origin)) in axes.iter().flat_map(|axis| &axis.keys).enumerate() {
             if swept[..index].contains(&key.as_str()) {
-                mistakes.push(
-                    Mistake::new(origin, key, "is swept twice").help("keep one of the two axes"),
-                );
+                mistakes.push(Mistake::new(origin, key, "is swept twice").help("keep one of the two axes"));
             }
         }
         for (key, origin, _) in variants.iter().flat_map(|variant| &variant.set) {
             if swept.contains(&key.as_str()) {
                 let help = "remove it from the sweep or from the variant";
-                mistakes.push(
-                    Mistake::new(origin, key, "is set by a variant, but swept too").help(help),
-                );
+                mistakes.push(Mistake::new(origin, key, "is set by a variant, but swept too").help(help));
             }
         }
         if variants.is_empty() {
-            variants.push(Variant {
-                name: None,
-                set: Vec::new(),
-            });
+            variants.push(Variant { name: None, set: Vec::new() });
         }
-        let base = Table {
-            entries: table
-                .entries
-                .into_iter()
-                .filter(|e| e.key != "sweep" && e.key != "variants")
-                .collect(),
-        };
-        let plan = Plan {
-            base: Node {
-                value: Value::Table(base),
-                origin: root.origin.clone(),
-            },
-            variants,
-            axes,
-        };
-        let count = plan.axes.iter().try_fold(plan.variants.len(), |n, axis| {
-            n.checked_mul(axis.values.len())
-        });
+        let base =
+            Table { entries: table.entries.into_iter().filter(|e| e.key != "sweep" && e.key != "variants").collect() };
+        let plan = Plan { base: Node { value: Value::Table(base), origin: root.origin.clone() }, variants, axes };
+        let count = plan.axes.iter().try_fold(plan.variants.len(), |n, axis| n.checked_mul(axis.values.len()));
         if count.is_none_or(|count| count > MAX_CASES) {
             let count = count.map_or("far too many".into(), |count| count.to_string());
             let message = format!("makes {count} cases; a study holds at most {MAX_CASES}");
-            mistakes.push(
-                Mistake::new(&root.place("sweep"), "sweep", message)
-                    .help("use fewer values per axis"),
-            );
+            mistakes.push(Mistake::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
         }
-        if mistakes.is_empty() {
-            Ok(plan)
-        } else {
-            Err(mistakes)
-        }
+        if mistakes.is_empty() { Ok(plan) } else { Err(mistakes) }
     }
 
     /// Keys that are swept.
     pub fn swept(&self) -> impl Iterator<Item = &str> {
-        self.axes
-            .iter()
-            .flat_map(|axis| &axis.keys)
-            .map(|(key, _)| key.as_str())
+        self.axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str())
     }
 
     /// Number of cases.
     pub fn count(&self) -> usize {
-        self.axes
-            .iter()
-            .map(|axis| axis.values.len())
-            .product::<usize>()
-            * self.variants.len()
+        self.axes.iter().map(|axis| axis.values.len()).product::<usize>() * self.variants.len()
     }
 
     /// Case `id < count()`.
@@ -159,11 +110,7 @@ impl Plan {
             }
         }
         if mistakes.is_empty() {
-            Ok(Expanded {
-                variant: variant.name.clone(),
-                parameters,
-                root,
-            })
+            Ok(Expanded { variant: variant.name.clone(), parameters, root })
         } else {
             Err(mistakes)
         }
@@ -177,24 +124,12 @@ fn read_variants(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Variant> {
         let name = table.get("name").and_then(Node::text).map(str::to_string);
         if name.is_some() && out.iter().any(|earlier| earlier.name == name) {
             let key = join(&join("variants", &index.to_string()), "name");
-            let message = format!(
-                "two variants are called \"{}\"",
-                name.clone().unwrap_or_default()
-            );
+            let message = format!("two variants are called \"{}\"", name.clone().unwrap_or_default());
             let place = table.get("name").map_or(&node.origin, |name| &name.origin);
-            mistakes.push(
-                Mistake::new(place, key, message).help("give each variant a name of its own"),
-            );
+            mistakes.push(Mistake::new(place, key, message).help("give each variant a name of its own"));
         }
-        let set = table
-            .get("set")
-            .and_then(Node::table)
-            .map(|set| set.entries.as_slice())
-            .unwrap_or_default();
-        let set = set
-            .iter()
-            .map(|e| (e.key.clone(), e.origin.clone(), e.node.clone()))
-            .collect();
+        let set = table.get("set").and_then(Node::table).map(|set| set.entries.as_slice()).unwrap_or_default();
+        let set = set.iter().map(|e| (e.key.clone(), e.origin.clone(), e.node.clone())).collect();
         out.push(Variant { name, set });
     }
     out
@@ -202,10 +137,7 @@ fn read_variants(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Variant> {
 
 fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
     let Some(table) = node.table() else {
-        let message = format!(
-            "must be a table from keys to axes, but is {}",
-            node.describe()
-        );
+        let message = format!("must be a table from keys to axes, but is {}", node.describe());
         mistakes.push(Mistake::new(&node.origin, "sweep", message));
         return Vec::new();
     };
@@ -214,21 +146,13 @@ fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
         if entry.key != "zip" {
             if let Some(values) = axis(&entry.node, &join("sweep", &entry.key), mistakes) {
                 let values = values.into_iter().map(|value| vec![value]).collect();
-                axes.push(Axis {
-                    keys: vec![(entry.key.clone(), entry.origin.clone())],
-                    values,
-                });
+                axes.push(Axis { keys: vec![(entry.key.clone(), entry.origin.clone())], values });
             }
             continue;
         }
         let mut keys = Vec::new();
         let mut columns: Vec<Vec<Node>> = Vec::new();
-        for entry in entry
-            .node
-            .table()
-            .map(|table| table.entries.as_slice())
-            .unwrap_or_default()
-        {
+        for entry in entry.node.table().map(|table| table.entries.as_slice()).unwrap_or_default() {
             let path = join("sweep.zip", &entry.key);
             let Some(values) = axis(&entry.node, &path, mistakes) else {
                 continue;
@@ -242,10 +166,8 @@ fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
                     keys_name(&keys),
                     first.len()
                 );
-                mistakes.push(
-                    Mistake::new(&entry.node.origin, path, message)
-                        .help("give both the same number of values"),
-                );
+                mistakes
+                    .push(Mistake::new(&entry.node.origin, path, message).help("give both the same number of values"));
                 continue;
             }
             keys.push((entry.key.clone(), entry.origin.clone()));
@@ -253,9 +175,7 @@ fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
         }
         let steps = columns.first().map_or(0, Vec::len);
         if steps > 0 {
-            let values = (0..steps)
-                .map(|i| columns.iter().map(|column| column[i].clone()).collect())
-                .collect();
+            let values = (0..steps).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect();
             axes.push(Axis { keys, values });
         }
     }
@@ -272,14 +192,8 @@ const FORMS: &str = "write { list = [1.0, 2.0] }, { from = 1.0, to = 2.0, step =
 fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
     let before = mistakes.len();
     let Some(table) = node.table() else {
-        mistakes.push(
-            Mistake::new(
-                &node.origin,
-                path,
-                format!("must be a table, but is {}", node.describe()),
-            )
-            .help(FORMS),
-        );
+        mistakes
+            .push(Mistake::new(&node.origin, path, format!("must be a table, but is {}", node.describe())).help(FORMS));
         return None;
     };
     for entry in &table.entries {
@@ -289,14 +203,7 @@ fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node
                 Some(_) => suggest(&entry.key, &names, "keys here"),
                 None => FORMS.into(),
             };
-            mistakes.push(
-                Mistake::new(
-                    &entry.origin,
-                    join(path, &entry.key),
-                    "is not a key of an axis",
-                )
-                .help(help),
-            );
+            mistakes.push(Mistake::new(&entry.origin, join(path, &entry.key), "is not a key of an axis").help(help));
         }
     }
     if mistakes.len() > before {
@@ -305,9 +212,7 @@ fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node
     let given: Vec<&str> = table.keys().collect();
     let values = match (table.get("list"), given.len()) {
         (Some(list), 1) => listed(list, &join(path, "list"), mistakes),
-        (None, 3) if !(given.contains(&"step") && given.contains(&"count")) => {
-            spaced(node, table, path, mistakes)
-        }
+        (None, 3) if !(given.contains(&"step") && given.contains(&"count")) => spaced(node, table, path, mistakes),
         _ => {
             let message = format!("has the keys {}, which is no axis", given.join(", "));
             mistakes.push(Mistake::new(&node.origin, path, message).help(FORMS));
@@ -329,26 +234,17 @@ fn listed(list: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<No
             Value::Float(number) => *number = rounded(*number),
             Value::Integer(_) | Value::String(_) | Value::Boolean(_) => {}
             _ => {
-                let message = format!(
-                    "a swept value is a number, a text, true or false, but this is {}",
-                    node.describe()
-                );
+                let message =
+                    format!("a swept value is a number, a text, true or false, but this is {}", node.describe());
                 let help = "sweep a single number of it (its index from 0 is part of the key), or use variants";
-                mistakes.push(
-                    Mistake::new(&node.origin, join(path, &index.to_string()), message).help(help),
-                );
+                mistakes.push(Mistake::new(&node.origin, join(path, &index.to_string()), message).help(help));
             }
         }
     }
     Some(values)
 }
 
-fn spaced(
-    node: &Node,
-    table: &Table,
-    path: &str,
-    mistakes: &mut Vec<Mistake>,
-) -> Option<Vec<Node>> {
+fn spaced(node: &Node, table: &Table, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
     let mut number = |key: &str| -> Option<f64> {
         let value = table.get(key)?;
         let number = value.number().filter(|number| number.is_finite());
@@ -358,12 +254,7 @@ fn spaced(
         }
         number
     };
-    let (from, to, step, count) = (
-        number("from"),
-        number("to"),
-        number("step"),
-        number("count"),
-    );
+    let (from, to, step, count) = (number("from"), number("to"), number("step"), number("count"));
     let (from, to) = (from?, to?);
     let mut wrong = |key: &str, message: String, help: &str| -> Option<Vec<Node>> {
         mistakes.push(Mistake::new(&table.get(key)?.origin, join(path, key), message).help(help));
@@ -371,21 +262,12 @@ fn spaced(
     };
     let (count, step) = match (step, count) {
         (Some(0.0), _) => {
-            return wrong(
-                "step",
-                "is zero, so the sweep would never end".into(),
-                "give a step towards `to`",
-            );
+            return wrong("step", "is zero, so the sweep would never end".into(), "give a step towards `to`");
         }
         (Some(step), _) => {
             if (to - from) * step < 0.0 {
-                let message =
-                    format!("{step} leads away from {to}, since the sweep starts at {from}");
-                return wrong(
-                    "step",
-                    message,
-                    "change the sign of the step, or swap from and to",
-                );
+                let message = format!("{step} leads away from {to}, since the sweep starts at {from}");
+                return wrong("step", message, "change the sign of the step, or swap from and to");
             }
             ((to - from) / step + 1e-9, Some(step))
         }
@@ -405,10 +287,7 @@ fn spaced(
         let key = if step.is_some() { "step" } else { "count" };
         return wrong(
             key,
-            format!(
-                "makes {:.0} values; a study holds at most {MAX_CASES}",
-                count.floor() + 1.0
-            ),
+            format!("makes {:.0} values; a study holds at most {MAX_CASES}", count.floor() + 1.0),
             "use fewer values",
         );
     }
@@ -419,27 +298,12 @@ fn spaced(
         None => from + (to - from) * (i / last),
     };
     let numbers: Vec<f64> = (0..=last as usize).map(|i| rounded(at(i as f64))).collect();
-    let written_whole = table
-        .entries
-        .iter()
-        .all(|entry| matches!(entry.node.value, Value::Integer(_)));
+    let written_whole = table.entries.iter().all(|entry| matches!(entry.node.value, Value::Integer(_)));
     let whole = written_whole && numbers.iter().all(|number| number.fract() == 0.0);
     let value = |number: f64| {
-        if whole {
-            Value::Integer(number as i64)
-        } else {
-            Value::Float(number)
-        }
+        if whole { Value::Integer(number as i64) } else { Value::Float(number) }
     };
-    Some(
-        numbers
-            .into_iter()
-            .map(|number| Node {
-                value: value(number),
-                origin: node.origin.clone(),
-            })
-            .collect(),
-    )
+    Some(numbers.into_iter().map(|number| Node { value: value(number), origin: node.origin.clone() }).collect())
 }
 
 #[cfg(test)]
@@ -452,22 +316,18 @@ mod tests {
     }
 
     fn column(plan: &Plan, key: &str) -> Vec<Json> {
-        (0..plan.count())
-            .map(|id| plan.case(id).unwrap().parameters[key].clone())
-            .collect()
+        (0..plan.count()).map(|id| plan.case(id).unwrap().parameters[key].clone()).collect()
     }
 
     #[test]
     fn the_value_used_is_the_rounded_one() {
-        let plan = plan("[scene]\nrise = 1.0\n[sweep]\n\"scene.rise\" = { from = 5.69, to = 0.29, step = -0.30 }").unwrap();
+        let plan =
+            plan("[scene]\nrise = 1.0\n[sweep]\n\"scene.rise\" = { from = 5.69, to = 0.29, step = -0.30 }").unwrap();
         let rises = column(&plan, "scene.rise");
         assert_eq!(rises.len(), 19);
         assert_eq!(rises[9].as_f64(), Some(2.99));
         assert_eq!(rises[18].as_f64(), Some(0.29));
-        assert_eq!(
-            plan.case(9).unwrap().root.to_json()["scene"]["rise"].as_f64(),
-            Some(2.99)
-        );
+        assert_eq!(plan.case(9).unwrap().root.to_json()["scene"]["rise"].as_f64(), Some(2.99));
     }
 
     #[test]
@@ -483,12 +343,8 @@ mod tests {
 
     #[test]
     fn keys_under_zip_change_together() {
-        let plan =
-            plan("[sweep.zip]\n\"a\" = { list = [1, 2] }\n\"b\" = { list = [3, 4] }").unwrap();
-        assert_eq!(
-            (column(&plan, "a"), column(&plan, "b")),
-            (vec![1.into(), 2.into()], vec![3.into(), 4.into()])
-        );
+        let plan = plan("[sweep.zip]\n\"a\" = { list = [1, 2] }\n\"b\" = { list = [3, 4] }").unwrap();
+        assert_eq!((column(&plan, "a"), column(&plan, "b")), (vec![1.into(), 2.into()], vec![3.into(), 4.into()]));
     }
 
     #[test]

@@ -10,29 +10,12 @@ use voussoir_core::units::Quantity;
 /// The schema of study files.
 pub fn json_schema() -> Json {
     let mut definitions = Map::new();
-    for kind in [
-        PluginKind::InterfaceLaw,
-        PluginKind::BulkMaterial,
-        PluginKind::Scene,
-        PluginKind::LimitSolver,
-    ] {
+    for kind in [PluginKind::InterfaceLaw, PluginKind::BulkMaterial, PluginKind::Scene, PluginKind::LimitSolver] {
         let mut choices = Vec::new();
         for word in common_words(kind) {
-            choices.push(plugin(
-                &mut definitions,
-                kind,
-                word,
-                "chosen by the program",
-                &[],
-            ));
+            choices.push(plugin(&mut definitions, kind, word, "chosen by the program", &[]));
         }
-        for Card {
-            tag,
-            summary,
-            parameters,
-            ..
-        } in cards_of(kind)
-        {
+        for Card { tag, summary, parameters, .. } in cards_of(kind) {
             choices.push(plugin(&mut definitions, kind, tag, summary, parameters));
         }
         definitions.insert(name_of(kind), json!({ "oneOf": choices }));
@@ -48,16 +31,8 @@ fn name_of(kind: PluginKind) -> String {
     kind.describe().replace(' ', "_")
 }
 
-fn plugin(
-    defs: &mut Map<String, Json>,
-    kind: PluginKind,
-    tag: &str,
-    summary: &str,
-    own: &[Parameter],
-) -> Json {
-    let common = common_parameters(kind)
-        .iter()
-        .filter(|p| own.iter().all(|o| o.name != p.name));
+fn plugin(defs: &mut Map<String, Json>, kind: PluginKind, tag: &str, summary: &str, own: &[Parameter]) -> Json {
+    let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
     let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
     // Keys of other plug-ins of the kind are accepted, so that swapping one is a single line.
     for other in cards_of(kind).iter().flat_map(|card| card.parameters) {
@@ -105,18 +80,10 @@ fn table(parameters: &[Parameter], tag: Option<(&str, &str)>) -> Json {
 fn number(range: &Range) -> Json {
     let mut schema = json!({ "type": "number" });
     if range.min.is_finite() {
-        schema[if range.min_open {
-            "exclusiveMinimum"
-        } else {
-            "minimum"
-        }] = range.min.into();
+        schema[if range.min_open { "exclusiveMinimum" } else { "minimum" }] = range.min.into();
     }
     if range.max.is_finite() {
-        schema[if range.max_open {
-            "exclusiveMaximum"
-        } else {
-            "maximum"
-        }] = range.max.into();
+        schema[if range.max_open { "exclusiveMaximum" } else { "maximum" }] = range.max.into();
     }
     schema
 }
@@ -162,19 +129,12 @@ mod tests {
     fn every_reference_has_a_definition_and_every_law_its_own() {
         let schema = json_schema();
         let text = schema.to_string();
-        for target in text
-            .split("\"#/$defs/")
-            .skip(1)
-            .filter_map(|rest| rest.split('"').next())
-        {
+        for target in text.split("\"#/$defs/").skip(1).filter_map(|rest| rest.split('"').next()) {
             assert!(schema["$defs"].get(target).is_some(), "{target}");
         }
         let coulomb = &schema["$defs"]["interface_law_coulomb"];
         assert_eq!(coulomb["properties"]["law"]["const"], "coulomb");
-        assert_eq!(
-            coulomb["properties"]["friction"]["anyOf"][0]["minimum"],
-            0.0
-        );
+        assert_eq!(coulomb["properties"]["friction"]["anyOf"][0]["minimum"], 0.0);
         assert_eq!(coulomb["additionalProperties"], false);
     }
 }

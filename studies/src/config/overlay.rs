@@ -16,24 +16,15 @@ pub fn segments(path: &str) -> Vec<String> {
     if !path.is_empty() {
         out.push(segment);
     }
-    out.iter_mut()
-        .for_each(|segment| *segment = segment.trim().to_string());
+    out.iter_mut().for_each(|segment| *segment = segment.trim().to_string());
     out
 }
 
 /// A dotted key, one segment longer.
 pub fn join(path: &str, segment: &str) -> String {
     let quote = segment.is_empty() || segment.contains(['.', ' ']);
-    let segment = if quote {
-        format!("\"{segment}\"")
-    } else {
-        segment.to_string()
-    };
-    if path.is_empty() {
-        segment
-    } else {
-        format!("{path}.{segment}")
-    }
+    let segment = if quote { format!("\"{segment}\"") } else { segment.to_string() };
+    if path.is_empty() { segment } else { format!("{path}.{segment}") }
 }
 
 /// Sets the key at a dotted path. List entries are found by index from 0 or, where they are tables
@@ -44,8 +35,7 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
     let wrong = |message: String| Mistake::new(key_origin, path, message);
     let segments = segments(path);
     if segments.is_empty() || segments.iter().any(String::is_empty) {
-        return Err(wrong(format!("\"{path}\" is not a dotted key"))
-            .help("write it as in scene.profile.rise"));
+        return Err(wrong(format!("\"{path}\" is not a dotted key")).help("write it as in scene.profile.rise"));
     }
     let mut node = root;
     let mut walked = String::new();
@@ -54,15 +44,12 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
         node = match &mut node.value {
             Value::Table(table) => child(table, segment, key_origin),
             Value::Array(nodes) => {
-                let index = find(nodes, segment).map_err(|help| {
-                    wrong(format!("the list {walked} has no entry \"{segment}\"")).help(help)
-                })?;
+                let index = find(nodes, segment)
+                    .map_err(|help| wrong(format!("the list {walked} has no entry \"{segment}\"")).help(help))?;
                 &mut nodes[index]
             }
             _ => {
-                return Err(wrong(format!(
-                    "{walked} is {described}, so nothing can be set inside it"
-                )));
+                return Err(wrong(format!("{walked} is {described}, so nothing can be set inside it")));
             }
         };
         walked = join(&walked, segment);
@@ -73,31 +60,17 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
 
 /// The value under a key; a new empty table where there is none.
 fn child<'a>(table: &'a mut Table, key: &str, origin: &Origin) -> &'a mut Node {
-    let index = table
-        .entries
-        .iter()
-        .position(|entry| entry.key == key)
-        .unwrap_or_else(|| {
-            let node = Node {
-                value: Value::Table(Table::default()),
-                origin: origin.clone(),
-            };
-            table.entries.push(Entry {
-                key: key.into(),
-                origin: origin.clone(),
-                node,
-            });
-            table.entries.len() - 1
-        });
+    let index = table.entries.iter().position(|entry| entry.key == key).unwrap_or_else(|| {
+        let node = Node { value: Value::Table(Table::default()), origin: origin.clone() };
+        table.entries.push(Entry { key: key.into(), origin: origin.clone(), node });
+        table.entries.len() - 1
+    });
     &mut table.entries[index].node
 }
 
 /// The index of a list entry by index or name; else advice.
 fn find(nodes: &[Node], segment: &str) -> Result<usize, String> {
-    let name = |node: &Node| {
-        node.table()
-            .and_then(|table| table.get("name")?.text().map(str::to_string))
-    };
+    let name = |node: &Node| node.table().and_then(|table| table.get("name")?.text().map(str::to_string));
     if let Ok(index) = segment.parse::<usize>() {
         return if index < nodes.len() {
             Ok(index)
@@ -109,21 +82,14 @@ fn find(nodes: &[Node], segment: &str) -> Result<usize, String> {
             })
         };
     }
-    nodes
-        .iter()
-        .position(|node| name(node).as_deref() == Some(segment))
-        .ok_or_else(|| {
-            let names: Vec<_> = nodes.iter().filter_map(name).collect();
-            if names.is_empty() {
-                "its entries have no names: give an index, counted from 0".into()
-            } else {
-                suggest(
-                    segment,
-                    &names.iter().map(String::as_str).collect::<Vec<_>>(),
-                    "its entries",
-                )
-            }
-        })
+    nodes.iter().position(|node| name(node).as_deref() == Some(segment)).ok_or_else(|| {
+        let names: Vec<_> = nodes.iter().filter_map(name).collect();
+        if names.is_empty() {
+            "its entries have no names: give an index, counted from 0".into()
+        } else {
+            suggest(segment, &names.iter().map(String::as_str).collect::<Vec<_>>(), "its entries")
+        }
+    })
 }
 
 #[cfg(test)]
@@ -131,18 +97,12 @@ mod tests {
     use super::*;
     use crate::config::document::{parse, parse_value};
 
-    const TEXT: &str =
-        "name = \"x\"\n[[stages]]\nname = \"live\"\nloads = [{ force = 1 }]\n[scene]\nspan = 3\n";
+    const TEXT: &str = "name = \"x\"\n[[stages]]\nname = \"live\"\nloads = [{ force = 1 }]\n[scene]\nspan = 3\n";
 
     fn with(path: &str, value: &str) -> Result<Node, Mistake> {
         let mut root = parse(TEXT, "a.toml").unwrap();
         let origin = Origin::Set(path.into());
-        set(
-            &mut root,
-            path,
-            parse_value(value, &origin).unwrap(),
-            &origin,
-        )?;
+        set(&mut root, path, parse_value(value, &origin).unwrap(), &origin)?;
         Ok(root)
     }
 
@@ -150,20 +110,14 @@ mod tests {
     fn entries_of_lists_go_by_index_or_name_and_take_the_origin_of_what_is_set() {
         for path in ["stages.0.loads.0.force", "stages.live.loads.0.force"] {
             let root = with(path, "7").unwrap();
-            assert_eq!(
-                root.place("stages.0.loads.0.force"),
-                Origin::Set(path.into())
-            );
+            assert_eq!(root.place("stages.0.loads.0.force"), Origin::Set(path.into()));
             assert_eq!(root.to_json()["stages"][0]["loads"][0]["force"], 7);
         }
     }
 
     #[test]
     fn missing_tables_are_created_but_not_list_entries() {
-        assert_eq!(
-            with("solver.tolerance", "1e-6").unwrap().to_json()["solver"]["tolerance"],
-            1e-6
-        );
+        assert_eq!(with("solver.tolerance", "1e-6").unwrap().to_json()["solver"]["tolerance"], 1e-6);
         let message = |path| with(path, "1").unwrap_err().to_string();
         assert_eq!(
             message("stages.liv.factor"),

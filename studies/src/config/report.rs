@@ -21,13 +21,7 @@ pub struct Mistake {
 impl Mistake {
     /// A mistake at a place.
     pub fn new(origin: &Origin, key: impl Into<String>, message: impl Into<String>) -> Self {
-        Mistake {
-            origin: origin.clone(),
-            key: key.into(),
-            message: message.into(),
-            help: None,
-            case: None,
-        }
+        Mistake { origin: origin.clone(), key: key.into(), message: message.into(), help: None, case: None }
     }
 
     /// With advice.
@@ -65,10 +59,7 @@ pub fn sort(mistakes: &mut [Mistake]) {
 
 /// Words as `"a", "b" or "c"`.
 pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    let words: Vec<_> = words
-        .into_iter()
-        .map(|word| format!("\"{word}\""))
-        .collect();
+    let words: Vec<_> = words.into_iter().map(|word| format!("\"{word}\"")).collect();
     match words.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
         _ => words.concat(),
@@ -90,25 +81,11 @@ mod tests {
 
     #[test]
     fn a_mistake_reads_place_key_message_help() {
-        let origin = Origin::File {
-            file: "a.toml".into(),
-            line: 3,
-            column: 5,
-        };
+        let origin = Origin::File { file: "a.toml".into(), line: 3, column: 5 };
         let mistake = Mistake::new(&origin, "scene.span", "is missing").help("add it");
-        assert_eq!(
-            mistake.to_string(),
-            "a.toml:3:5: scene.span: is missing\n  help: add it"
-        );
-        let mistake = Mistake::new(
-            &Origin::Set("scene.span".into()),
-            "scene.span",
-            "-1 m is out of range",
-        );
-        assert_eq!(
-            mistake.to_string(),
-            "--set scene.span: -1 m is out of range"
-        );
+        assert_eq!(mistake.to_string(), "a.toml:3:5: scene.span: is missing\n  help: add it");
+        let mistake = Mistake::new(&Origin::Set("scene.span".into()), "scene.span", "-1 m is out of range");
+        assert_eq!(mistake.to_string(), "--set scene.span: -1 m is out of range");
     }
 
     #[test]
