@@ -256,7 +256,7 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
                 origin: origin.clone(),
             })
         });
-        mistakes.extend(set(&mut root, path, value, &origin).err());
+        mistakes.extend(set(&mut root, path, value, &origin).err().map(|mistake| *mistake));
     }
     check_variants(&root, &mut mistakes);
     let plan = match Plan::new(&root) {

@@ -92,3 +92,20 @@ fn keys_without_influence_are_noted() {
     assert!(strengths.notes.iter().all(|note| !note.contains("cohesion")));
     assert_eq!(strengths.resolved["joints"]["dry"]["cohesion"], 1000.0);
 }
+
+#[test]
+fn the_order_of_axes_survives_the_round_trip() {
+    let head = TEXT.split("[sweep]").next().unwrap();
+    let axes = r#"
+[sweep]
+"scene.width" = { list = [1.0, 2.0] }
+zip = { "scene.thickness" = { list = [0.5, 0.6] }, "joints.dry.friction" = { list = [0.5, 0.7] } }
+"scene.profile.rise" = { from = 2.0, to = 3.0, count = 2 }
+"#;
+    let study = read(&format!("{head}{axes}"), &[]);
+    let order = |study: &Study| study.cases.iter().map(|case| format!("{:?}", case.parameters)).collect::<Vec<_>>();
+    assert_eq!(study.cases[1].parameters["scene.width"].as_f64(), Some(1.0));
+    assert_eq!(study.cases[1].parameters["scene.profile.rise"].as_f64(), Some(3.0));
+    let again = read(&toml::to_string(&study.resolved).unwrap(), &[]);
+    assert_eq!(order(&study), order(&again));
+}

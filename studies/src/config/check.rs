@@ -18,6 +18,10 @@ pub struct Unused {
     pub by: String,
 }
 
+/// A value has mistakes, which are in the checker's list.
+#[derive(Debug, Clone, Copy)]
+pub struct Mistaken;
+
 /// A check in progress.
 #[derive(Debug)]
 pub struct Checker<'a> {
@@ -338,7 +342,7 @@ impl<'a> Checker<'a> {
             match self.parameter(node, table, parameter, key) {
                 Ok(Some(value)) => _ = out.insert(parameter.name.into(), value),
                 Ok(None) => {}
-                Err(()) => sound = false,
+                Err(Mistaken) => sound = false,
             }
         }
         sound.then_some(Json::Object(out))
@@ -351,21 +355,21 @@ impl<'a> Checker<'a> {
         table: &Table,
         parameter: &Parameter,
         key: &str,
-    ) -> Result<Option<Json>, ()> {
+    ) -> Result<Option<Json>, Mistaken> {
         let path = join(key, parameter.name);
         if let Some(value) = table.get(parameter.name) {
-            return self.check(value, &parameter.shape, &path).map(Some).ok_or(());
+            return self.check(value, &parameter.shape, &path).map(Some).ok_or(Mistaken);
         }
         match parameter.need {
             Need::Required => {
                 let help = format!("{}; give {}", parameter.doc, describe(&parameter.shape));
                 self.wrong_with_help(&node.origin, &path, "is missing".into(), help);
-                Err(())
+                Err(Mistaken)
             }
             Need::Optional(_) => Ok(None),
             Need::Default(text) => {
-                let value = parse_value(text, &node.origin).ok_or(())?;
-                self.check(&value, &parameter.shape, &path).map(Some).ok_or(())
+                let value = parse_value(text, &node.origin).ok_or(Mistaken)?;
+                self.check(&value, &parameter.shape, &path).map(Some).ok_or(Mistaken)
             }
         }
     }
