@@ -256,7 +256,7 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
                 origin: origin.clone(),
             })
         });
-        mistakes.extend(set(&mut root, path, value, &origin).err());
+        mistakes.extend(set(&mut root, path, value, &origin).err().map(|mistake| *mistake));
     }
     check_variants(&root, &mut mistakes);
     let plan = match Plan::new(&root) {
@@ -270,7 +270,7 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
     for (path, _) in sets {
         if plan.swept().any(|swept| swept == path) {
             let message = "is swept, so setting it has no effect";
-            let help = "change the axis, for example --set 'sweep.\"scene.thickness\".list=[0.5]'";
+            let help = format!("change the axis instead: --set 'sweep.\"{path}\".list=[…]'");
             mistakes.push(Mistake::new(&Origin::Set(path.as_str().into()), path, message).help(help));
         }
     }
@@ -377,12 +377,18 @@ fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
         return Err(vec![Mistake::new(&root.origin, "", "must be a table")]);
     };
     let names: Vec<_> = STUDY.iter().map(|parameter| parameter.name).collect();
+    // A key that is written wrongly is not missing as well.
+    let mut misspelt = Vec::new();
     for entry in table.entries.iter().filter(|entry| !names.contains(&entry.key.as_str())) {
+        misspelt.extend(voussoir_core::card::nearest(&entry.key, names.iter().copied()));
         let help = suggest(&entry.key, &names, "keys here");
         checker.mistakes.push(Mistake::new(&entry.origin, &entry.key, "is not a key of a study").help(help));
     }
     let mut resolved = Map::new();
     for parameter in STUDY.iter().filter(|p| p.name != "sweep" && p.name != "variants") {
+        if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
+            continue;
+        }
         if let Ok(Some(value)) = checker.parameter(&root, table, parameter, "") {
             resolved.insert(parameter.name.into(), value);
         }

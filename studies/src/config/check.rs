@@ -6,7 +6,7 @@ use crate::config::overlay::join;
 use crate::config::report::{Mistake, any_of, suggest};
 use serde_json::{Map, Value as Json};
 use voussoir_core::card::{Card, card, cards_of};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir_core::schema::{Need, Parameter, PluginKind, Shape, Variant};
 use voussoir_core::units::{Quantity, STANDARD_GRAVITY};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
@@ -17,6 +17,10 @@ pub struct Unused {
     /// In words, what does not use it: `interface law "coulomb"`.
     pub by: String,
 }
+
+/// A value has mistakes, which are in the checker's list.
+#[derive(Debug, Clone, Copy)]
+pub struct Mistaken;
 
 /// A check in progress.
 #[derive(Debug)]
@@ -127,13 +131,20 @@ impl<'a> Checker<'a> {
                 let number = match &node.value {
                     Value::String(text) => match quantity.parse(text, self.gravity) {
                         Ok(number) => number,
-                        Err(why) => return self.wrong(&node.origin, key, why),
+                        Err(why) => {
+                            let help = format!("write {}", describe(shape));
+                            return self.wrong_with_help(&node.origin, key, why, help);
+                        }
                     },
                     _ => node.number().unwrap_or(f64::NAN),
                 };
                 let unit = if *quantity == Quantity::Ratio { String::new() } else { format!(" {}", quantity.unit()) };
                 if !number.is_finite() {
-                    return self.wrong(&node.origin, key, format!("{number} is not a finite number"));
+                    return self.wrong(
+                        &node.origin,
+                        key,
+                        format!("{} is not a finite number", number.to_string().to_lowercase()),
+                    );
                 }
                 if !range.contains(number) {
                     let message = format!("{number}{unit} is out of range: it must be {}", range.describe());
@@ -179,7 +190,15 @@ impl<'a> Checker<'a> {
                         (least, usize::MAX) => format!("at least {least}"),
                         (least, most) => format!("from {least} to {most}"),
                     };
-                    self.wrong(&node.origin, key, format!("the list has {} entries; it needs {wanted}", nodes.len()));
+                    self.wrong(
+                        &node.origin,
+                        key,
+                        format!(
+                            "the list has {} {}; it needs {wanted}",
+                            nodes.len(),
+                            if nodes.len() == 1 { "entry" } else { "entries" }
+                        ),
+                    );
                 }
                 let entries: Vec<_> = nodes
                     .iter()
@@ -188,7 +207,7 @@ impl<'a> Checker<'a> {
                     .collect();
                 entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
             }
-            (Shape::Table(parameters), Value::Table(table)) => self.table(node, table, parameters, &[], key),
+            (Shape::Table(parameters), Value::Table(table)) => self.table(node, table, parameters, &[], &[], key),
             (Shape::Map(of), Value::Table(table)) => {
                 let entries: Vec<_> = table
                     .entries
@@ -202,7 +221,7 @@ impl<'a> Checker<'a> {
                 let tag = self.tag(node, table, tag_key, &tags, tag_key, key)?;
                 let parameters = variants.iter().find(|variant| variant.tag == tag)?.parameters;
                 let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
-                if let Some(Json::Object(rest)) = self.table(node, table, parameters, &[tag_key], key) {
+                if let Some(Json::Object(rest)) = self.table(node, table, parameters, &[tag_key], variants, key) {
                     out.extend(rest);
                 }
                 Some(Json::Object(out))
@@ -224,7 +243,7 @@ impl<'a> Checker<'a> {
     fn finite(&mut self, node: &Node, key: &str) {
         match &node.value {
             Value::Float(number) if !number.is_finite() => {
-                self.wrong(&node.origin, key, format!("{number} is not a finite number"));
+                self.wrong(&node.origin, key, format!("{} is not a finite number", number.to_string().to_lowercase()));
             }
             Value::Array(nodes) => {
                 nodes.iter().enumerate().for_each(|(i, node)| self.finite(node, &join(key, &i.to_string())));
@@ -294,23 +313,36 @@ impl<'a> Checker<'a> {
         table: &Table,
         parameters: &[Parameter],
         skip: &[&str],
+        others: &[Variant],
         key: &str,
     ) -> Option<Json> {
+        // A key that is written wrongly is not missing as well.
+        let mut misspelt = Vec::new();
         for entry in &table.entries {
             let known = skip.contains(&entry.key.as_str()) || parameters.iter().any(|p| p.name == entry.key);
             if !known {
                 let names: Vec<_> = skip.iter().copied().chain(parameters.iter().map(|p| p.name)).collect();
-                let help = suggest(&entry.key, &names, "keys here");
+                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                misspelt.extend(near.filter(|name| table.get(name).is_none()));
+                let elsewhere = others.iter().find(|other| other.parameters.iter().any(|p| p.name == entry.key));
+                let help = match (near, elsewhere) {
+                    (None, Some(other)) => format!("it belongs to \"{}\"", other.tag),
+                    _ => suggest(&entry.key, &names, "keys here"),
+                };
                 self.wrong_with_help(&entry.origin, &join(key, &entry.key), "is not a key here".into(), help);
             }
         }
         let mut out = Map::new();
         let mut sound = true;
         for parameter in parameters {
+            if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
+                sound = false;
+                continue;
+            }
             match self.parameter(node, table, parameter, key) {
                 Ok(Some(value)) => _ = out.insert(parameter.name.into(), value),
                 Ok(None) => {}
-                Err(()) => sound = false,
+                Err(Mistaken) => sound = false,
             }
         }
         sound.then_some(Json::Object(out))
@@ -323,21 +355,21 @@ impl<'a> Checker<'a> {
         table: &Table,
         parameter: &Parameter,
         key: &str,
-    ) -> Result<Option<Json>, ()> {
+    ) -> Result<Option<Json>, Mistaken> {
         let path = join(key, parameter.name);
         if let Some(value) = table.get(parameter.name) {
-            return self.check(value, &parameter.shape, &path).map(Some).ok_or(());
+            return self.check(value, &parameter.shape, &path).map(Some).ok_or(Mistaken);
         }
         match parameter.need {
             Need::Required => {
                 let help = format!("{}; give {}", parameter.doc, describe(&parameter.shape));
                 self.wrong_with_help(&node.origin, &path, "is missing".into(), help);
-                Err(())
+                Err(Mistaken)
             }
             Need::Optional(_) => Ok(None),
             Need::Default(text) => {
-                let value = parse_value(text, &node.origin).ok_or(())?;
-                self.check(&value, &parameter.shape, &path).map(Some).ok_or(())
+                let value = parse_value(text, &node.origin).ok_or(Mistaken)?;
+                self.check(&value, &parameter.shape, &path).map(Some).ok_or(Mistaken)
             }
         }
     }
@@ -354,8 +386,8 @@ impl<'a> Checker<'a> {
         let chosen: Option<&Card> = card(kind, tag);
         let own: &[Parameter] = chosen.map_or(&[], |card| card.parameters);
         let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
-        let parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
-        let mut skip = vec![tag_key];
+        let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
+        let (mut skip, mut misspelt, found) = (vec![tag_key], Vec::new(), self.mistakes.len());
         for entry in &table.entries {
             if parameters.iter().any(|p| p.name == entry.key) || entry.key == tag_key {
                 continue;
@@ -364,9 +396,10 @@ impl<'a> Checker<'a> {
                 registered.iter().flat_map(|card| card.parameters).filter(|p| p.name == entry.key).collect();
             let path = join(key, &entry.key);
             if others.is_empty() {
-                let mut names: Vec<_> = parameters.iter().map(|p| p.name).collect();
-                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied()).is_some();
-                if !near {
+                let mut names: Vec<_> = std::iter::once(tag_key).chain(parameters.iter().map(|p| p.name)).collect();
+                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                misspelt.extend(near);
+                if near.is_none() {
                     let all = registered.iter().flat_map(|card| card.parameters).map(|p| p.name);
                     if let Some(name) = voussoir_core::card::nearest(&entry.key, all) {
                         names = vec![name];
@@ -391,11 +424,15 @@ impl<'a> Checker<'a> {
             }
             skip.push(&entry.key);
         }
-        let rest = self.table(node, table, &parameters, &skip, key)?;
+        // A key that is written wrongly is not missing as well.
+        parameters.retain(|p| table.get(p.name).is_some() || !misspelt.contains(&p.name));
+        let rest = self.table(node, table, &parameters, &skip, &[], key)?;
         let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
         out.extend(rest.as_object().cloned().unwrap_or_default());
         let value = Json::Object(out);
-        if let Some(card) = chosen {
+        if let Some(card) = chosen
+            && self.mistakes.len() == found
+        {
             // A card's check reads the concrete type, which knows neither the tag nor common keys.
             let own: Map<_, _> = value
                 .as_object()?

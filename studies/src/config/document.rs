@@ -233,6 +233,7 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<Mistake>> {
         }
     }
     if !mistakes.is_empty() {
+        crate::config::report::sort(&mut mistakes);
         return Err(mistakes);
     }
     let node = reader.table(root.get_ref(), reader.origin(0), &mut mistakes);
@@ -343,10 +344,10 @@ mod tests {
 
     #[test]
     fn values_and_headers_know_their_place() {
-        let text = "name = \"x\"\n[scene]\nµ = 1 # two-byte key\nprofile = { rise = 2.0 }\n\n[[stages]]\nname = \"live\"\n\n[joints.dry]\nlaw = \"coulomb\"\n";
+        let text = "name = \"x\"\n[scene]\n\"µ\" = 1 # two-byte key\nprofile = { rise = 2.0 }\n\n[[stages]]\nname = \"live\"\n\n[joints.dry]\nlaw = \"coulomb\"\n";
         let root = parse(text, "a.toml").unwrap();
         assert_eq!(at(&root.place("scene")), (2, 2));
-        assert_eq!(at(&root.place("scene.µ")), (3, 5));
+        assert_eq!(at(&root.place("scene.µ")), (3, 7));
         assert_eq!(at(&root.place("scene.profile.rise")), (4, 20));
         assert_eq!(at(&root.place("scene.profile.span")), (4, 11), "an absent key is its table's");
         assert_eq!(at(&root.place("stages.0.name")), (7, 8));

@@ -101,12 +101,12 @@ impl Plan {
         let variant = &self.variants[rest];
         let (mut root, mut mistakes, mut parameters) = (self.base.clone(), Vec::new(), Map::new());
         for (key, origin, value) in &variant.set {
-            mistakes.extend(set(&mut root, key, value.clone(), origin).err());
+            mistakes.extend(set(&mut root, key, value.clone(), origin).err().map(|mistake| *mistake));
         }
         for (axis, &step) in self.axes.iter().zip(&steps) {
             for ((key, origin), value) in axis.keys.iter().zip(&axis.values[step]) {
                 parameters.insert(key.clone(), value.to_json());
-                mistakes.extend(set(&mut root, key, value.clone(), origin).err());
+                mistakes.extend(set(&mut root, key, value.clone(), origin).err().map(|mistake| *mistake));
             }
         }
         if mistakes.is_empty() {

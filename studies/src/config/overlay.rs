@@ -31,11 +31,12 @@ pub fn join(path: &str, segment: &str) -> String {
 /// with a `name`, by that name. Tables and keys that are missing are created, so that a misspelt
 /// key is found by the check of the whole; a list entry is never created. `key_origin` is where
 /// the path was written.
-pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Result<(), Mistake> {
+pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Result<(), Box<Mistake>> {
     let wrong = |message: String| Mistake::new(key_origin, path, message);
     let segments = segments(path);
     if segments.is_empty() || segments.iter().any(String::is_empty) {
-        return Err(wrong(format!("\"{path}\" is not a dotted key")).help("write it as in scene.profile.rise"));
+        let help = "write it as in scene.profile.rise";
+        return Err(wrong(format!("\"{path}\" is not a dotted key")).help(help).into());
     }
     let mut node = root;
     let mut walked = String::new();
@@ -49,7 +50,7 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
                 &mut nodes[index]
             }
             _ => {
-                return Err(wrong(format!("{walked} is {described}, so nothing can be set inside it")));
+                return Err(wrong(format!("{walked} is {described}, so nothing can be set inside it")).into());
             }
         };
         walked = join(&walked, segment);
@@ -99,7 +100,7 @@ mod tests {
 
     const TEXT: &str = "name = \"x\"\n[[stages]]\nname = \"live\"\nloads = [{ force = 1 }]\n[scene]\nspan = 3\n";
 
-    fn with(path: &str, value: &str) -> Result<Node, Mistake> {
+    fn with(path: &str, value: &str) -> Result<Node, Box<Mistake>> {
         let mut root = parse(TEXT, "a.toml").unwrap();
         let origin = Origin::Set(path.into());
         set(&mut root, path, parse_value(value, &origin).unwrap(), &origin)?;

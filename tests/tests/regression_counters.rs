@@ -1,0 +1,40 @@
+//! Work done, as counts: a performance regression fails here without a clock.
+
+use voussoir_tests::{Arch, answered};
+
+fn pivots(voussoirs: usize) -> u64 {
+    answered(&Arch { voussoirs, ends: "jointed", solver: "limit_chain", ..Arch::default() }.study()).counters["pivots"]
+}
+
+/// The 14-joint arch takes two programs and no sparse factorisation in the chain solver.
+#[test]
+fn the_chain_solver_factorises_nothing() {
+    let result = answered(&Arch { voussoirs: 13, ends: "jointed", ..Arch::default() }.study());
+    assert_eq!(result.solver, "limit_chain");
+    assert_eq!(result.counters["programs"], 2);
+    assert_eq!(result.counters["factorisations"], 0);
+    assert!(result.counters["pivots"] <= 16, "{:?}", result.counters);
+}
+
+/// Pivots hardly grow with the number of joints, so the cost of a pivot, linear, is the cost.
+#[test]
+fn pivots_do_not_grow_with_the_ring() {
+    let counts = [13, 130, 1300, 10_000].map(pivots);
+    assert!(counts.iter().all(|&count| count <= 30), "{counts:?}");
+}
+
+/// Dead load that the next stage checks anyway is not solved twice: two stages, two programs.
+#[test]
+fn a_stage_that_the_next_one_covers_costs_nothing() {
+    let result = answered(&Arch::default().study());
+    assert_eq!((result.stages.len(), result.counters["programs"]), (2, 2));
+}
+
+/// A ring of 10,000 voussoirs is answered and certified to rounding.
+#[test]
+fn ten_thousand_voussoirs() {
+    let result = answered(&Arch { voussoirs: 10_000, ends: "jointed", ..Arch::default() }.study());
+    assert!(result.certificate.passed, "{:?}", result.certificate);
+    let [low, high] = result.bounds.expect("bounds");
+    assert!((high - low) / high < 1e-12);
+}

@@ -1,0 +1,115 @@
+//! `verify` reads only results.json and resolved.toml and finds every number that was changed.
+
+use serde_json::{Value, json};
+use voussoir::kinds::run::answer_case;
+use voussoir::results::StudyResults;
+use voussoir::study::{Study, load};
+use voussoir::verify::verify;
+use voussoir_tests::{Arch, crushing, friction, study};
+
+/// Results of a study, as they are written, and the study as it is read back from resolved.toml.
+fn results(text: &str) -> (Study, Value) {
+    let original = study(text);
+    let resolved = toml::to_string(&original.resolved).expect("a study can be written");
+    let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
+    let cases = original.cases.iter().map(answer_case).collect();
+    let results = StudyResults { study: original.name, version: "test".into(), cases };
+    (again, serde_json::to_value(&results).expect("results can be written"))
+}
+
+fn findings(study: &Study, results: &Value) -> usize {
+    let text = serde_json::to_string(results).expect("JSON");
+    match serde_json::from_str::<StudyResults>(&text) {
+        Ok(results) => verify(study, &results).len(),
+        Err(_) => 1,
+    }
+}
+
+/// Changes every number below `value` in turn, relatively by `by`, and calls `check` with its path.
+fn each_number(value: &Value, by: f64, path: &str, check: &mut dyn FnMut(&str, &dyn Fn(&mut Value))) {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let x = number.as_f64().expect("a float");
+            let changed = if x == 0.0 { by } else { x * (1.0 + by) };
+            check(path, &move |slot: &mut Value| *slot = json!(changed));
+        }
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(i, item)| each_number(item, by, &format!("{path}/{i}"), check));
+        }
+        Value::Object(map) => map.iter().for_each(|(key, item)| each_number(item, by, &format!("{path}/{key}"), check)),
+        _ => {}
+    }
+}
+
+/// Untouched results are confirmed; every changed factor, bound, force, velocity, hinge and point is found.
+#[test]
+fn every_changed_number_is_found() {
+    let unbounded = Arch { rise: 1.19, ..Arch::default() };
+    let weak = Arch { joint: friction(0.01), ends: "jointed", ..Arch::default() };
+    let thin = Arch { thickness: 0.12, ends: "jointed", ..Arch::default() };
+    let cases = [
+        Arch::default(),
+        Arch { joint: friction(0.3), ..Arch::default() },
+        Arch { joint: crushing(0.6, 10e6), ..Arch::default() },
+        unbounded,
+        weak,
+        thin,
+    ];
+    for arch in cases {
+        let (study, original) = results(&arch.study());
+        let text = serde_json::to_string(&original).expect("JSON");
+        let read = serde_json::from_str(&text).expect("results");
+        assert_eq!(verify(&study, &read), vec![]);
+        let mut tried = 0;
+        each_number(&original["cases"][0], 1e-6, "/cases/0", &mut |path, change| {
+            // What work cost is not a claim about the structure.
+            if path.contains("/seconds") || path.contains("/counters") {
+                return;
+            }
+            let mut changed = original.clone();
+            change(changed.pointer_mut(path).expect("the path exists"));
+            // Forces and velocities are seen against the scene's greatest: only those that matter.
+            let slot = original.pointer(path).and_then(Value::as_f64).expect("a float");
+            let small = path.contains("/residuals/")
+                || slot.abs() < 1e-3 && (path.contains("/force/") || path.contains("/velocity/"));
+            if !small {
+                tried += 1;
+                assert!(findings(&study, &changed) > 0, "{path} was changed from {slot} and not found");
+            }
+        });
+        assert!(tried > 20, "only {tried} numbers were tried");
+    }
+}
+
+/// A changed status, kind, count or verdict is found.
+#[test]
+fn every_changed_word_is_found() {
+    let (study, original) = results(&Arch::default().study());
+    for (path, value) in [
+        ("/study", json!("another")),
+        ("/cases/0/status", json!("unbounded")),
+        ("/cases/0/status", json!("stands")),
+        ("/cases/0/status", json!("no_equilibrium")),
+        ("/cases/0/mechanism/kind", json!("five_hinge")),
+        ("/cases/0/mechanism/hinge_count", json!(5)),
+        ("/cases/0/mechanism/hinges/0/side", json!("extrados")),
+        ("/cases/0/mechanism/hinges/0/joint", json!(2)),
+        ("/cases/0/mechanism/hinges", json!([])),
+        ("/cases/0/mechanism", json!(null)),
+        ("/cases/0/motion", json!(null)),
+        ("/cases/0/field", json!(null)),
+        ("/cases/0/field/0/joint", json!(9999)),
+        ("/cases/0/load_factor", json!(null)),
+        ("/cases/0/load_factor", json!(700.0)),
+        ("/cases/0/flow_read_as", json!("associated")),
+        ("/cases/0/stages/1/status", json!("stands")),
+        ("/cases/0/stages/0/status", json!("collapse")),
+        ("/cases/0/certificate/passed", json!(false)),
+        ("/cases/0/id", json!(7)),
+        ("/cases/0/variant", json!("none")),
+    ] {
+        let mut changed = original.clone();
+        *changed.pointer_mut(path).unwrap_or_else(|| panic!("{path}")) = value;
+        assert!(findings(&study, &changed) > 0, "{path} was changed and not found");
+    }
+}
