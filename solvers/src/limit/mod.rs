@@ -119,8 +119,9 @@ fn collapse(
     match engine.greatest(base, &problem.varying, max - start) {
         Greatest::Collapse { factor, field, motion, unique } => {
             // Rounding of a zero factor is not a factor.
-            let unit = problem.magnitude(base).max(f64::MIN_POSITIVE) / problem.magnitude(&problem.varying);
-            let factor = if factor.abs() < 1e-15 * unit.max(f64::EPSILON) { 0.0 } else { factor };
+            let dead = problem.magnitude(base);
+            let unit = if dead > 0.0 { dead / problem.magnitude(&problem.varying) } else { 1.0 };
+            let factor = if factor.abs() < 1e-15 * unit { 0.0 } else { factor };
             answer.status = Status::Collapse;
             answer.factor = Some(start + factor);
             answer.field_factor = start + factor;
