@@ -84,6 +84,11 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         earlier_stand || result.status == Status::NoEquilibrium || result.status == Status::Stalled,
         "an earlier stage did not stand",
     );
+    for (done, stage) in result.stages[..last].iter().zip(&case.stages) {
+        let reached = matches!(stage.target, Target::Factor(factor) if done.factor == Some(factor));
+        expect(reached || done.status != Status::Stands, "the factor of an earlier stage is not that of the study");
+        expect(done.hinges.is_empty(), "an earlier stage has hinges");
+    }
     if result.status == Status::Stalled {
         expect(result.load_factor.is_none(), "stalled with a load factor");
         return Ok(wrong);

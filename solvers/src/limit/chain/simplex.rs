@@ -9,8 +9,9 @@ use voussoir_core::strength::StressBlock;
 
 /// Violation of a linear row that counts, in units of the force scale.
 const ROW_TOLERANCE: f64 = 1e-13;
-/// Violation of a stress block at which Newton's method takes over.
-const BLOCK_TOLERANCE: f64 = 1e-8;
+/// Violations of stress blocks at which Newton's method is tried, in turn; after the last one the
+/// tangents themselves are the answer.
+const BLOCK_TOLERANCES: [f64; 4] = [1e-8, 1e-10, 1e-12, 1e-13];
 /// Slack below which a row counts as active.
 const ACTIVE_TOLERANCE: f64 = 1e-11;
 const MAX_PIVOTS: u64 = 5000;
@@ -220,12 +221,12 @@ impl<'a> Program<'a> {
     }
 
     /// The column violated most.
-    fn entering(&self, point: &[f64], constant: f64, basis: &[Column]) -> Option<(Column, f64)> {
+    fn entering(&self, point: &[f64], constant: f64, block_tolerance: f64, basis: &[Column]) -> Option<(Column, f64)> {
         let mut worst: Option<(Column, f64)> = None;
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
         self.scan(point, constant, |column, violation| {
             let tolerance = match column {
-                Column::Tangent { .. } if constant != 0.0 => BLOCK_TOLERANCE,
+                Column::Tangent { .. } if constant != 0.0 => block_tolerance,
                 _ => ROW_TOLERANCE,
             };
             if violation > tolerance * size && worst.is_none_or(|(_, w)| violation > w) && !basis.contains(&column) {
@@ -268,7 +269,7 @@ impl<'a> Program<'a> {
                 .collect();
         let mut basis = Basis { columns, matrix: DMatrix::identity(m, m), origin: DMatrix::identity(m, m) };
         if !self.cap.is_finite() {
-            match self.iterate(&mut basis, true, &mut work) {
+            match self.iterate(&mut basis, true, ROW_TOLERANCE, &mut work) {
                 Ending::Optimal { point, .. } if point[m - 1] > 1e-9 => {
                     return (Outcome::Unbounded((point.clone() / point[m - 1]).as_slice().to_vec()), work);
                 }
@@ -280,11 +281,18 @@ impl<'a> Program<'a> {
             }
         }
         self.drive_out(&mut basis);
-        let outcome = match self.iterate(&mut basis, false, &mut work) {
-            Ending::Optimal { point, weights } => self.finish(&basis, point, weights, &mut work),
-            Ending::NoLeaving => Outcome::Infeasible,
-            Ending::Stuck(why) => Outcome::Failed(why),
-        };
+        let mut outcome = Outcome::Failed(String::new());
+        for block_tolerance in BLOCK_TOLERANCES {
+            let last = Some(&block_tolerance) == BLOCK_TOLERANCES.last();
+            outcome = match self.iterate(&mut basis, false, block_tolerance, &mut work) {
+                Ending::Optimal { point, weights } => self.finish(&basis, point, weights, last, &mut work),
+                Ending::NoLeaving => Outcome::Infeasible,
+                Ending::Stuck(why) => Outcome::Failed(why),
+            };
+            if !matches!(outcome, Outcome::Failed(_)) {
+                break;
+            }
+        }
         (outcome, work)
     }
 
@@ -300,7 +308,7 @@ impl<'a> Program<'a> {
         )
     }
 
-    fn iterate(&self, basis: &mut Basis, phase_one: bool, work: &mut Work) -> Ending {
+    fn iterate(&self, basis: &mut Basis, phase_one: bool, block_tolerance: f64, work: &mut Work) -> Ending {
         let m = self.variables;
         let mut objective = DVector::zeros(m);
         objective[m - 1] = 1.0;
@@ -317,7 +325,7 @@ impl<'a> Program<'a> {
             if let Some(step) = transposed.solve(&(&costs - basis.matrix.transpose() * &point)) {
                 point += step;
             }
-            let Some((column, _)) = self.entering(point.as_slice(), constant, &basis.columns) else {
+            let Some((column, _)) = self.entering(point.as_slice(), constant, block_tolerance, &basis.columns) else {
                 return Ending::Optimal { point, weights };
             };
             let a = self.gradient(column);
@@ -363,7 +371,15 @@ impl<'a> Program<'a> {
     }
 
     /// Turns the last basis into an answer; where stress blocks are active, Newton's method on them.
-    fn finish(&self, basis: &Basis, point: DVector<f64>, weights: DVector<f64>, work: &mut Work) -> Outcome {
+    /// `last`: the tangents are near enough to stand for their blocks where Newton's method fails.
+    fn finish(
+        &self,
+        basis: &Basis,
+        point: DVector<f64>,
+        weights: DVector<f64>,
+        last: bool,
+        work: &mut Work,
+    ) -> Outcome {
         let mut merged: Vec<(Column, f64)> = Vec::new();
         for (&column, &weight) in basis.columns.iter().zip(weights.iter()) {
             let same = |other: &Column| match (column, *other) {
@@ -379,10 +395,25 @@ impl<'a> Program<'a> {
         }
         merged.retain(|(column, _)| !matches!(column, Column::Artificial { .. }));
         let mut point = point.as_slice().to_vec();
-        if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. }))
-            && let Err(why) = self.newton(&mut point, &mut merged, work)
-        {
-            return Outcome::Failed(why);
+        if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. })) {
+            // Rows that stand at zero may be active by chance; with too few the system is singular.
+            let mut failed = String::new();
+            let found = [1e-10, f64::NEG_INFINITY].iter().find_map(|&least| {
+                let mut trial: Vec<_> = merged.iter().copied().filter(|(_, weight)| *weight > least).collect();
+                let mut moved = point.clone();
+                match self.newton(&mut moved, &mut trial, work) {
+                    Ok(()) => Some((moved, trial)),
+                    Err(why) => {
+                        failed = why;
+                        None
+                    }
+                }
+            });
+            match found {
+                Some((moved, trial)) => (point, merged) = (moved, trial),
+                None if last => {}
+                None => return Outcome::Failed(failed),
+            }
         }
         let capped = merged.iter().any(|&(column, weight)| column == Column::Cap && weight > 1e-9);
         merged.retain(|&(column, weight)| column != Column::Cap && weight > 1e-14);
