@@ -60,12 +60,12 @@ pub struct Joint {
     pub ends: [Vec2; 2],
     /// How the bodies meet.
     pub bond: Bond,
-    /// Initial opening [m].
+    /// Initial opening \[m\].
     pub gap: f64,
 }
 
 impl Joint {
-    /// h [m].
+    /// h \[m\].
     pub fn height(&self) -> f64 {
         (self.ends[1] - self.ends[0]).norm()
     }
@@ -90,9 +90,9 @@ pub struct ArchLayout {
     pub first: usize,
     /// Number of voussoirs.
     pub voussoirs: usize,
-    /// Clear span at the intrados springings [m].
+    /// Clear span at the intrados springings \[m\].
     pub span: f64,
-    /// Rise of the intrados [m].
+    /// Rise of the intrados \[m\].
     pub rise: f64,
 }
 
@@ -114,7 +114,7 @@ pub struct Assembly {
     pub bodies: Vec<Body>,
     /// Contacts.
     pub joints: Vec<Joint>,
-    /// Out of plane [m].
+    /// Out of plane \[m\].
     pub width: f64,
     /// Stress state of deformable bodies.
     pub plane: Plane,
@@ -125,9 +125,9 @@ pub struct Assembly {
 /// Mass and centroid of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertia {
-    /// [kg]; 0 for a support without a shape.
+    /// \[kg\]; 0 for a support without a shape.
     pub mass: f64,
-    /// [m]; the origin for a support without a shape.
+    /// \[m\]; the origin for a support without a shape.
     pub centroid: Vec2,
 }
 
@@ -160,7 +160,7 @@ impl Assembly {
         self.catalogue.materials[self.bodies[body].material].1.deformability() == Deformability::Rigid
     }
 
-    /// Diagonal of the box around everything [m].
+    /// Diagonal of the box around everything \[m\].
     pub fn size(&self) -> f64 {
         let points = self.bodies.iter().flat_map(|b| &b.vertices).chain(self.joints.iter().flat_map(|j| &j.ends));
         let (low, high) = bounding_box(points);
@@ -208,13 +208,13 @@ impl Assembly {
 pub struct PointForce {
     /// Index of the body.
     pub body: usize,
-    /// Where it acts [m].
+    /// Where it acts \[m\].
     pub point: Vec2,
-    /// [N].
+    /// \[N\].
     pub force: Vec2,
 }
 
-/// Force resultants on bodies, each [F_x, F_y, moment about the origin] [N, N m].
+/// Force resultants on bodies, each \[F_x, F_y, moment about the origin\] \[N, N m\].
 pub type Wrenches = Vec<[f64; 3]>;
 
 /// One stage of loading.
@@ -222,11 +222,11 @@ pub type Wrenches = Vec<[f64; 3]>;
 pub struct Stage {
     /// Its name.
     pub name: String,
-    /// Gravity from this stage on [m/s²]; `None` leaves it as it was. Not multiplied by the factor.
+    /// Gravity from this stage on \[m/s²\]; `None` leaves it as it was. Not multiplied by the factor.
     pub gravity: Option<Vec2>,
     /// Forces, multiplied by the stage's factor.
     pub forces: Vec<PointForce>,
-    /// Accelerations (× mass) on every free body, multiplied by the stage's factor [m/s²].
+    /// Accelerations (× mass) on every free body, multiplied by the stage's factor \[m/s²\].
     pub accelerations: Vec<Vec2>,
     /// How far it goes.
     pub target: Target,

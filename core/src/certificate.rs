@@ -29,9 +29,9 @@ pub struct Certificate {
 pub struct ContactForce {
     /// Index of the joint.
     pub joint: usize,
-    /// Where it acts [m].
+    /// Where it acts \[m\].
     pub point: Vec2,
-    /// (r_n, r_t) [N].
+    /// (r_n, r_t) \[N\].
     pub force: [f64; 2],
 }
 
@@ -77,7 +77,7 @@ struct Check<'a> {
     certificate: Certificate,
 }
 
-/// Checks a claim about the stage with these loads: the certificate, and the bounds [lower, upper]
+/// Checks a claim about the stage with these loads: the certificate, and the bounds \[lower, upper\]
 /// that field and motion prove where both exist.
 pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64) -> (Certificate, Option<[f64; 2]>) {
     let facets: Vec<Vec<Facet>> = assembly
@@ -174,7 +174,7 @@ impl Check<'_> {
     }
 
     /// Greatest resultant left on any free group by contact forces and `fixed × dead + factor ×
-    /// varying`, moments about the group's first body and divided by the scene's size [N].
+    /// varying`, moments about the group's first body and divided by the scene's size \[N\].
     fn imbalance(&self, forces: &[ContactForce], dead: f64, factor: f64) -> f64 {
         let count = self.groups.iter().flatten().max().map_or(0, |g| g + 1);
         let mut pole: Vec<Option<Vec2>> = vec![None; count];
@@ -206,7 +206,7 @@ impl Check<'_> {
         sums.iter().map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size)).fold(0.0, f64::max)
     }
 
-    /// Greatest violation of strength [N]; in the recession cone where `strengths` is false.
+    /// Greatest violation of strength \[N\]; in the recession cone where `strengths` is false.
     fn violation(&self, forces: &[ContactForce], strengths: bool) -> f64 {
         let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for contact in forces {

@@ -11,7 +11,7 @@ pub const CONTACT_TOLERANCE: f64 = 1e-9;
 pub struct Interpenetration {
     /// Indices of the two bodies.
     pub bodies: [usize; 2],
-    /// How deep [m].
+    /// How deep \[m\].
     pub depth: f64,
 }
 

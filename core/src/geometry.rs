@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-/// A point or vector [m].
+/// A point or vector \[m\].
 pub type Vec2 = Vector2<f64>;
 
 /// z component of a × b.
@@ -15,7 +15,7 @@ pub fn turned(a: Vec2) -> Vec2 {
     Vec2::new(-a.y, a.x)
 }
 
-/// Signed area [m²], positive anticlockwise, and centroid [m] of a polygon. Computed relative to
+/// Signed area \[m²\], positive anticlockwise, and centroid \[m\] of a polygon. Computed relative to
 /// the first vertex, so that a polygon far from the origin loses no digits.
 pub fn area_and_centroid(vertices: &[Vec2]) -> (f64, Vec2) {
     let origin = vertices[0];
@@ -127,7 +127,7 @@ fn clipped(subject: &[Vec2], window: &[Vec2]) -> Vec<Vec2> {
     kept
 }
 
-/// How deep two simple anticlockwise polygons overlap [m]: the greatest mean width of the overlap
+/// How deep two simple anticlockwise polygons overlap \[m\]: the greatest mean width of the overlap
 /// of their convex parts (twice its area over its perimeter), 0 where they only touch.
 pub fn overlap_depth(a: &[Vec2], b: &[Vec2]) -> f64 {
     let ((low_a, high_a), (low_b, high_b)) = (bounding_box(a), bounding_box(b));

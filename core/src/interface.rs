@@ -17,7 +17,7 @@ pub enum FacetMode {
     Crushing,
 }
 
-/// One half plane a·t ≤ b of admissible tractions t = (t_n, t_t) [Pa] and the direction of flow on
+/// One half plane a·t ≤ b of admissible tractions t = (t_n, t_t) \[Pa\] and the direction of flow on
 /// it: ġ = −Σ γ d, γ ≥ 0. Associated flow is d = a.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facet {
@@ -25,7 +25,7 @@ pub struct Facet {
     pub mode: FacetMode,
     /// a, dimensionless.
     pub normal: [f64; 2],
-    /// b ≥ 0 [Pa].
+    /// b ≥ 0 \[Pa\].
     pub bound: f64,
     /// d, dimensionless.
     pub flow: [f64; 2],
@@ -37,12 +37,12 @@ impl Facet {
         Facet { mode, normal, bound, flow: normal }
     }
 
-    /// t_n ≥ −`tensile_strength` [Pa].
+    /// t_n ≥ −`tensile_strength` \[Pa\].
     pub fn opening(tensile_strength: f64) -> Self {
         Facet::associated(FacetMode::Opening, [-1.0, 0.0], tensile_strength)
     }
 
-    /// t_n ≤ `compressive_strength` [Pa].
+    /// t_n ≤ `compressive_strength` \[Pa\].
     pub fn crushing(compressive_strength: f64) -> Self {
         Facet::associated(FacetMode::Crushing, [1.0, 0.0], compressive_strength)
     }
@@ -75,7 +75,7 @@ pub trait InterfaceLaw: Debug + Send + Sync {
     /// What the joint can carry and how it flows.
     fn formulation(&self) -> Formulation;
 
-    /// Joint stiffness [k_n, k_t] [Pa/m] where the joint itself is compliant. Limit loads do not
+    /// Joint stiffness \[k_n, k_t\] \[Pa/m\] where the joint itself is compliant. Limit loads do not
     /// depend on it.
     fn stiffness(&self) -> Option<[f64; 2]>;
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-/// Forces carried by a joint: normal forces at its two ends, shear along it [N].
+/// Forces carried by a joint: normal forces at its two ends, shear along it \[N\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointForce {
     /// N_0, N_1 ≥ 0 in compression.
@@ -22,7 +22,7 @@ pub struct JointForce {
     pub shear: f64,
 }
 
-/// Velocity of a body as a rigid motion seen at the origin: [v_x, v_y, ω].
+/// Velocity of a body as a rigid motion seen at the origin: \[v_x, v_y, ω\].
 pub type Velocity = [f64; 3];
 
 /// A joint between two free groups, or a group and the ground (`None`).
@@ -34,7 +34,7 @@ pub struct LimitJoint {
     pub minus: Option<usize>,
     /// Group on the plus side.
     pub plus: Option<usize>,
-    /// Its ends [m].
+    /// Its ends \[m\].
     pub ends: [Vec2; 2],
     /// Unit normal from minus to plus.
     pub normal: Vec2,
@@ -61,13 +61,13 @@ pub struct LimitProblem {
     pub groups: usize,
     /// Joints that remain.
     pub joints: Vec<LimitJoint>,
-    /// Wrench per group about `pole` [N, N m].
+    /// Wrench per group about `pole` \[N, N m\].
     pub fixed: Wrenches,
     /// Wrench per group about `pole` for λ = 1.
     pub varying: Wrenches,
-    /// Middle of the scene, about which moments are taken [m].
+    /// Middle of the scene, about which moments are taken \[m\].
     pub pole: Vec2,
-    /// Length scale [m].
+    /// Length scale \[m\].
     pub length: f64,
     /// Whether some law's own flow is not associated.
     pub flow_read_as_associated: bool,
@@ -127,7 +127,7 @@ impl LimitProblem {
         })
     }
 
-    /// Sum of the sizes of some wrenches as forces [N], moments divided by the scene's length.
+    /// Sum of the sizes of some wrenches as forces \[N\], moments divided by the scene's length.
     pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
         wrenches.iter().map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length)).sum()
     }

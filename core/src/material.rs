@@ -10,7 +10,7 @@ pub enum Deformability {
     Rigid,
     /// Linearly, isotropically.
     LinearElastic {
-        /// E [Pa].
+        /// E \[Pa\].
         young_modulus: f64,
         /// ν.
         poisson_ratio: f64,
@@ -20,7 +20,7 @@ pub enum Deformability {
 /// The material of a block.
 #[typetag::serde(tag = "law")]
 pub trait BulkMaterial: Debug + Send + Sync {
-    /// ρ [kg/m³].
+    /// ρ \[kg/m³\].
     fn density(&self) -> f64;
 
     /// How it deforms.

@@ -41,13 +41,13 @@ pub enum Side {
 pub struct Hinge {
     /// Index of the joint.
     pub joint: usize,
-    /// Names of the bodies [minus, plus].
+    /// Names of the bodies \[minus, plus\].
     pub between: [String; 2],
     /// On arches, where the blocks touch.
     pub side: Option<Side>,
-    /// Where the blocks touch [m].
+    /// Where the blocks touch \[m\].
     pub point: [f64; 2],
-    /// Rotation of plus relative to minus [rad per unit of motion].
+    /// Rotation of plus relative to minus \[rad per unit of motion\].
     pub rotation: f64,
 }
 
@@ -56,9 +56,9 @@ pub struct Hinge {
 pub struct Sliding {
     /// Index of the joint.
     pub joint: usize,
-    /// Names of the bodies [minus, plus].
+    /// Names of the bodies \[minus, plus\].
     pub between: [String; 2],
-    /// Slip of plus relative to minus along t [m per unit of motion].
+    /// Slip of plus relative to minus along t \[m per unit of motion\].
     pub slip: f64,
 }
 
@@ -67,7 +67,7 @@ pub struct Sliding {
 pub struct Crushing {
     /// Index of the joint.
     pub joint: usize,
-    /// Names of the bodies [minus, plus].
+    /// Names of the bodies \[minus, plus\].
     pub between: [String; 2],
     /// Crushed share of the height.
     pub share: f64,
@@ -90,7 +90,7 @@ pub struct Mechanism {
     pub crushing: Vec<Crushing>,
 }
 
-/// Velocity of a body: [v_x, v_y] at its centroid and ω.
+/// Velocity of a body: \[v_x, v_y\] at its centroid and ω.
 pub type CentroidVelocity = [f64; 3];
 
 /// How the plus body leaves the minus body at a joint.

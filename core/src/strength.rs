@@ -13,12 +13,12 @@
 
 use crate::interface::{Facet, FacetMode};
 
-/// A linear row over (N_0, N_1, T) [N].
+/// A linear row over (N_0, N_1, T) \[N\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceRow {
     /// Coefficients of N_0, N_1 and T.
     pub normal: [f64; 3],
-    /// Right-hand side [N].
+    /// Right-hand side \[N\].
     pub bound: f64,
     /// What happens when it yields.
     pub mode: FacetMode,
@@ -27,9 +27,9 @@ pub struct ForceRow {
 /// The stress block of a joint that crushes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressBlock {
-    /// F_t [N].
+    /// F_t \[N\].
     pub tension: f64,
-    /// F_c + F_t [N].
+    /// F_c + F_t \[N\].
     pub total: f64,
 }
 
@@ -71,7 +71,7 @@ pub enum Tangential {
 /// unbounded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct YieldPolygon {
-    /// Corners [Pa].
+    /// Corners \[Pa\].
     pub vertices: Vec<[f64; 2]>,
     /// Extreme rays of the recession cone, unit vectors.
     pub rays: Vec<[f64; 2]>,
@@ -133,7 +133,7 @@ impl YieldPolygon {
         YieldPolygon { vertices, rays }
     }
 
-    /// The least t_n [Pa], −∞ where unbounded.
+    /// The least t_n \[Pa\], −∞ where unbounded.
     pub fn least_normal(&self) -> f64 {
         if self.rays.iter().any(|ray| ray[0] < -1e-12) {
             return f64::NEG_INFINITY;
@@ -141,7 +141,7 @@ impl YieldPolygon {
         self.vertices.iter().map(|v| v[0]).fold(f64::INFINITY, f64::min)
     }
 
-    /// The greatest t_n [Pa], ∞ where unbounded.
+    /// The greatest t_n \[Pa\], ∞ where unbounded.
     pub fn greatest_normal(&self) -> f64 {
         if self.rays.iter().any(|ray| ray[0] > 1e-12) {
             return f64::INFINITY;
@@ -150,7 +150,7 @@ impl YieldPolygon {
     }
 }
 
-/// Integrates facets over a joint of area `area` [m²]. An error says what cannot be integrated.
+/// Integrates facets over a joint of area `area` \[m²\]. An error says what cannot be integrated.
 pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
     let polygon = YieldPolygon::of(facets);
     let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());

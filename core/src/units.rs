@@ -27,7 +27,7 @@ pub enum Quantity {
 const POUND_FORCE: f64 = 4.448_221_615_260_5; // exact: 0.45359237 kg × 9.80665 m/s²
 const FOOT: f64 = 0.3048; // exact
 const INCH: f64 = 0.0254; // exact
-/// Standard gravity [m/s²], used for specific weights only where a study has no gravity.
+/// Standard gravity \[m/s²\], used for specific weights only where a study has no gravity.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
 const LENGTHS: &[(&str, f64)] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("ft", FOOT), ("in", INCH)];
@@ -66,7 +66,7 @@ impl Quantity {
     }
 
     /// Unit names with the factor that turns a number in them into the quantity's own unit.
-    /// `gravity` [m/s²] turns a specific weight into a density.
+    /// `gravity` \[m/s²\] turns a specific weight into a density.
     fn table(self, gravity: f64) -> Vec<(&'static str, f64)> {
         match self {
             Quantity::Ratio => vec![("%", 0.01)],

@@ -13,14 +13,14 @@ use voussoir_core::schema::{Parameter, PluginKind};
 pub struct Coulomb {
     /// μ.
     pub friction: Option<f64>,
-    /// atan μ [deg].
+    /// atan μ \[deg\].
     pub friction_angle: Option<f64>,
-    /// ψ [deg].
+    /// ψ \[deg\].
     #[serde(default)]
     pub dilatancy_angle: f64,
-    /// k_n [Pa/m].
+    /// k_n \[Pa/m\].
     pub normal_stiffness: Option<f64>,
-    /// k_t [Pa/m].
+    /// k_t \[Pa/m\].
     pub shear_stiffness: Option<f64>,
 }
 

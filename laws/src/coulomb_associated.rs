@@ -13,11 +13,11 @@ use voussoir_core::schema::PluginKind;
 pub struct CoulombAssociated {
     /// μ.
     pub friction: Option<f64>,
-    /// atan μ [deg].
+    /// atan μ \[deg\].
     pub friction_angle: Option<f64>,
-    /// k_n [Pa/m].
+    /// k_n \[Pa/m\].
     pub normal_stiffness: Option<f64>,
-    /// k_t [Pa/m].
+    /// k_t \[Pa/m\].
     pub shear_stiffness: Option<f64>,
 }
 

@@ -15,11 +15,11 @@ use voussoir_core::units::Quantity;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Elastic {
-    /// E [Pa].
+    /// E \[Pa\].
     pub young_modulus: f64,
     /// ν.
     pub poisson_ratio: f64,
-    /// ρ [kg/m³].
+    /// ρ \[kg/m³\].
     pub density: f64,
 }
 

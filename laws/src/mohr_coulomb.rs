@@ -14,21 +14,21 @@ use voussoir_core::units::Quantity;
 pub struct MohrCoulomb {
     /// μ.
     pub friction: Option<f64>,
-    /// atan μ [deg].
+    /// atan μ \[deg\].
     pub friction_angle: Option<f64>,
-    /// c [Pa].
+    /// c \[Pa\].
     #[serde(default)]
     pub cohesion: f64,
-    /// f_t [Pa].
+    /// f_t \[Pa\].
     #[serde(default)]
     pub tensile_strength: f64,
-    /// f_c [Pa].
+    /// f_c \[Pa\].
     pub compressive_strength: Option<f64>,
-    /// ψ [deg].
+    /// ψ \[deg\].
     pub dilatancy_angle: Option<f64>,
-    /// k_n [Pa/m].
+    /// k_n \[Pa/m\].
     pub normal_stiffness: Option<f64>,
-    /// k_t [Pa/m].
+    /// k_t \[Pa/m\].
     pub shear_stiffness: Option<f64>,
 }
 

@@ -52,7 +52,7 @@ pub fn tangent(degrees: f64) -> f64 {
     degrees.to_radians().tan()
 }
 
-/// [k_n, k_t] where either is given; a stiff direction is ∞.
+/// \[k_n, k_t\] where either is given; a stiff direction is ∞.
 pub fn stiffness(normal: Option<f64>, shear: Option<f64>) -> Option<[f64; 2]> {
     (normal.is_some() || shear.is_some()).then(|| [normal.unwrap_or(f64::INFINITY), shear.unwrap_or(f64::INFINITY)])
 }

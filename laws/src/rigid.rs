@@ -21,7 +21,7 @@ pub(crate) const DENSITY: Parameter = Parameter::number(
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rigid {
-    /// ρ [kg/m³].
+    /// ρ \[kg/m³\].
     pub density: f64,
 }
 

@@ -23,9 +23,9 @@ pub enum TangentialContact {
 pub struct Unilateral {
     /// Along the joint.
     pub tangential: TangentialContact,
-    /// k_n [Pa/m].
+    /// k_n \[Pa/m\].
     pub normal_stiffness: Option<f64>,
-    /// k_t [Pa/m].
+    /// k_t \[Pa/m\].
     pub shear_stiffness: Option<f64>,
 }
 

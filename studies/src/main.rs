@@ -21,7 +21,7 @@ enum Command {
         /// Study files (TOML)
         #[arg(required = true)]
         studies: Vec<PathBuf>,
-        /// Where results go; with several studies, a folder each inside [default: results/NAME]
+        /// Where results go; with several studies, a folder each inside \[default: results/NAME\]
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study, e.g. --set joints.dry.friction=0.5

@@ -16,14 +16,14 @@ pub struct StudyResults {
     pub cases: Vec<CaseResult>,
 }
 
-/// A contact force at a point of a joint [N].
+/// A contact force at a point of a joint \[N\].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FieldEntry {
     /// Index of the joint.
     pub joint: usize,
-    /// Where it acts [m].
+    /// Where it acts \[m\].
     pub point: [f64; 2],
-    /// [r_n, r_t] on the plus body.
+    /// \[r_n, r_t\] on the plus body.
     pub force: [f64; 2],
 }
 
@@ -32,7 +32,7 @@ pub struct FieldEntry {
 pub struct MotionEntry {
     /// Name of the body.
     pub body: String,
-    /// [v_x, v_y, ω] at its centroid.
+    /// \[v_x, v_y, ω\] at its centroid.
     pub velocity: [f64; 3],
 }
 
@@ -62,7 +62,7 @@ pub struct CaseResult {
     pub status: Status,
     /// The collapse factor.
     pub load_factor: Option<f64>,
-    /// [lower, upper], from the field and from the mechanism.
+    /// \[lower, upper\], from the field and from the mechanism.
     pub bounds: Option<[f64; 2]>,
     /// The factor with associated flow, where the solver answers another question.
     pub associated_load_factor: Option<f64>,
@@ -84,13 +84,13 @@ pub struct CaseResult {
     pub motion: Option<Vec<MotionEntry>>,
     /// Contact forces that balance the live load alone, for `unbounded`.
     pub ray: Option<Vec<FieldEntry>>,
-    /// On arches, where the resultant crosses each joint [m]; `null` where a joint carries nothing.
+    /// On arches, where the resultant crosses each joint \[m\]; `null` where a joint carries nothing.
     pub thrust_line: Option<Vec<Option<[f64; 2]>>>,
     /// Named residuals.
     pub certificate: Certificate,
     /// Work done.
     pub counters: Counters,
-    /// Wall time [s].
+    /// Wall time \[s\].
     pub seconds: f64,
     /// Each stage in turn.
     pub stages: Vec<StageResult>,

@@ -44,13 +44,13 @@ pub fn assert_close(a: f64, b: f64, tolerance: f64) {
 /// The reference arch with its variations: everything a test may want to change.
 #[derive(Debug, Clone)]
 pub struct Arch {
-    /// Intrados span [m].
+    /// Intrados span \[m\].
     pub span: f64,
-    /// Rise [m].
+    /// Rise \[m\].
     pub rise: f64,
-    /// Ring thickness [m].
+    /// Ring thickness \[m\].
     pub thickness: f64,
-    /// Out of plane [m].
+    /// Out of plane \[m\].
     pub width: f64,
     /// Number of voussoirs.
     pub voussoirs: usize,
@@ -60,9 +60,9 @@ pub struct Arch {
     pub joint: String,
     /// Load position along the span.
     pub span_fraction: f64,
-    /// Downward load for factor 1 [N].
+    /// Downward load for factor 1 \[N\].
     pub load: f64,
-    /// ρ [kg/m³].
+    /// ρ \[kg/m³\].
     pub density: f64,
     /// Solver tag.
     pub solver: &'static str,
@@ -92,7 +92,7 @@ pub fn friction(mu: f64) -> String {
     format!("law = \"coulomb_associated\"\nfriction = {mu:?}")
 }
 
-/// Friction with a crushing strength [Pa].
+/// Friction with a crushing strength \[Pa\].
 pub fn crushing(mu: f64, strength: f64) -> String {
     format!("law = \"mohr_coulomb\"\nfriction = {mu:?}\ncompressive_strength = {strength:?}")
 }

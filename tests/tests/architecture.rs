@@ -93,7 +93,7 @@ fn sample(card: &voussoir::core::card::Card) -> serde_json::Value {
             (Shape::Boolean, _) => serde_json::json!(true),
             _ => continue,
         };
-        if !(parameter.name == "dilatancy_angle") {
+        if parameter.name != "dilatancy_angle" {
             table.insert(parameter.name.into(), value);
         }
     }

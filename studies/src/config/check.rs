@@ -27,7 +27,7 @@ pub struct Mistaken;
 pub struct Checker<'a> {
     /// The study's root, where names are looked up.
     pub root: &'a Node,
-    /// Turns specific weights into densities [m/s²].
+    /// Turns specific weights into densities \[m/s²\].
     pub gravity: f64,
     /// Found so far.
     pub mistakes: Vec<Mistake>,

@@ -47,7 +47,7 @@ pub fn chart_svg(title: &str, x_label: &str, y_label: &str, series: &[Series], n
     }
 }
 
-/// Offsets of a marker's corners [px].
+/// Offsets of a marker's corners \[px\].
 fn corners(kind: usize) -> Vec<(i32, i32)> {
     match kind % 5 {
         0 => vec![(-2, -5), (2, -5), (5, -2), (5, 2), (2, 5), (-2, 5), (-5, 2), (-5, -2)],
@@ -58,7 +58,7 @@ fn corners(kind: usize) -> Vec<(i32, i32)> {
     }
 }
 
-/// Corners of the mark for an unbounded case, from its tip [px].
+/// Corners of the mark for an unbounded case, from its tip \[px\].
 const ARROW: [(i32, i32); 7] = [(0, 0), (7, 9), (3, 9), (3, 19), (-3, 19), (-3, 9), (-7, 9)];
 
 fn mark(area: &Canvas, at: (i32, i32), corners: &[(i32, i32)], colour: RGBColor) -> Result<(), Box<dyn Error>> {

@@ -38,7 +38,7 @@ impl Placement {
         }
     }
 
-    /// Where a point of the body comes to lie [m].
+    /// Where a point of the body comes to lie \[m\].
     pub fn of(&self, point: Vec2) -> Vec2 {
         let (sin, cos) = self.angle.sin_cos();
         let from = point - self.centre;

@@ -52,7 +52,7 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     sheet.finish(&legend, &caption)
 }
 
-/// Corners of the box around everything [m], with further points.
+/// Corners of the box around everything \[m\], with further points.
 pub(super) fn extent(assembly: &Assembly, further: &[Vec2]) -> (Vec2, Vec2) {
     let vertices = assembly.bodies.iter().flat_map(|body| &body.vertices);
     let points: Vec<&Vec2> =

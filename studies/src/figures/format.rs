@@ -35,12 +35,12 @@ fn scaled(x: f64, steps: &[(f64, &str)]) -> String {
     format!("{} {name}", format_number(x / unit, 4))
 }
 
-/// A force [N] with four digits, in N, kN or MN.
+/// A force \[N\] with four digits, in N, kN or MN.
 pub fn format_force(newtons: f64) -> String {
     scaled(newtons, &[(1e6, "MN"), (1e3, "kN"), (1.0, "N")])
 }
 
-/// A length [m], short, in m or mm.
+/// A length \[m\], short, in m or mm.
 pub fn format_length(metres: f64) -> String {
     if metres.abs() < 0.1 && metres != 0.0 {
         return format!("{} mm", format_short(metres * 1e3, 4));
@@ -48,7 +48,7 @@ pub fn format_length(metres: f64) -> String {
     format!("{} m", format_short(metres, 4))
 }
 
-/// A time [s] with three digits, in s, ms or µs.
+/// A time \[s\] with three digits, in s, ms or µs.
 pub fn format_seconds(seconds: f64) -> String {
     let (unit, name) = match seconds {
         s if s >= 1.0 => (1.0, "s"),
@@ -168,7 +168,7 @@ pub fn parameters_text(result: &CaseResult) -> String {
     entries.collect::<Vec<_>>().join(", ")
 }
 
-/// The resultant of a stage's forces at factor 1 [N]; `None` where the last stage has none, they
+/// The resultant of a stage's forces at factor 1 \[N\]; `None` where the last stage has none, they
 /// cancel, or it also has accelerations.
 pub fn unit_load(stages: &[Stage]) -> Option<f64> {
     let stage = stages.last().filter(|stage| stage.accelerations.is_empty() && !stage.forces.is_empty())?;

@@ -1,14 +1,14 @@
 //! Room that text takes on a sheet, estimated without any font at hand.
 
-/// A place on the sheet [px], y down.
+/// A place on the sheet \[px\], y down.
 pub type Spot = [f64; 2];
 
-/// Estimated width of a text [px]; on the safe side for the usual sans-serif fonts.
+/// Estimated width of a text \[px\]; on the safe side for the usual sans-serif fonts.
 pub fn text_width(text: &str, size: f64) -> f64 {
     0.6 * size * text.chars().count() as f64
 }
 
-/// Breaks a text into lines that fit into `width` [px].
+/// Breaks a text into lines that fit into `width` \[px\].
 pub fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![String::new()];
     for word in text.split_whitespace() {
@@ -25,7 +25,7 @@ pub fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-/// An axis-parallel box on the sheet [px].
+/// An axis-parallel box on the sheet \[px\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Area {
     /// Upper left corner.
@@ -52,7 +52,7 @@ impl Area {
         Area { low: [middle[0] - half[0], middle[1] - half[1]], high: [middle[0] + half[0], middle[1] + half[1]] }
     }
 
-    /// Area shared with another box [px²].
+    /// Area shared with another box \[px²\].
     pub fn shared(&self, other: &Area) -> f64 {
         let side = |i: usize| (self.high[i].min(other.high[i]) - self.low[i].max(other.low[i])).max(0.0);
         side(0) * side(1)

@@ -96,8 +96,8 @@ impl Loads {
         self.length * arrow.share.max(0.35)
     }
 
-    /// Free margin [px] that arrows and labels need (left, top, right, bottom) around a scene
-    /// within `low`..`high` [m].
+    /// Free margin \[px\] that arrows and labels need (left, top, right, bottom) around a scene
+    /// within `low`..`high` \[m\].
     pub fn margins(&self, low: Vec2, high: Vec2) -> [f64; 4] {
         let middle = (low + high) / 2.0;
         let extent = (high - low).sup(&Vec2::repeat(1e-12));

@@ -7,7 +7,7 @@ use svg::Document;
 use svg::node::element::{Circle, Definitions, Line, Path, Pattern, Polygon, Rectangle, Text};
 use voussoir_core::geometry::Vec2;
 
-/// Size of ordinary text [px].
+/// Size of ordinary text \[px\].
 pub const TEXT: f64 = 13.0;
 /// Colour of ordinary text.
 pub const INK: &str = "#222222";
@@ -27,7 +27,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet for a scene within `low`..`high` [m] with free margins [px] around it
+    /// A sheet for a scene within `low`..`high` \[m\] with free margins \[px\] around it
     /// (left, top, right, bottom) for arrows and labels, under these title lines: the first bold.
     pub fn new(low: Vec2, high: Vec2, margins: [f64; 4], titles: &[String]) -> Self {
         let extent = (high - low).sup(&Vec2::repeat(1e-9 * (high - low).norm().max(1e-12)));
@@ -72,7 +72,7 @@ impl Sheet {
         sheet
     }
 
-    /// Where a point [m] lies on the sheet.
+    /// Where a point \[m\] lies on the sheet.
     pub fn at(&self, point: Vec2) -> Spot {
         let from = (point - self.corner) * self.scale;
         [self.top_left[0] + from.x, self.top_left[1] - from.y]
@@ -92,7 +92,7 @@ impl Sheet {
         svg::Node::append(&mut self.document, node);
     }
 
-    /// Closed outlines [m] in one style.
+    /// Closed outlines \[m\] in one style.
     pub fn outlines<'a>(
         &mut self,
         shapes: impl Iterator<Item = &'a [Vec2]>,

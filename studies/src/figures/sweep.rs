@@ -44,7 +44,7 @@ pub fn study_chart(study: &StudyOutput) -> Option<String> {
     sweep_chart(study.name, &cases, &label, unit)
 }
 
-/// Load over a swept value, one series per variant. With `unit_load` [N], the load at factor 1,
+/// Load over a swept value, one series per variant. With `unit_load` \[N\], the load at factor 1,
 /// the axis is the load in kN, otherwise the factor. `None` where no case has a load to show.
 pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, unit_load: Option<f64>) -> Option<String> {
     let mut variants: Vec<Option<&str>> = Vec::new();

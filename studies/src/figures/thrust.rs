@@ -7,9 +7,9 @@ use voussoir_core::geometry::{Vec2, contains, cross};
 /// The resultant that a joint passes to its plus body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resultant {
-    /// Where it crosses the joint's line [m].
+    /// Where it crosses the joint's line \[m\].
     pub point: Vec2,
-    /// [N].
+    /// \[N\].
     pub force: Vec2,
 }
 

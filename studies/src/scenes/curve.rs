@@ -296,7 +296,7 @@ fn elliptic_length(a: f64, b: f64, t: f64) -> f64 {
     refine(a, b, (0.0, t), whole, whole, 40)
 }
 
-/// Gauss–Legendre nodes > 0 and weights of the rule with ten points on [−1, 1] (Abramowitz & Stegun
+/// Gauss–Legendre nodes > 0 and weights of the rule with ten points on \[−1, 1\] (Abramowitz & Stegun
 /// 1964, table 25.4).
 const GAUSS_10: [(f64, f64); 5] = [
     (0.148_874_338_981_631_21, 0.295_524_224_714_752_87),
@@ -306,7 +306,7 @@ const GAUSS_10: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// Root in [low, high] of an increasing function given with its slope: Newton's method, bisection
+/// Root in \[low, high\] of an increasing function given with its slope: Newton's method, bisection
 /// where it would leave the bracket. Ends when a step is below rounding.
 pub(crate) fn increasing_root(low: f64, high: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high) = (low, high);

@@ -146,7 +146,7 @@ const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
 pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::List { of: &DEGREES, min: 2, max: 2 }]);
 
 impl Springing {
-    /// [left, right] \[deg\], each with its key.
+    /// \[left, right\] \[deg\], each with its key.
     fn sides(self) -> [(f64, &'static str); 2] {
         match self {
             Springing::Both(angle) => [(angle, "springing"); 2],

@@ -89,9 +89,8 @@ impl<'a> ChainEngine<'a> {
         match self.run(&program) {
             Outcome::Optimal(solved) if solved.value >= -1e-12 => Verdict::Field(program.forces(&solved.point)),
             Outcome::Optimal(solved) => {
-                let motion = program.motion(self.problem, &self.chains, &solved.columns);
-                let excess = -solved.value * force;
-                Verdict::Motion(scaled(motion, 1.0 / excess))
+                let (columns, _) = centre(&program, &solved.point, solved.columns);
+                Verdict::Motion(program.motion(self.problem, &self.chains, &columns))
             }
             Outcome::Unbounded(_) | Outcome::Infeasible => Verdict::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Verdict::Failed(why),

@@ -475,12 +475,12 @@ impl<'a> Program<'a> {
         JointForce { normal: [forces[0] * self.force, forces[1] * self.force], shear: forces[2] * self.force }
     }
 
-    /// Joint forces [N] at a point.
+    /// Joint forces \[N\] at a point.
     pub fn forces(&self, point: &[f64]) -> Vec<JointForce> {
         (0..self.problem.joints.len()).map(|joint| self.joint_force(self.evaluate(joint, point, 1.0))).collect()
     }
 
-    /// Joint forces [N] along a direction, without the fixed loads.
+    /// Joint forces \[N\] along a direction, without the fixed loads.
     pub fn directions(&self, direction: &[f64]) -> Vec<JointForce> {
         (0..self.problem.joints.len()).map(|joint| self.joint_force(self.evaluate(joint, direction, 0.0))).collect()
     }

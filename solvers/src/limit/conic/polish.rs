@@ -203,7 +203,7 @@ fn gradients(system: &System, active: &[Item], x: &[f64]) -> Vec<Row> {
     active.iter().map(gradient).collect()
 }
 
-/// [δ I, Jᵀ; J, −δ I] with J the equations and the gradients.
+/// \[δ I, Jᵀ; J, −δ I\] with J the equations and the gradients.
 fn saddle(system: &System, gradients: &[Row], delta: f64) -> Entries {
     let n = system.variables;
     let mut entries: Entries = (0..n).map(|j| (j, j, delta)).collect();

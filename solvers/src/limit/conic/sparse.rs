@@ -21,7 +21,7 @@ pub struct Factorised {
 }
 
 impl Factorised {
-    /// Factorises [A, Bᵀ; B, −C], A and C positive definite, A of size `positive`. `entries` hold
+    /// Factorises \[A, Bᵀ; B, −C\], A and C positive definite, A of size `positive`. `entries` hold
     /// both triangles. `None` where it fails.
     pub fn new(size: usize, positive: usize, entries: &Entries) -> Option<Self> {
         let triplets: Vec<_> = entries.iter().map(|&(i, j, v)| Triplet::new(i, j, v)).collect();

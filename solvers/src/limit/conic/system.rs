@@ -74,7 +74,7 @@ pub struct Loads<'a> {
     pub cap: Option<f64>,
     /// With strengths, or in the recession cone.
     pub strengths: bool,
-    /// Force scale [N].
+    /// Force scale \[N\].
     pub force: f64,
 }
 
@@ -162,7 +162,7 @@ impl System {
         System { variables, theta, equations, right, rows, bounds, cap, blocks, joints, force, length }
     }
 
-    /// Joint forces [N].
+    /// Joint forces \[N\].
     pub fn forces(&self, x: &[f64]) -> Vec<JointForce> {
         let force = |&(first, shear): &(usize, bool)| JointForce {
             normal: [x[first] * self.force, x[first + 1] * self.force],
