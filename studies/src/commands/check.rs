@@ -1,6 +1,6 @@
 //! `voussoir check`.
 
-use super::{FINE, files};
+use super::{FINE, files, say};
 use std::path::PathBuf;
 
 /// Checks studies; prints what they hold.
@@ -12,7 +12,7 @@ pub fn check(paths: &[PathBuf], sets: &[String]) -> u8 {
     let mut code = FINE;
     for path in paths {
         match files::study(path, &sets) {
-            Ok(study) => println!("{}: fine, {} case(s)", path.display(), study.cases.len()),
+            Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.cases.len())),
             Err(wrong) => code = code.max(wrong),
         }
     }

@@ -1,6 +1,6 @@
 //! `voussoir list`, `explain` and `schema`.
 
-use super::{FINE, NO_ACCESS, WRONG_INPUT, files};
+use super::{FINE, NO_ACCESS, WRONG_INPUT, files, say};
 use std::path::Path;
 use voussoir::core::card::{Card, cards, cards_of, nearest};
 use voussoir::core::schema::{Need, PluginKind, Shape};
@@ -19,9 +19,9 @@ pub fn list(kind: Option<&str>) -> u8 {
         },
     };
     for kind in kinds {
-        println!("{} ({} = …)", kind.plural(), kind.tag_key());
+        say(format!("{} ({} = …)", kind.plural(), kind.tag_key()));
         for card in cards_of(kind) {
-            println!("  {:<20} {}", card.tag, card.summary);
+            say(format!("  {:<20} {}", card.tag, card.summary));
         }
     }
     FINE
@@ -29,7 +29,7 @@ pub fn list(kind: Option<&str>) -> u8 {
 
 /// Prints the JSON Schema of study files.
 pub fn schema() -> u8 {
-    println!("{:#}", voussoir::config::json_schema::json_schema());
+    say(format!("{:#}", voussoir::config::json_schema::json_schema()));
     FINE
 }
 
@@ -38,7 +38,7 @@ pub fn explain(what: &str) -> u8 {
     if what.ends_with(".toml") || Path::new(what).is_file() {
         return match files::study(Path::new(what), &[]) {
             Ok(study) => {
-                print!("{}", voussoir::plan::plan(&study));
+                say(voussoir::plan::plan(&study));
                 FINE
             }
             Err(code) => code,
@@ -56,9 +56,9 @@ pub fn explain(what: &str) -> u8 {
 }
 
 fn print_card(card: &Card) {
-    println!("{} — {}: {}\n", card.tag, card.kind.describe(), card.summary);
+    say(format!("{} — {}: {}\n", card.tag, card.kind.describe(), card.summary));
     if !card.parameters.is_empty() {
-        println!("keys:");
+        say("keys:");
     }
     for parameter in card.parameters {
         let unit = match &parameter.shape {
@@ -70,17 +70,17 @@ fn print_card(card: &Card) {
             Need::Optional(otherwise) => format!("optional: otherwise {otherwise}"),
             Need::Default(value) => format!("default {value}"),
         };
-        println!("  {}{unit}  {} ({need})", parameter.name, parameter.doc);
+        say(format!("  {}{unit}  {} ({need})", parameter.name, parameter.doc));
     }
     let words = |all: &[voussoir::core::card::Capability]| {
         all.iter().map(|capability| capability.describe()).collect::<Vec<_>>().join(", ")
     };
     if !card.provides.is_empty() {
-        println!("offers: {}", words(card.provides));
+        say(format!("offers: {}", words(card.provides)));
     }
     if !card.requires.is_empty() {
-        println!("asks of laws: {}", words(card.requires));
+        say(format!("asks of laws: {}", words(card.requires)));
     }
-    card.sources.iter().for_each(|source| println!("source: {source}"));
-    println!("file: {}\n\n{}", card.file, card.page);
+    card.sources.iter().for_each(|source| say(format!("source: {source}")));
+    say(format!("file: {}\n\n{}", card.file, card.page));
 }

@@ -14,3 +14,9 @@ pub const NOT_PROVEN: u8 = 1;
 pub const WRONG_INPUT: u8 = 2;
 /// Cannot read or write.
 pub const NO_ACCESS: u8 = 3;
+
+/// Prints a line; a reader that has gone away (`| head`) is no error.
+pub fn say(text: impl std::fmt::Display) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}

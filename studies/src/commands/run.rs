@@ -1,6 +1,6 @@
 //! `voussoir run`.
 
-use super::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, files};
+use super::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, files, say};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -165,8 +165,8 @@ fn write_results(study: &Study, results: &StudyResults, dir: &Path, options: &Op
         }
     }
     if !options.quiet {
-        println!("{}", voussoir::writers::table::results_table(&output));
-        println!("results in {}", dir.display());
+        say(voussoir::writers::table::results_table(&output));
+        say(format!("results in {}", dir.display()));
     }
     Ok(())
 }

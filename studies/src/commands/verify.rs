@@ -1,6 +1,6 @@
 //! `voussoir verify`.
 
-use super::{FINE, NOT_PROVEN, WRONG_INPUT, files};
+use super::{FINE, NOT_PROVEN, WRONG_INPUT, files, say};
 use std::path::Path;
 use voussoir::core::limit::Status;
 use voussoir::results::StudyResults;
@@ -21,14 +21,14 @@ fn confirm(dir: &Path) -> Result<u8, u8> {
     let study = files::study(&dir.join("resolved.toml"), &[])?;
     let wrong = voussoir::verify::verify(&study, &results);
     for (id, why) in &wrong {
-        println!("case {id}: {why}");
+        say(format!("case {id}: {why}"));
     }
     let stalled = results.cases.iter().filter(|case| case.status == Status::Stalled).count();
     if wrong.is_empty() {
         let proven = results.cases.len() - stalled;
-        println!("{}: {proven} case(s) confirmed, {stalled} stalled", path.display());
+        say(format!("{}: {proven} case(s) confirmed, {stalled} stalled", path.display()));
     } else {
-        println!("{}: {} finding(s); the results do not hold", path.display(), wrong.len());
+        say(format!("{}: {} finding(s); the results do not hold", path.display(), wrong.len()));
     }
     Ok(if wrong.is_empty() && stalled == 0 { FINE } else { NOT_PROVEN })
 }
