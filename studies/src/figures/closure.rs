@@ -13,8 +13,12 @@ use voussoir_core::mechanism::Mechanism;
 /// With more unknowns or more equations than this the gaps stay: they are a matter of looks.
 const GREATEST: usize = 150;
 
-/// Corrects placements so that hinges stay closed. Bodies at rest stay at rest.
+/// Corrects placements so that hinges stay closed. Bodies at rest stay at rest. Mechanisms that
+/// slide or crush are left alone: their hinges do not stay where they are.
 pub fn closed(assembly: &Assembly, mechanism: &Mechanism, mut placements: Vec<Placement>) -> Vec<Placement> {
+    if !mechanism.sliding.is_empty() || !mechanism.crushing.is_empty() {
+        return placements;
+    }
     let (link_of, links) = links(assembly, &placements);
     let hinges: Vec<(usize, usize, Vec2)> = mechanism
         .hinges
