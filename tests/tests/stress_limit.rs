@@ -5,6 +5,50 @@ use proptest::test_runner::{Config, TestRunner};
 use voussoir::core::limit::Status;
 use voussoir_tests::{Arch, answered, assert_close, crushing, friction};
 
+/// Random walls, pushed in random directions, with windows, dry or mortared: every answer is certified.
+#[test]
+fn random_walls_are_certified() {
+    let scenes = (
+        2usize..8,
+        2usize..7,
+        0.1f64..1.2,
+        -180.0f64..180.0,
+        any::<bool>(),
+        prop::option::of((4.0f64..7.0, 0.0f64..5e3)),
+    );
+    let mut runner = TestRunner::new_with_rng(
+        Config { cases: 200, failure_persistence: None, ..Config::default() },
+        proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha),
+    );
+    let collapses = std::cell::Cell::new(0);
+    runner
+        .run(&scenes, |(courses, bricks, mu, direction, window, mortar)| {
+            let joint = match mortar {
+                Some((exponent, cohesion)) => {
+                    format!("{}\ncohesion = {cohesion:?}\ntensile_strength = {:?}", crushing(mu, 10f64.powf(exponent)), cohesion / 3.0)
+                }
+                None => friction(mu),
+            };
+            let window = if window && courses > 3 && bricks > 3 {
+                "openings = [{ from = [0.8, 0.4], to = [1.2, 0.6] }]"
+            } else {
+                ""
+            };
+            let (sin, cos) = direction.to_radians().sin_cos();
+            let study = format!(
+                "name = \"wall\"\n[scene]\nscene = \"wall\"\nwidth = 0.3\nbrick = [0.4, 0.2]\ncourses = {courses}\nbricks = {bricks}\n{window}\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{joint}\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = [{:?}, {:?}] }}]\n",
+                9.81 * cos,
+                9.81 * sin
+            );
+            let result = answered(&study);
+            assert!(result.certificate.passed, "{:?} {:?}\n{study}", result.notes, result.certificate);
+            collapses.set(collapses.get() + usize::from(result.status == Status::Collapse));
+            Ok(())
+        })
+        .unwrap();
+    assert!(collapses.get() > 80, "{}", collapses.get());
+}
+
 /// Random arches, from slender to stout, deep to flat, slippery to rough, with and without crushing,
 /// bonded and jointed, loaded anywhere: both solvers certify the same status and factor.
 #[test]

@@ -7,7 +7,7 @@ mod system;
 
 use super::{Engine, Greatest, Verdict, answer};
 use interior_point::{Pair, Word, solve};
-use polish::polish;
+use polish::{balanced, polish};
 use serde::{Deserialize, Serialize};
 use system::{Loads, System};
 use voussoir_core::assembly::Wrenches;
@@ -55,7 +55,12 @@ struct ConicEngine<'a> {
 }
 
 enum Optimum {
-    Found { pair: Pair, unique: bool },
+    Found {
+        pair: Pair,
+        unique: bool,
+    },
+    /// An interior point in equilibrium whose polish did not settle.
+    Unsettled(Pair),
     Unbounded,
     Failed(String),
 }
@@ -77,10 +82,10 @@ impl ConicEngine<'_> {
                 self.count("factorisations", polished.factorisations);
                 self.count("newton_iterations", polished.iterations);
                 if polished.error > POLISHED {
-                    return Optimum::Failed(format!(
-                        "the polish ended with an error of {:.1e} in the optimality system",
-                        polished.error
-                    ));
+                    return match balanced(system, &pair) {
+                        Some(pair) => Optimum::Unsettled(pair),
+                        None => Optimum::Failed("equilibrium could not be restored".into()),
+                    };
                 }
                 Optimum::Found { pair: polished.pair, unique: polished.unique }
             }
@@ -102,6 +107,18 @@ impl ConicEngine<'_> {
         }
     }
 
+    /// A finite optimum, capped or a collapse.
+    fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> Greatest {
+        if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
+            return Greatest::Capped(system.forces(&pair.x));
+        }
+        let mut motion = system.motion(&pair.equations);
+        let power: f64 = varying.iter().zip(&motion).map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2]).sum();
+        motion.iter_mut().flatten().for_each(|v| *v /= power);
+        let factor = pair.x[system.theta] * unit;
+        Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique }
+    }
+
     /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
     fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Verdict {
         let force = self.unit(loads);
@@ -117,10 +134,10 @@ impl ConicEngine<'_> {
             },
         );
         match self.optimum(&system) {
-            Optimum::Found { pair, .. } if pair.x[system.theta] >= 1.0 - 1e-10 => {
+            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) if pair.x[system.theta] >= 1.0 - 1e-10 => {
                 Verdict::Field(system.forces(&pair.x))
             }
-            Optimum::Found { pair, .. } => {
+            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) => {
                 // loads·q̇ = 1 − y_cap = 1 and D = θ, so the excess is 1 − θ.
                 let excess = force * (1.0 - pair.x[system.theta]);
                 let mut motion = system.motion(&pair.equations);
@@ -159,20 +176,14 @@ impl Engine for ConicEngine<'_> {
                 force,
             },
         );
-        let failed = match self.optimum(&system) {
-            Optimum::Found { pair, unique } => {
-                if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
-                    return Greatest::Capped(system.forces(&pair.x));
-                }
-                let mut motion = system.motion(&pair.equations);
-                let power: f64 =
-                    varying.iter().zip(&motion).map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2]).sum();
-                motion.iter_mut().flatten().for_each(|v| *v /= power);
-                return Greatest::Collapse {
-                    factor: pair.x[system.theta] * unit,
-                    field: system.forces(&pair.x),
-                    motion,
-                    unique,
+        let optimum = self.optimum(&system);
+        let failed = match optimum {
+            Optimum::Found { pair, unique } => return self.finite(&system, &pair, unique, varying, unit),
+            // A pair without a polish is believed only where no ray says otherwise.
+            Optimum::Unsettled(pair) => {
+                return match self.share(varying, None, false) {
+                    Verdict::Field(ray) => Greatest::Unbounded(ray),
+                    _ => self.finite(&system, &pair, false, varying, unit),
                 };
             }
             Optimum::Unbounded => String::from("no ray confirms that the factor has no bound"),

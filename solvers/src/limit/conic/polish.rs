@@ -54,6 +54,21 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
     DELTAS.iter().find_map(|&delta| polish_with(system, approximate, delta))
 }
 
+/// The interior point itself, moved the least way onto equilibrium: what is left where the polish
+/// does not settle. Its slacks are its own, its motion is the solver's; the certificate decides.
+pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
+    let (n, delta) = (system.variables, DELTAS[0]);
+    let factorised = Factorised::new(n + system.equations.len(), n, &saddle(system, &[], delta))?;
+    let mut pair = approximate.clone();
+    for _ in 0..4 {
+        let mut right = vec![0.0; n];
+        right.extend(system.equations.iter().zip(&system.right).map(|(row, b)| dot(row, &pair.x) - b));
+        let step = factorised.solve(&right)?;
+        (0..n).for_each(|j| pair.x[j] -= step[j]);
+    }
+    Some(pair)
+}
+
 fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polished> {
     let items: Vec<Item> =
         (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
