@@ -1,0 +1,110 @@
+//! The command line as a user meets it: exit codes, files written, nothing overwritten by mistakes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn voussoir(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).output().expect("the program starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("it ends by itself")
+}
+
+fn study() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/strathmashie_rise.toml")
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Results without the time they took.
+fn timeless(dir: &Path) -> serde_json::Value {
+    let mut results: serde_json::Value = serde_json::from_str(&text(&dir.join("results.json"))).expect("JSON");
+    for case in results["cases"].as_array_mut().expect("cases") {
+        case["seconds"] = 0.0.into();
+    }
+    results
+}
+
+/// `run` answers the study, `verify` confirms it, a tampered factor is found, `--jobs` and `--resume`
+/// change nothing.
+#[test]
+fn run_verify_tamper_and_resume() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    let study = study();
+    let (study, out_one, out_two) =
+        (study.to_str().expect("a path"), one.to_str().expect("a path"), two.to_str().expect("a path"));
+    let output = voussoir(&["run", study, "--out", out_one]);
+    assert_eq!(code(&output), 0, "{}", String::from_utf8_lossy(&output.stderr));
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(table.contains("unbounded") && table.contains("698.0227") && table.contains("7165.277"), "{table}");
+    for file in ["results.json", "results.csv", "resolved.toml", "report.html", "figures/sweep.svg"] {
+        assert!(one.join(file).is_file(), "{file}");
+    }
+    assert_eq!(code(&voussoir(&["verify", out_one])), 0);
+    assert_eq!(code(&voussoir(&["run", study, "--out", out_two, "--jobs", "2", "--quiet"])), 0);
+    assert_eq!(timeless(&one), timeless(&two));
+
+    // A run killed after some cases: the rest is done, what was there is kept.
+    let whole = text(&one.join("results.json"));
+    let results: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
+    let journal: String =
+        results["cases"].as_array().expect("cases")[..5].iter().map(|case| format!("{case}\n")).collect();
+    std::fs::remove_file(two.join("results.json")).expect("removed");
+    std::fs::write(two.join("unfinished.jsonl"), journal + "{ \"id\": 5, \"var").expect("written");
+    assert_eq!(code(&voussoir(&["run", study, "--out", out_two, "--resume", "--quiet"])), 0);
+    assert_eq!(timeless(&one), timeless(&two));
+    assert!(!two.join("unfinished.jsonl").exists());
+
+    let factor = results["cases"][9]["load_factor"].to_string();
+    std::fs::write(one.join("results.json"), whole.replace(&factor, "700.0")).expect("written");
+    let output = voussoir(&["verify", out_one]);
+    assert_eq!(code(&output), 1);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("case 9"));
+}
+
+/// Wrong input: code 2, the message on standard error, results of an earlier run untouched.
+#[test]
+fn wrong_input_overwrites_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    std::fs::create_dir(&out).expect("a folder");
+    std::fs::write(out.join("results.json"), "precious").expect("written");
+    let wrong = folder.path().join("wrong.toml");
+    std::fs::write(&wrong, text(&study()).replace("friction", "fricton")).expect("written");
+    let output = voussoir(&["run", wrong.to_str().expect("a path"), "--out", out.to_str().expect("a path")]);
+    assert_eq!(code(&output), 2);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("did you mean \"friction\"?"));
+    assert_eq!(text(&out.join("results.json")), "precious");
+    assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
+    assert_eq!(code(&voussoir(&["check", wrong.to_str().expect("a path")])), 2);
+    assert_eq!(code(&voussoir(&["run", "no_such_file.toml"])), 3);
+    assert_eq!(code(&voussoir(&["run", study().to_str().expect("a path"), "--set", "friction"])), 2);
+    assert_eq!(code(&voussoir(&["run", study().to_str().expect("a path"), "--case", "99"])), 2);
+}
+
+/// `list`, `explain`, `schema` and `check` answer.
+#[test]
+fn the_program_explains_itself() {
+    let output = voussoir(&["list"]);
+    assert_eq!(code(&output), 0);
+    let listed = String::from_utf8_lossy(&output.stdout).into_owned();
+    for tag in
+        ["unilateral", "coulomb_associated", "mohr_coulomb", "elastic", "arch", "wall", "limit_chain", "limit_conic"]
+    {
+        assert!(listed.contains(tag), "{tag}");
+        assert_eq!(code(&voussoir(&["explain", tag])), 0, "{tag}");
+    }
+    assert_eq!(code(&voussoir(&["list", "walls"])), 2);
+    let output = voussoir(&["explain", "coulom"]);
+    assert_eq!(code(&output), 2);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("did you mean \"coulomb\"?"));
+    let plan = voussoir(&["explain", study().to_str().expect("a path")]);
+    assert!(String::from_utf8_lossy(&plan.stdout).contains("limit_chain"));
+    let schema = voussoir(&["schema"]);
+    assert!(serde_json::from_slice::<serde_json::Value>(&schema.stdout).expect("JSON").is_object());
+    assert_eq!(code(&voussoir(&["check", study().to_str().expect("a path")])), 0);
+}
