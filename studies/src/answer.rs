@@ -189,7 +189,8 @@ fn solve_stage(question: &Question, stage: &Stage, problem: &LimitProblem, loads
     if problem.flow_read_as_associated {
         result.flow_read_as = Some("associated".into());
         result.notes.push(
-"a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its friction angle): every load factor is an upper bound"
+            "a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its \
+             friction angle): every load factor is an upper bound"
                 .into(),
         );
     }

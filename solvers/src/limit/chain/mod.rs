@@ -12,14 +12,14 @@ mod layout;
 mod optimum;
 mod simplex;
 
-use super::{Engine, Greatest, Verdict, answer};
+use super::{Engine, Greatest, Verdict, answer, driven, force_scale, force_unit};
 use layout::{Chain, Forms, chains};
 use optimum::centre;
 use serde::{Deserialize, Serialize};
 use simplex::{Outcome, Program, Solved};
 use voussoir_core::assembly::Wrenches;
 use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Velocity};
+use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
 use voussoir_core::schema::PluginKind;
 
 /// Limit analysis of chains.
@@ -67,14 +67,6 @@ struct ChainEngine<'a> {
     programs: u64,
 }
 
-/// Force that makes `wrenches` of size one.
-fn unit(problem: &LimitProblem, wrenches: &Wrenches) -> f64 {
-    match problem.magnitude(wrenches) {
-        0.0 => 1.0,
-        magnitude => magnitude,
-    }
-}
-
 impl<'a> ChainEngine<'a> {
     fn new(problem: &'a LimitProblem) -> Option<Self> {
         Some(ChainEngine { problem, chains: chains(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
@@ -82,8 +74,8 @@ impl<'a> ChainEngine<'a> {
 
     /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given.
     fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>) -> Verdict {
-        let force = unit(self.problem, fixed);
-        let columns: Vec<_> = varying.iter().map(|v| (*v, force / unit(self.problem, v))).collect();
+        let force = force_unit(self.problem, fixed);
+        let columns: Vec<_> = varying.iter().map(|v| (*v, force / force_unit(self.problem, v))).collect();
         let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &columns, force);
         let program = Program::new(self.problem, &forms, force).with_margin();
         match self.run(&program) {
@@ -106,16 +98,6 @@ impl<'a> ChainEngine<'a> {
     }
 }
 
-fn scaled(mut motion: Vec<Velocity>, factor: f64) -> Vec<Velocity> {
-    motion.iter_mut().flatten().for_each(|v| *v *= factor);
-    motion
-}
-
-/// Power of wrenches about the problem's pole on a motion.
-fn power(wrenches: &Wrenches, motion: &[Velocity]) -> f64 {
-    wrenches.iter().zip(motion).map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2]).sum()
-}
-
 impl Engine for ChainEngine<'_> {
     fn stand(&mut self, loads: &Wrenches) -> Verdict {
         self.margin(loads, None)
@@ -126,22 +108,18 @@ impl Engine for ChainEngine<'_> {
     }
 
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
-        let force = match self.problem.magnitude(fixed) {
-            0.0 => unit(self.problem, varying),
-            magnitude => magnitude,
-        };
-        let factor_unit = force / unit(self.problem, varying);
+        let force = force_scale(self.problem, fixed, varying);
+        let factor_unit = force / force_unit(self.problem, varying);
         let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &[(varying, factor_unit)], force);
         let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
         match self.run(&program) {
             Outcome::Optimal(Solved { value, point, columns, capped: false }) => {
                 let (columns, unique) = centre(&program, &point, columns);
                 let motion = program.motion(self.problem, &self.chains, &columns);
-                let power = power(varying, &motion);
                 Greatest::Collapse {
                     factor: value * factor_unit,
                     field: program.forces(&point),
-                    motion: scaled(motion, 1.0 / power),
+                    motion: driven(varying, motion),
                     unique,
                 }
             }

@@ -437,7 +437,8 @@ impl<'a> Program<'a> {
                         if i < self.forms.variables { self.form(*joint, 0)[i] + self.form(*joint, 1)[i] } else { 0.0 }
                     });
                     let curvature = &gradient * gradient.transpose() * (2.0 * *weight / block.total);
-                    kkt.view_mut((0, 0), (m, m)).add_assign_matrix(&curvature);
+                    let mut hessian = kkt.view_mut((0, 0), (m, m));
+                    hessian += &curvature;
                 }
                 let (a, beta) = self.column(*column);
                 for i in 0..m {
@@ -512,16 +513,6 @@ impl<'a> Program<'a> {
             }
         }
         motion
-    }
-}
-
-trait AddAssignMatrix {
-    fn add_assign_matrix(&mut self, other: &DMatrix<f64>);
-}
-
-impl AddAssignMatrix for nalgebra::DMatrixViewMut<'_, f64> {
-    fn add_assign_matrix(&mut self, other: &DMatrix<f64>) {
-        *self += other;
     }
 }
 

@@ -5,7 +5,7 @@ mod polish;
 mod sparse;
 mod system;
 
-use super::{Engine, Greatest, Verdict, answer};
+use super::{Engine, Greatest, Verdict, answer, driven, force_scale, force_unit};
 use interior_point::{Pair, Word, solve};
 use polish::{balanced, polish};
 use serde::{Deserialize, Serialize};
@@ -100,34 +100,25 @@ impl ConicEngine<'_> {
         }
     }
 
-    fn unit(&self, wrenches: &Wrenches) -> f64 {
-        match self.problem.magnitude(wrenches) {
-            0.0 => 1.0,
-            magnitude => magnitude,
-        }
-    }
-
     /// A finite optimum, capped or a collapse.
     fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> Greatest {
         if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
             return Greatest::Capped(system.forces(&pair.x));
         }
-        let mut motion = system.motion(&pair.equations);
-        let power: f64 = varying.iter().zip(&motion).map(|(w, v)| w[0] * v[0] + w[1] * v[1] + w[2] * v[2]).sum();
-        motion.iter_mut().flatten().for_each(|v| *v /= power);
+        let motion = driven(varying, system.motion(&pair.equations));
         let factor = pair.x[system.theta] * unit;
         Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique }
     }
 
     /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
     fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Verdict {
-        let force = self.unit(loads);
+        let force = force_unit(self.problem, loads);
         let system = System::new(
             self.problem,
             &Loads {
                 constant: None,
                 varying: (loads, 1.0),
-                free: free.map(|f| (f, force / self.unit(f))),
+                free: free.map(|f| (f, force / force_unit(self.problem, f))),
                 cap: Some(1.0),
                 strengths,
                 force,
@@ -160,11 +151,8 @@ impl Engine for ConicEngine<'_> {
     }
 
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
-        let force = match self.problem.magnitude(fixed) {
-            0.0 => self.unit(varying),
-            magnitude => magnitude,
-        };
-        let unit = force / self.unit(varying);
+        let force = force_scale(self.problem, fixed, varying);
+        let unit = force / force_unit(self.problem, varying);
         let system = System::new(
             self.problem,
             &Loads {
