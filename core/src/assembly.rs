@@ -1,5 +1,6 @@
 //! The model: bodies, joints, loads and stages, before any solver sees them.
 
+use crate::elastic::MeshDensity;
 use crate::geometry::{Vec2, area_and_centroid, bounding_box, cross, turned};
 use crate::interface::InterfaceLaw;
 use crate::material::{BulkMaterial, Deformability};
@@ -118,6 +119,8 @@ pub struct Assembly {
     pub width: f64,
     /// Stress state of deformable bodies.
     pub plane: Plane,
+    /// Mesh of deformable bodies.
+    pub mesh: MeshDensity,
     /// Present for arches.
     pub arch: Option<ArchLayout>,
 }
@@ -217,6 +220,19 @@ pub struct PointForce {
 /// Force resultants on bodies, each \[F_x, F_y, moment about the origin\] \[N, N m\].
 pub type Wrenches = Vec<[f64; 3]>;
 
+/// A movement imposed on a support.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settlement {
+    /// Index of the held body.
+    pub body: usize,
+    /// \[m\].
+    pub displacement: Vec2,
+    /// About `about` \[rad\].
+    pub rotation: f64,
+    /// Pole of the rotation \[m\].
+    pub about: Vec2,
+}
+
 /// One stage of loading.
 #[derive(Debug, Clone)]
 pub struct Stage {
@@ -228,6 +244,8 @@ pub struct Stage {
     pub forces: Vec<PointForce>,
     /// Accelerations (× mass) on every free body, multiplied by the stage's factor \[m/s²\].
     pub accelerations: Vec<Vec2>,
+    /// Movements of supports, multiplied by the stage's factor.
+    pub settlements: Vec<Settlement>,
     /// How far it goes.
     pub target: Target,
     /// Least factor searched; 0 where it is not given.

@@ -4,3 +4,5 @@
 #![forbid(unsafe_code)]
 
 pub mod limit;
+pub mod lu;
+pub mod path;

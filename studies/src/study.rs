@@ -533,7 +533,16 @@ fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Asse
             number => number.as_f64().map(|down| Vec2::new(0.0, -down)),
         };
         let target = if collapse { Target::Collapse } else { Target::Factor(factor("factor").unwrap_or(1.0)) };
-        out.push(Stage { name, gravity, forces, accelerations, target, factor_min: least, factor_max: greatest });
+        out.push(Stage {
+            name,
+            gravity,
+            forces,
+            accelerations,
+            settlements: Vec::new(),
+            target,
+            factor_min: least,
+            factor_max: greatest,
+        });
     }
     Some(out)
 }

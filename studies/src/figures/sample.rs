@@ -26,7 +26,16 @@ fn catalogue() -> Catalogue {
 }
 
 fn stage(name: &str, gravity: Option<Vec2>, forces: Vec<PointForce>, target: Target) -> Stage {
-    Stage { name: name.into(), gravity, forces, accelerations: vec![], target, factor_min: 0.0, factor_max: 1e9 }
+    Stage {
+        name: name.into(),
+        gravity,
+        forces,
+        accelerations: vec![],
+        settlements: vec![],
+        target,
+        factor_min: 0.0,
+        factor_max: 1e9,
+    }
 }
 
 /// A segmental arch of the Strathmashie bridge's size (thickness 0.6 m) between shapeless supports.
@@ -49,7 +58,15 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
     let joints =
         (0..=voussoirs).map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: 0.0 }).collect();
     let arch = Some(ArchLayout { first: 1, voussoirs, span, rise });
-    Assembly { catalogue: catalogue(), bodies, joints, width: 5.81, plane: Plane::Strain, arch }
+    Assembly {
+        catalogue: catalogue(),
+        bodies,
+        joints,
+        width: 5.81,
+        plane: Plane::Strain,
+        mesh: Default::default(),
+        arch,
+    }
 }
 
 /// Dead load, then 1 kN at the quarter of the span.
@@ -265,7 +282,15 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         stage("dead", Some(Vec2::new(0.0, -9.81)), vec![], Target::Factor(1.0)),
         stage("push", None, vec![force], Target::Collapse),
     ];
-    let assembly = Assembly { catalogue: catalogue(), bodies, joints, width: 0.2, plane: Plane::Strain, arch: None };
+    let assembly = Assembly {
+        catalogue: catalogue(),
+        bodies,
+        joints,
+        width: 0.2,
+        plane: Plane::Strain,
+        mesh: Default::default(),
+        arch: None,
+    };
     let field = assembly.joints.iter().enumerate().flat_map(|(k, joint)| {
         let bed = joint.frame().0.y > 0.5;
         let depth = top - joint.middle().y;

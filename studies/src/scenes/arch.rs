@@ -168,6 +168,11 @@ impl Scene for Arch {
             joints: (0..=count).map(joint).collect(),
             bodies,
             width: self.width,
+            mesh: self.mesh.as_ref().map_or_else(Default::default, |m| voussoir_core::elastic::MeshDensity {
+                elements: m.elements,
+                order: m.order,
+                grading: m.grading,
+            }),
             plane: self.plane.into(),
             arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),
         })

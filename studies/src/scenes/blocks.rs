@@ -293,7 +293,15 @@ impl Scene for Blocks {
             return Err(from_root(issues));
         }
         let (width, plane) = (self.width, self.plane.into());
-        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, arch: None })
+        Ok(Assembly {
+            catalogue: catalogue.clone(),
+            bodies,
+            joints,
+            width,
+            plane,
+            mesh: Default::default(),
+            arch: None,
+        })
     }
 }
 

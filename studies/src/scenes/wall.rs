@@ -222,7 +222,15 @@ impl Scene for Wall {
         let (joints, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), 0.0));
         debug_assert!(overlaps.is_empty(), "bricks of a wall overlap: {overlaps:?}");
         let (width, plane) = (self.width, self.plane.into());
-        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, arch: None })
+        Ok(Assembly {
+            catalogue: catalogue.clone(),
+            bodies,
+            joints,
+            width,
+            plane,
+            mesh: Default::default(),
+            arch: None,
+        })
     }
 }
 

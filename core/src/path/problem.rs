@@ -1,0 +1,427 @@
+//! Building the path problem: groups of bodies, contact points, flexibilities, drives.
+
+use crate::assembly::{Assembly, Bond, Joint, Stage, Target};
+use crate::elastic::{Condenser, IsotropicElastic, edge_breaks, joint_points};
+use crate::geometry::{Vec2, cross, distance_to_segment, edges, turned};
+use crate::interface::Facet;
+use crate::limit::Counters;
+use crate::material::Deformability;
+use nalgebra::DMatrix;
+use std::sync::Arc;
+
+/// A body of the path problem: one block, or several rigid ones bonded together.
+#[derive(Debug, Clone)]
+pub struct PathBody {
+    /// Blocks of the assembly.
+    pub members: Vec<usize>,
+    /// Its centroid; the origin where it has no shape \[m\].
+    pub pole: Vec2,
+    /// Held by the ground: moves by settlement only.
+    pub held: bool,
+    /// \[kg\].
+    pub mass: f64,
+    /// Points that something acts on, with a flexibility: contact points first, then loads.
+    pub points: Vec<Vec2>,
+    /// Displacements (x, y per point) by forces (x, y per point) relative to the mean rigid motion
+    /// \[m/N\]; `None` for rigid bodies.
+    pub flexibility: Option<Arc<DMatrix<f64>>>,
+    /// Displacements by a uniform acceleration (a_x, a_y) of 1 m/s².
+    pub gravity: Option<Arc<DMatrix<f64>>>,
+}
+
+/// One side of a contact point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Attachment {
+    /// Index of the body.
+    pub body: usize,
+    /// Index of the point among the body's, where the body has a flexibility.
+    pub slot: Option<usize>,
+}
+
+/// The law of a contact point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactLaw {
+    /// g = 0.
+    Bonded,
+    /// The law with this index in the problem's list.
+    Law(usize),
+}
+
+/// A contact point.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// Index of the joint in the assembly.
+    pub joint: usize,
+    /// Where it is \[m\].
+    pub position: Vec2,
+    /// Unit normal from minus to plus.
+    pub normal: Vec2,
+    /// Unit tangent.
+    pub tangent: Vec2,
+    /// On the minus body.
+    pub minus: Attachment,
+    /// On the plus body.
+    pub plus: Attachment,
+    /// Tributary area \[m²\].
+    pub area: f64,
+    /// Initial gap \[m\].
+    pub gap: f64,
+    /// Its law.
+    pub law: ContactLaw,
+    /// Compliance of the joint at this point, normal and tangential \[m/N\].
+    pub compliance: [f64; 2],
+}
+
+/// Loads that grow together.
+#[derive(Debug, Clone, Default)]
+pub struct Loading {
+    /// (body, slot of the point in the body where it is elastic, point, force \[N\]).
+    pub forces: Vec<(usize, Option<usize>, Vec2, Vec2)>,
+    /// Acceleration of all bodies \[m/s²\].
+    pub acceleration: Vec2,
+    /// (held body, displacement about its pole \[u_x, u_y, θ\]).
+    pub settlements: Vec<(usize, [f64; 3])>,
+}
+
+/// How far a drive goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DriveEnd {
+    /// To this factor.
+    Factor(f64),
+    /// Until no more can be carried, up to this factor (may be ∞).
+    Collapse(f64),
+}
+
+/// One load history in the sequence: `λ × loading` on top of all earlier ones.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// Index of the stage.
+    pub stage: usize,
+    /// Whether it is the stage's change of gravity (factor from 0 to 1) or its loads.
+    pub gravity: bool,
+    /// What grows.
+    pub loading: Loading,
+    /// λ at its start.
+    pub start: f64,
+    /// Where it ends.
+    pub end: DriveEnd,
+}
+
+/// Everything a path solver needs.
+#[derive(Debug, Clone)]
+pub struct PathProblem {
+    /// Bodies.
+    pub bodies: Vec<PathBody>,
+    /// For each block of the assembly its body.
+    pub body_of: Vec<usize>,
+    /// Contact points, those of a joint next to each other and in order along it.
+    pub contacts: Vec<Contact>,
+    /// Facets of the laws, by index of the catalogue; empty where a law is none of facets.
+    pub facets: Vec<Vec<Facet>>,
+    /// Load histories in order.
+    pub drives: Vec<Drive>,
+    /// Length scale \[m\].
+    pub length: f64,
+    /// Work done to build it.
+    pub counters: Counters,
+}
+
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
+/// The edge of a block on which a joint lies, and the fractions along it of the joint's two ends.
+fn edge_of(assembly: &Assembly, block: usize, joint: &Joint) -> Option<(usize, [f64; 2])> {
+    let tolerance = 1e-8 * assembly.size();
+    edges(&assembly.bodies[block].vertices).enumerate().find_map(|(index, (a, b))| {
+        let on = joint.ends.iter().all(|p| distance_to_segment(*p, a, b) <= tolerance);
+        let along = (b - a) / (b - a).norm_squared();
+        on.then(|| (index, joint.ends.map(|p| (p - a).dot(&along).clamp(0.0, 1.0))))
+    })
+}
+
+impl PathProblem {
+    /// Builds the problem. An error says what cannot be followed.
+    pub fn new(assembly: &Assembly, stages: &[Stage]) -> Result<Self, String> {
+        let count = assembly.bodies.len();
+        let elastic = |block: usize| !assembly.bodies[block].fixed && !assembly.is_rigid(block);
+        let mut parent: Vec<usize> = (0..count).collect();
+        for joint in assembly.joints.iter().filter(|joint| joint.bond == Bond::Bonded) {
+            if !elastic(joint.minus) && !elastic(joint.plus) {
+                let (a, b) = (root(&mut parent, joint.minus), root(&mut parent, joint.plus));
+                parent[a.max(b)] = a.min(b);
+            }
+        }
+        let mut body_of = vec![usize::MAX; count];
+        let mut bodies: Vec<PathBody> = Vec::new();
+        for block in 0..count {
+            let r = root(&mut parent, block);
+            if body_of[r] == usize::MAX {
+                body_of[r] = bodies.len();
+                bodies.push(PathBody {
+                    members: Vec::new(),
+                    pole: Vec2::zeros(),
+                    held: false,
+                    mass: 0.0,
+                    points: Vec::new(),
+                    flexibility: None,
+                    gravity: None,
+                });
+            }
+            body_of[block] = body_of[r];
+            let body = &mut bodies[body_of[block]];
+            body.members.push(block);
+            body.held |= assembly.bodies[block].fixed;
+        }
+        for body in &mut bodies {
+            let inertia: Vec<_> = body.members.iter().map(|&block| assembly.inertia(block)).collect();
+            body.mass = inertia.iter().map(|i| i.mass).sum();
+            if body.mass > 0.0 {
+                body.pole = inertia.iter().map(|i| i.centroid * i.mass).sum::<Vec2>() / body.mass;
+            }
+        }
+        let mut problem = PathProblem {
+            facets: Vec::new(),
+            contacts: Vec::new(),
+            drives: Vec::new(),
+            length: assembly.size(),
+            counters: Counters::new(),
+            bodies,
+            body_of,
+        };
+        for (_, law) in &assembly.catalogue.laws {
+            problem.facets.push(law.formulation().facets().unwrap_or_default());
+        }
+        problem.contact_points(assembly, &elastic)?;
+        problem.drives(assembly, stages, &elastic)?;
+        problem.condense(assembly, &elastic)?;
+        Ok(problem)
+    }
+
+    fn contact_points(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+        for (index, joint) in assembly.joints.iter().enumerate() {
+            let sides = [joint.minus, joint.plus];
+            if self.body_of[joint.minus] == self.body_of[joint.plus] {
+                continue;
+            }
+            let stiffness = assembly.law(joint).and_then(|law| law.stiffness());
+            let mut breaks = vec![0.0, 1.0];
+            for &side in sides.iter().filter(|side| elastic(**side)) {
+                let (edge, [from, to]) = edge_of(assembly, side, joint).ok_or_else(|| {
+                    format!("joint {index} does not lie on an edge of \"{}\"", assembly.bodies[side].name)
+                })?;
+                for at in edge_breaks(&assembly.bodies[side].vertices, &assembly.mesh, edge) {
+                    let fraction = (at - from) / (to - from);
+                    if fraction > 0.0 && fraction < 1.0 {
+                        breaks.push(fraction);
+                    }
+                }
+            }
+            let any_elastic = sides.iter().any(|side| elastic(*side));
+            if !any_elastic && stiffness.is_some() {
+                let across = assembly.mesh.elements[1];
+                breaks.extend((1..across).map(|i| i as f64 / across as f64));
+            }
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+            if let Some(last) = breaks.last_mut() {
+                *last = 1.0;
+            }
+            // A rigid joint without compliance: its two ends span every resultant.
+            let order = match (any_elastic, stiffness) {
+                (true, _) => assembly.mesh.order,
+                (false, Some(_)) => assembly.mesh.order.max(2),
+                (false, None) => 1,
+            };
+            let (positions, weights) = joint_points(&breaks, order);
+            let (normal, tangent) = joint.frame();
+            let height = joint.height();
+            for (position, weight) in positions.into_iter().zip(weights) {
+                let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
+                let area = weight * height * assembly.width;
+                let mut attach = |block: usize| {
+                    let body = self.body_of[block];
+                    let slot = elastic(block).then(|| {
+                        self.bodies[body].points.push(point);
+                        self.bodies[body].points.len() - 1
+                    });
+                    Attachment { body, slot }
+                };
+                self.contacts.push(Contact {
+                    joint: index,
+                    position: point,
+                    normal,
+                    tangent,
+                    minus: attach(joint.minus),
+                    plus: attach(joint.plus),
+                    area,
+                    gap: joint.gap,
+                    law: match joint.bond {
+                        Bond::Bonded => ContactLaw::Bonded,
+                        Bond::Law(law) => ContactLaw::Law(law),
+                    },
+                    compliance: stiffness.map_or([0.0; 2], |k| k.map(|k| 1.0 / (k * area))),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn drives(&mut self, assembly: &Assembly, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+        let mut gravity = Vec2::zeros();
+        for (index, stage) in stages.iter().enumerate() {
+            let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);
+            if change != Vec2::zeros() {
+                gravity += change;
+                self.drives.push(Drive {
+                    stage: index,
+                    gravity: true,
+                    loading: Loading { acceleration: change, ..Loading::default() },
+                    start: 0.0,
+                    end: DriveEnd::Factor(1.0),
+                });
+            }
+            let mut loading = Loading { acceleration: stage.accelerations.iter().sum(), ..Loading::default() };
+            for force in &stage.forces {
+                let body = self.body_of[force.body];
+                let slot = elastic(force.body).then(|| {
+                    let points = &mut self.bodies[body].points;
+                    points.iter().position(|p| *p == force.point).unwrap_or_else(|| {
+                        points.push(force.point);
+                        points.len() - 1
+                    })
+                });
+                loading.forces.push((body, slot, force.point, force.force));
+            }
+            for settlement in &stage.settlements {
+                let body = self.body_of[settlement.body];
+                let pole = self.bodies[body].pole;
+                let u = settlement.displacement + turned(pole - settlement.about) * settlement.rotation;
+                loading.settlements.push((body, [u.x, u.y, settlement.rotation]));
+            }
+            let idle = loading.forces.iter().all(|f| f.3 == Vec2::zeros())
+                && loading.acceleration == Vec2::zeros()
+                && loading.settlements.iter().all(|s| s.1 == [0.0; 3]);
+            if idle {
+                continue;
+            }
+            let drive = |start, end, loading| Drive { stage: index, gravity: false, loading, start, end };
+            match stage.target {
+                Target::Factor(factor) => self.drives.push(drive(0.0, DriveEnd::Factor(factor), loading)),
+                Target::Collapse => {
+                    let start = 0.0f64.clamp(stage.factor_min, stage.factor_max);
+                    if start != 0.0 {
+                        self.drives.push(drive(0.0, DriveEnd::Factor(start), loading.clone()));
+                    }
+                    self.drives.push(drive(start, DriveEnd::Collapse(stage.factor_max), loading));
+                }
+            }
+        }
+        if self.drives.is_empty() {
+            return Err("no stage has a load".into());
+        }
+        let _ = assembly;
+        Ok(())
+    }
+
+    fn condense(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+        let mut condenser = Condenser::new(assembly.plane, assembly.width);
+        for body in self.bodies.iter_mut().filter(|body| body.members.len() == 1) {
+            let block = body.members[0];
+            if !elastic(block) {
+                continue;
+            }
+            let material = &assembly.catalogue.materials[assembly.bodies[block].material].1;
+            let Deformability::LinearElastic { young_modulus, poisson_ratio } = material.deformability() else {
+                return Err(format!("the material of \"{}\" is not linear elastic", assembly.bodies[block].name));
+            };
+            let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
+            let condensed =
+                condenser.condense(&assembly.bodies[block].vertices, elastic, &assembly.mesh, &body.points)?;
+            body.flexibility = Some(Arc::new(condensed.flexibility));
+            body.gravity = Some(Arc::new(condensed.gravity));
+        }
+        self.counters.insert("condensation_factorisations".into(), condenser.factorisations());
+        Ok(())
+    }
+
+    /// Whether anything can deform: a scene of rigid bodies without joint compliance has no path
+    /// before its collapse.
+    pub fn deforms(&self) -> bool {
+        self.bodies.iter().any(|body| body.flexibility.is_some()) || self.contacts.iter().any(|c| c.compliance[0] > 0.0)
+    }
+
+    /// Wrench of a loading on each body about its pole, undeformed positions \[N, N m\].
+    pub fn wrenches(&self, loading: &Loading) -> Vec<[f64; 3]> {
+        let mut wrenches: Vec<[f64; 3]> = self
+            .bodies
+            .iter()
+            .map(|body| [loading.acceleration.x * body.mass, loading.acceleration.y * body.mass, 0.0])
+            .collect();
+        for &(body, _, point, force) in &loading.forces {
+            let wrench = &mut wrenches[body];
+            wrench[0] += force.x;
+            wrench[1] += force.y;
+            wrench[2] += cross(point - self.bodies[body].pole, force);
+        }
+        wrenches
+    }
+
+    /// Displacement (x, y) of point `slot` of a body by the deformation that a loading causes, small
+    /// displacements \[m\].
+    pub fn deformation(&self, loading: &Loading, body: usize, slot: usize) -> Vec2 {
+        let PathBody { flexibility: Some(flexibility), gravity: Some(gravity), .. } = &self.bodies[body] else {
+            return Vec2::zeros();
+        };
+        let a = loading.acceleration;
+        let row = |i: usize| gravity[(i, 0)] * a.x + gravity[(i, 1)] * a.y;
+        let mut u = Vec2::new(row(2 * slot), row(2 * slot + 1));
+        for &(on, at, _, force) in &loading.forces {
+            if let (true, Some(at)) = (on == body, at) {
+                for (i, u) in u.iter_mut().enumerate() {
+                    *u += flexibility[(2 * slot + i, 2 * at)] * force.x
+                        + flexibility[(2 * slot + i, 2 * at + 1)] * force.y;
+                }
+            }
+        }
+        u
+    }
+
+    /// Gap (n, t) that a loading opens at each contact point with all bodies' motions and contact
+    /// forces zero: deformation and settlements, small displacements \[m\].
+    pub fn loading_gaps(&self, loading: &Loading) -> Vec<[f64; 2]> {
+        let settled = |body: usize, point: Vec2| {
+            let mut u = Vec2::zeros();
+            for (held, [x, y, theta]) in &loading.settlements {
+                if *held == body {
+                    u += Vec2::new(*x, *y) + turned(point - self.bodies[body].pole) * *theta;
+                }
+            }
+            u
+        };
+        let side = |attachment: Attachment, point: Vec2| {
+            let elastic =
+                attachment.slot.map_or(Vec2::zeros(), |slot| self.deformation(loading, attachment.body, slot));
+            elastic + settled(attachment.body, point)
+        };
+        self.contacts
+            .iter()
+            .map(|c| {
+                let jump = side(c.plus, c.position) - side(c.minus, c.position);
+                [jump.dot(&c.normal), jump.dot(&c.tangent)]
+            })
+            .collect()
+    }
+
+    /// Rows of G at a contact point for one side: (n, t) of the displacement of the point per
+    /// (u_x, u_y, θ) of the body about its pole, with the side's sign.
+    pub fn kinematics(&self, contact: &Contact, plus: bool) -> [[f64; 3]; 2] {
+        let (body, sign) = if plus { (contact.plus.body, 1.0) } else { (contact.minus.body, -1.0) };
+        let arm = contact.position - self.bodies[body].pole;
+        [contact.normal, contact.tangent].map(|e| [sign * e.x, sign * e.y, sign * cross(arm, e)])
+    }
+}

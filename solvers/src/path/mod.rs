@@ -1,0 +1,1 @@
+//! Path solvers: elastic blocks under growing loads until they collapse, and behind.
