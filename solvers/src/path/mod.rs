@@ -1,1 +1,3 @@
 //! Path solvers: elastic blocks under growing loads until they collapse, and behind.
+
+pub mod event;

@@ -1,0 +1,483 @@
+//! The rate problem over the contact points at the verge of a change.
+//!
+//! Everything else keeps its piece (stuck, flowing, free), so that forces and gaps of those points
+//! are linear: ṙ = S ġ + s λ̇. Each of them must find a piece of its law:
+//!
+//! - stuck: ġ = 0 and no active facet is left (ṡ ≥ 0);
+//! - flowing on facet i: ṡ_i = 0, ġ = −γ d_i, γ ≥ 0 (either sign for an opening facet that is open);
+//! - at a corner of facets i and j: ṙ = 0, ġ = −γ_i d_i − γ_j d_j;
+//! - free (the apex of dry friction): ṙ = 0, ġ_n ≥ tan ψ |ġ_t|.
+//!
+//! Found by guess and correction (a primal–dual active set); where that fails, every combination of
+//! pieces is tried, which also finds rays (λ̇ = 0) and falling branches (λ̇ < 0) and proves that
+//! there is no other; where there are too many combinations, by Lemke's pivoting.
+//! Sources: Klarbring (1990), Ing.-Arch. 60; Björkman (1992) on rate problems with friction; the
+//! pieces are those of Alart and Curnier (1991).
+
+use super::lcp::{Lemke, lemke};
+use super::system::{PointFacet, dot};
+use nalgebra::{DMatrix, DVector};
+use voussoir_core::interface::FacetMode;
+
+/// What a contact point does in a rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Piece {
+    /// ġ = 0.
+    Stick,
+    /// Flow on one facet.
+    Facet(usize),
+    /// Flow on two facets.
+    Corner(usize, usize),
+    /// ṙ = 0 at the apex, ġ as it comes.
+    Free,
+}
+
+/// A contact point at the verge of a change.
+#[derive(Debug, Clone)]
+pub struct Verge<'a> {
+    /// Its facets.
+    pub facets: &'a [PointFacet],
+    /// Which of them have no slack.
+    pub active: Vec<usize>,
+    /// The opening facet, where the point is open without being free.
+    pub open: Option<usize>,
+    /// Whether it is at the apex, where it may be free.
+    pub apex: bool,
+    /// Its present piece, or where it has just arrived.
+    pub guess: Piece,
+    /// Whether it has just arrived.
+    pub hit: bool,
+    /// Unit of its stiffness.
+    pub stiffness: f64,
+}
+
+/// tan ψ of the dilatant slip of a point: how much it opens per unit of slip.
+pub fn dilatancy(facets: &[PointFacet]) -> f64 {
+    facets
+        .iter()
+        .filter(|f| f.mode == FacetMode::Sliding && f.flow[1] != 0.0)
+        .map(|f| -f.flow[0] / f.flow[1].abs())
+        .fold(0.0, f64::max)
+}
+
+impl Verge<'_> {
+    /// The pieces it may take.
+    fn candidates(&self) -> Vec<Piece> {
+        if let Some(open) = self.open {
+            let corners = self.active.iter().filter(|f| **f != open).map(|f| Piece::Corner(open, *f));
+            return std::iter::once(Piece::Facet(open)).chain(corners).collect();
+        }
+        let sliding = |f: &&usize| !self.apex || self.facets[**f].mode != FacetMode::Opening;
+        let mut pieces = vec![Piece::Stick];
+        pieces.extend(self.active.iter().filter(sliding).map(|f| Piece::Facet(*f)));
+        if self.apex {
+            pieces.push(Piece::Free);
+        } else {
+            for (k, i) in self.active.iter().enumerate() {
+                pieces.extend(
+                    self.active[k + 1..].iter().filter(|j| self.independent(*i, **j)).map(|j| Piece::Corner(*i, *j)),
+                );
+            }
+        }
+        pieces
+    }
+
+    fn independent(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (self.facets[i].normal, self.facets[j].normal);
+        (a[0] * b[1] - a[1] * b[0]).abs() > 1e-9 * (a[0].hypot(a[1]) * b[0].hypot(b[1]))
+    }
+
+    /// The unknowns of a piece from the rate of the gap.
+    pub fn unknowns(&self, piece: Piece, gap: [f64; 2]) -> Vec<f64> {
+        match piece {
+            Piece::Stick => Vec::new(),
+            Piece::Facet(f) => {
+                let d = self.facets[f].flow;
+                vec![-dot(gap, d) / dot(d, d)]
+            }
+            Piece::Corner(i, j) => corner(self.facets[i].flow, self.facets[j].flow, gap).to_vec(),
+            Piece::Free => gap.to_vec(),
+        }
+    }
+
+    /// Directions of ġ per unknown of a piece.
+    fn flows(&self, piece: Piece) -> Vec<[f64; 2]> {
+        let minus = |f: usize| self.facets[f].flow.map(|d| -d);
+        match piece {
+            Piece::Stick => Vec::new(),
+            Piece::Facet(f) => vec![minus(f)],
+            Piece::Corner(i, j) => vec![minus(i), minus(j)],
+            Piece::Free => vec![[1.0, 0.0], [0.0, 1.0]],
+        }
+    }
+
+    /// Functionals of ṙ that vanish in a piece.
+    fn rows(&self, piece: Piece) -> Vec<[f64; 2]> {
+        let minus = |f: usize| self.facets[f].normal.map(|a| -a);
+        match piece {
+            Piece::Stick => Vec::new(),
+            Piece::Facet(f) => vec![minus(f)],
+            Piece::Corner(i, j) => vec![minus(i), minus(j)],
+            Piece::Free => vec![[1.0, 0.0], [0.0, 1.0]],
+        }
+    }
+
+    /// How far a rate leaves its piece: the worst violation, relative to the given sizes of force
+    /// and gap rates, and the piece that mends it.
+    pub fn violation(&self, piece: Piece, v: &[f64], force: [f64; 2], sizes: [f64; 2]) -> Option<(f64, Piece)> {
+        let [force_size, gap_size] = sizes;
+        let mut worst: Option<(f64, Piece)> = None;
+        let mut note = |size: f64, to: Piece| {
+            if size > 0.0 && worst.is_none_or(|w| size > w.0) {
+                worst = Some((size, to));
+            }
+        };
+        let flowing = |f: usize| match piece {
+            Piece::Facet(i) => i == f,
+            Piece::Corner(i, j) => i == f || j == f,
+            _ => false,
+        };
+        match piece {
+            Piece::Stick => {}
+            Piece::Facet(f) if Some(f) == self.open => {}
+            Piece::Facet(_) => note(-v[0] / gap_size, Piece::Stick),
+            Piece::Corner(i, j) => {
+                for (k, (own, other)) in [(i, j), (j, i)].into_iter().enumerate() {
+                    if Some(own) != self.open {
+                        note(-v[k] / gap_size, Piece::Facet(other));
+                    }
+                }
+            }
+            Piece::Free => {
+                let closing = dilatancy(self.facets) * v[1].abs() - v[0];
+                let slide = self.active.iter().copied().find(|f| {
+                    let facet = &self.facets[*f];
+                    facet.mode == FacetMode::Sliding && facet.flow[1] * v[1] < 0.0
+                });
+                note(closing / gap_size, slide.map_or(Piece::Stick, Piece::Facet));
+            }
+        }
+        if piece != Piece::Free {
+            for &f in self.active.iter().filter(|f| !flowing(**f)) {
+                let excess = dot(self.facets[f].normal, force) / force_size;
+                let to = match piece {
+                    _ if self.apex && self.facets[f].mode == FacetMode::Opening => Piece::Free,
+                    Piece::Facet(i) if self.apex => {
+                        let both =
+                            self.facets[i].mode == FacetMode::Sliding && self.facets[f].mode == FacetMode::Sliding;
+                        if both { Piece::Free } else { Piece::Facet(f) }
+                    }
+                    Piece::Facet(i) if self.independent(i, f) => Piece::Corner(i, f),
+                    _ => Piece::Facet(f),
+                };
+                note(excess, to);
+            }
+        }
+        worst
+    }
+}
+
+/// A solution of the rate problem.
+#[derive(Debug, Clone)]
+pub struct Rate {
+    /// 1, 0 or −1: the sense of λ.
+    pub factor: f64,
+    /// Piece of each point.
+    pub pieces: Vec<Piece>,
+    /// ġ of each point.
+    pub gaps: Vec<[f64; 2]>,
+}
+
+/// What is known of the solutions.
+#[derive(Debug, Clone)]
+pub enum Verdict {
+    /// One was taken; how many others with growing λ there are, where that was examined.
+    Found(Rate, Option<usize>),
+    /// None with λ̇ ≥ 0 (all combinations were tried); one with λ̇ < 0 that is no mere unloading.
+    Falling(Rate),
+    /// None at all that goes on: all combinations were tried.
+    Nothing,
+    /// Not decided: too many combinations.
+    Undecided(usize),
+}
+
+/// Share of a singular value below which a combination of pieces is a mechanism.
+const SINGULAR: f64 = 1e-10;
+/// Relative tolerance of inequalities.
+const INEQUALITY: f64 = 1e-9;
+/// Combinations that are tried.
+const COMBINATIONS: usize = 6000;
+
+/// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
+#[derive(Debug)]
+pub struct RateProblem<'a> {
+    /// Points at the verge of a change.
+    pub points: Vec<Verge<'a>>,
+    /// S.
+    pub s: DMatrix<f64>,
+    /// s.
+    pub drive: DVector<f64>,
+}
+
+struct Attempt {
+    unknowns: Vec<f64>,
+    gaps: DVector<f64>,
+    forces: DVector<f64>,
+    singular: bool,
+}
+
+impl RateProblem<'_> {
+    /// Solves for the unknowns of a combination of pieces with λ̇ = `factor`; where the combination
+    /// is singular with one null vector, that vector.
+    fn attempt(&self, pieces: &[Piece], factor: f64) -> Option<Attempt> {
+        let mut flows = Vec::new();
+        let mut rows = Vec::new();
+        for (k, (point, piece)) in self.points.iter().zip(pieces).enumerate() {
+            let unit = point.stiffness.sqrt();
+            flows.extend(point.flows(*piece).into_iter().map(|f| (k, f.map(|x| x / unit))));
+            rows.extend(point.rows(*piece).into_iter().map(|r| (k, r.map(|x| x / unit))));
+        }
+        let n = flows.len();
+        let size = 2 * self.points.len();
+        let spread = |coefficients: &[f64]| {
+            let mut gaps = DVector::zeros(size);
+            for ((k, f), c) in flows.iter().zip(coefficients) {
+                gaps[2 * k] += f[0] * c;
+                gaps[2 * k + 1] += f[1] * c;
+            }
+            gaps
+        };
+        let mut singular = false;
+        let scaled: Vec<f64> = if n == 0 {
+            Vec::new()
+        } else {
+            let entry = |(i, a): &(usize, [f64; 2]), (j, d): &(usize, [f64; 2])| {
+                a[0] * (self.s[(2 * i, 2 * j)] * d[0] + self.s[(2 * i, 2 * j + 1)] * d[1])
+                    + a[1] * (self.s[(2 * i + 1, 2 * j)] * d[0] + self.s[(2 * i + 1, 2 * j + 1)] * d[1])
+            };
+            let matrix = DMatrix::from_fn(n, n, |i, j| entry(&rows[i], &flows[j]));
+            let svd = matrix.svd(true, true);
+            let (u, v_t) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
+            let null = svd.singular_values.iter().filter(|s| **s <= SINGULAR).count();
+            match null {
+                0 => {
+                    let right = DVector::from_fn(n, |i, _| {
+                        let (k, a) = &rows[i];
+                        -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) * factor
+                    });
+                    let projected = u.transpose() * right;
+                    let weighted = DVector::from_fn(n, |i, _| projected[i] / svd.singular_values[i]);
+                    (v_t.transpose() * weighted).iter().copied().collect()
+                }
+                1 => {
+                    singular = true;
+                    let least = svd.singular_values.imin();
+                    v_t.row(least).iter().copied().collect()
+                }
+                _ => return None,
+            }
+        };
+        let gaps = spread(&scaled);
+        let forces = &self.s * &gaps + &self.drive * if singular { 0.0 } else { factor };
+        let unknowns = scaled.iter().zip(&flows).map(|(v, (k, _))| v / self.points[*k].stiffness.sqrt()).collect();
+        Some(Attempt { unknowns, gaps, forces, singular })
+    }
+
+    /// The worst violation of an attempt, with the point and the piece that mends it; all of them
+    /// in `all`.
+    fn violations(&self, pieces: &[Piece], attempt: &Attempt, sign: f64) -> Vec<(f64, usize, Piece)> {
+        let gap_size = attempt.gaps.amax().max(1e-300);
+        let force_size = attempt.forces.amax().max(if attempt.singular {
+            // A mechanism moves without forces: their size is that of what stiffness could do.
+            gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
+        } else {
+            self.drive.amax()
+        });
+        let sizes = [force_size.max(1e-300), gap_size];
+        let mut at = 0;
+        let mut out = Vec::new();
+        for (k, (point, piece)) in self.points.iter().zip(pieces).enumerate() {
+            let count = point.flows(*piece).len();
+            let v: Vec<f64> = attempt.unknowns[at..at + count].iter().map(|v| v * sign).collect();
+            at += count;
+            let force = [attempt.forces[2 * k] * sign, attempt.forces[2 * k + 1] * sign];
+            if let Some((size, to)) = point.violation(*piece, &v, force, sizes)
+                && size > INEQUALITY
+            {
+                out.push((size, k, to));
+            }
+        }
+        out
+    }
+
+    fn rate(&self, pieces: &[Piece], attempt: &Attempt, sign: f64, factor: f64) -> Rate {
+        let gaps = (0..self.points.len()).map(|k| [attempt.gaps[2 * k] * sign, attempt.gaps[2 * k + 1] * sign]);
+        Rate { factor, pieces: pieces.to_vec(), gaps: gaps.collect() }
+    }
+
+    /// Guess and correction with λ̇ = 1.
+    fn corrected(&self, counters: &mut u64) -> Option<Rate> {
+        let mut pieces: Vec<Piece> = self.points.iter().map(|p| p.guess).collect();
+        let mut seen = Vec::new();
+        for round in 0..60 + 4 * self.points.len() {
+            *counters += 1;
+            let attempt = self.attempt(&pieces, 1.0)?;
+            if attempt.singular {
+                return None;
+            }
+            let mut violations = self.violations(&pieces, &attempt, 1.0);
+            if violations.is_empty() {
+                return Some(self.rate(&pieces, &attempt, 1.0, 1.0));
+            }
+            if seen.contains(&pieces) && round > 12 {
+                // One at a time, the first by number, cannot jump about.
+                violations.sort_by_key(|v| v.1);
+                violations.truncate(1);
+                if round > 30 && seen.iter().filter(|s| **s == pieces).count() > 2 {
+                    return None;
+                }
+            }
+            seen.push(pieces.clone());
+            for (_, k, to) in violations {
+                pieces[k] = to;
+            }
+        }
+        None
+    }
+
+    /// Number of combinations of pieces.
+    pub fn combinations(&self) -> usize {
+        self.points.iter().fold(1usize, |n, p| n.saturating_mul(p.candidates().len()))
+    }
+
+    /// Every combination of pieces.
+    fn enumerated(&self, counters: &mut u64) -> Vec<Rate> {
+        let candidates: Vec<Vec<Piece>> = self.points.iter().map(Verge::candidates).collect();
+        let mut found: Vec<Rate> = Vec::new();
+        let mut index = vec![0; candidates.len()];
+        loop {
+            *counters += 1;
+            let pieces: Vec<Piece> = index.iter().zip(&candidates).map(|(i, c)| c[*i]).collect();
+            if let Some(attempt) = self.attempt(&pieces, 1.0) {
+                for sign in [1.0, -1.0] {
+                    if self.violations(&pieces, &attempt, sign).is_empty() {
+                        let factor = if attempt.singular { 0.0 } else { sign };
+                        let rate = self.rate(&pieces, &attempt, sign, factor);
+                        let size = attempt.gaps.amax().max(1e-300);
+                        let same = |other: &Rate| {
+                            other.factor == rate.factor
+                                && other
+                                    .gaps
+                                    .iter()
+                                    .flatten()
+                                    .zip(rate.gaps.iter().flatten())
+                                    .all(|(a, b)| (a - b).abs() <= 1e-7 * size)
+                        };
+                        if !found.iter().any(same) {
+                            found.push(rate);
+                        }
+                    }
+                }
+            }
+            let Some(place) = (0..index.len()).find(|i| index[*i] + 1 < candidates[*i].len()) else {
+                return found;
+            };
+            index[..place].iter_mut().for_each(|i| *i = 0);
+            index[place] += 1;
+        }
+    }
+
+    /// Lemke's pivoting over all active facets.
+    fn pivoted(&self, counters: &mut u64) -> Option<Rate> {
+        let facets: Vec<(usize, usize)> =
+            self.points.iter().enumerate().flat_map(|(k, p)| p.active.iter().map(move |f| (k, *f))).collect();
+        if facets.len() > 900 || self.points.iter().any(|p| p.open.is_some()) {
+            return None;
+        }
+        let n = facets.len();
+        let scaled = |(k, f): &(usize, usize)| {
+            let unit = self.points[*k].stiffness.sqrt();
+            let facet = &self.points[*k].facets[*f];
+            (*k, facet.normal.map(|a| a / unit), facet.flow.map(|d| d / unit), unit)
+        };
+        let rows: Vec<_> = facets.iter().map(scaled).collect();
+        let m = DMatrix::from_fn(n, n, |i, j| {
+            let ((k, a, _, _), (l, _, d, _)) = (&rows[i], &rows[j]);
+            a[0] * (self.s[(2 * k, 2 * l)] * d[0] + self.s[(2 * k, 2 * l + 1)] * d[1])
+                + a[1] * (self.s[(2 * k + 1, 2 * l)] * d[0] + self.s[(2 * k + 1, 2 * l + 1)] * d[1])
+        });
+        let q = DVector::from_fn(n, |i, _| {
+            let (k, a, _, _) = &rows[i];
+            -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1])
+        });
+        let (z, factor) = match lemke(&m, &q, counters) {
+            Lemke::Solution(z) => (z, 1.0),
+            Lemke::Ray(z) => (z, 0.0),
+            Lemke::Unfinished => return None,
+        };
+        let mut gaps = vec![[0.0; 2]; self.points.len()];
+        let mut pieces = vec![Piece::Stick; self.points.len()];
+        for (((k, f), z), (_, _, d, _)) in facets.iter().zip(&z).zip(&rows) {
+            if *z > 0.0 {
+                gaps[*k][0] -= z * d[0];
+                gaps[*k][1] -= z * d[1];
+                pieces[*k] = match pieces[*k] {
+                    Piece::Stick if self.points[*k].apex && self.points[*k].facets[*f].mode == FacetMode::Opening => {
+                        Piece::Free
+                    }
+                    Piece::Stick => Piece::Facet(*f),
+                    _ if self.points[*k].apex => Piece::Free,
+                    Piece::Facet(other) => Piece::Corner(other, *f),
+                    kept => kept,
+                };
+            }
+        }
+        // Check what was found as any other candidate.
+        let attempt = self.attempt(&pieces, factor)?;
+        if attempt.singular != (factor == 0.0) {
+            return None;
+        }
+        [1.0, -1.0]
+            .into_iter()
+            .take(if factor == 0.0 { 2 } else { 1 })
+            .find(|sign| self.violations(&pieces, &attempt, *sign).is_empty())
+            .map(|sign| self.rate(&pieces, &attempt, sign, factor))
+    }
+
+    /// Solves the rate problem. `examine` asks for the number of other solutions where it is cheap.
+    pub fn solve(&self, examine: bool, counters: &mut u64) -> Verdict {
+        let combinations = self.combinations();
+        let corrected = self.corrected(counters);
+        if let Some(rate) = corrected {
+            let others = (examine && combinations <= 64)
+                .then(|| self.enumerated(counters).iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1));
+            return Verdict::Found(rate, others);
+        }
+        if combinations > COMBINATIONS {
+            return match self.pivoted(counters) {
+                Some(rate) => Verdict::Found(rate, None),
+                None => Verdict::Undecided(combinations),
+            };
+        }
+        let all = self.enumerated(counters);
+        let rising = all.iter().filter(|r| r.factor >= 0.0).count();
+        let best = all.iter().filter(|r| r.factor >= 0.0).max_by(|a, b| a.factor.total_cmp(&b.factor));
+        if let Some(rate) = best {
+            return Verdict::Found(rate.clone(), Some(rising - 1));
+        }
+        let goes_on = |rate: &&Rate| {
+            rate.factor < 0.0
+                && self.points.iter().zip(&rate.pieces).any(|(point, piece)| point.hit && *piece != Piece::Stick)
+        };
+        match all.iter().find(goes_on) {
+            Some(rate) => Verdict::Falling(rate.clone()),
+            None => Verdict::Nothing,
+        }
+    }
+}
+
+/// Shares (γ_i, γ_j) of a gap rate at a corner: ġ = −γ_i d_i − γ_j d_j.
+pub fn corner(a: [f64; 2], b: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
+    let determinant = a[0] * b[1] - a[1] * b[0];
+    [-(gap[0] * b[1] - gap[1] * b[0]) / determinant, -(a[0] * gap[1] - a[1] * gap[0]) / determinant]
+}
