@@ -13,6 +13,7 @@ pub mod assembly;
 pub mod card;
 pub mod certificate;
 pub mod contact;
+pub mod elastic;
 pub mod geometry;
 pub mod interface;
 pub mod issue;
@@ -21,6 +22,7 @@ pub mod material;
 pub mod mechanism;
 pub mod scene;
 pub mod schema;
+pub mod sparse;
 pub mod strength;
 pub mod units;
 
