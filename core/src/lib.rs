@@ -19,10 +19,12 @@ pub mod interface;
 pub mod issue;
 pub mod limit;
 pub mod material;
+pub mod lu;
 pub mod mechanism;
 pub mod path;
 pub mod scene;
 pub mod schema;
+pub mod sparse;
 pub mod strength;
 pub mod units;
 

@@ -4,5 +4,5 @@
 #![forbid(unsafe_code)]
 
 pub mod limit;
-pub mod lu;
+pub use voussoir_core::lu;
 pub mod path;

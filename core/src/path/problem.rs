@@ -1,8 +1,8 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, drives.
 
-use crate::assembly::{Assembly, Bond, Joint, Stage, Target};
-use crate::elastic::{Condenser, IsotropicElastic, edge_breaks, joint_points};
-use crate::geometry::{Vec2, cross, distance_to_segment, edges, turned};
+use crate::assembly::{Assembly, Bond, Stage, Target};
+use crate::elastic::{Condenser, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
+use crate::geometry::{Vec2, cross, turned};
 use crate::interface::Facet;
 use crate::limit::Counters;
 use crate::material::Deformability;
@@ -134,16 +134,6 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// The edge of a block on which a joint lies, and the fractions along it of the joint's two ends.
-fn edge_of(assembly: &Assembly, block: usize, joint: &Joint) -> Option<(usize, [f64; 2])> {
-    let tolerance = 1e-8 * assembly.size();
-    edges(&assembly.bodies[block].vertices).enumerate().find_map(|(index, (a, b))| {
-        let on = joint.ends.iter().all(|p| distance_to_segment(*p, a, b) <= tolerance);
-        let along = (b - a) / (b - a).norm_squared();
-        on.then(|| (index, joint.ends.map(|p| (p - a).dot(&along).clamp(0.0, 1.0))))
-    })
-}
-
 impl PathProblem {
     /// Builds the problem. An error says what cannot be followed.
     pub fn new(assembly: &Assembly, stages: &[Stage]) -> Result<Self, String> {
@@ -211,25 +201,13 @@ impl PathProblem {
             let stiffness = assembly.law(joint).and_then(|law| law.stiffness());
             let mut breaks = vec![0.0, 1.0];
             for &side in sides.iter().filter(|side| elastic(**side)) {
-                let (edge, [from, to]) = edge_of(assembly, side, joint).ok_or_else(|| {
-                    format!("joint {index} does not lie on an edge of \"{}\"", assembly.bodies[side].name)
-                })?;
-                for at in edge_breaks(&assembly.bodies[side].vertices, &assembly.mesh, edge) {
-                    let fraction = (at - from) / (to - from);
-                    if fraction > 0.0 && fraction < 1.0 {
-                        breaks.push(fraction);
-                    }
-                }
+                let vertices = &assembly.bodies[side].vertices;
+                breaks = union_breaks(&breaks, &breaks_on_joint(vertices, &assembly.mesh, joint.ends)?);
             }
             let any_elastic = sides.iter().any(|side| elastic(*side));
             if !any_elastic && stiffness.is_some() {
                 let across = assembly.mesh.elements[1];
-                breaks.extend((1..across).map(|i| i as f64 / across as f64));
-            }
-            breaks.sort_by(f64::total_cmp);
-            breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-            if let Some(last) = breaks.last_mut() {
-                *last = 1.0;
+                breaks = (0..=across).map(|i| i as f64 / across as f64).collect();
             }
             // A rigid joint without compliance: its two ends span every resultant.
             let order = match (any_elastic, stiffness) {
