@@ -1,1 +1,116 @@
-//! Certificates of paths.
+//! Certificates of paths: every state that an observer sees is checked from the problem alone.
+//!
+//! - `path_equilibrium`: resultants of loads and contact forces on each free body, relative to the
+//!   sum of all forces (moments divided by the scene's length);
+//! - `path_kinematics`: gaps recomputed from motions, forces and loads (small displacements);
+//! - `path_strength`: greatest excess of a facet over its bound, relative to the greatest contact force;
+//! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
+//! - `path_complementarity`: greatest force × gap of open contact points, relative to both;
+//! - `path_dissipation`: energy that friction would have created, relative to the work;
+//! - `path_energy`: |work − stored − dissipated|, relative to the work.
+
+use super::{ContactLaw, PathObserver, PathProblem, PathState};
+use crate::interface::FacetMode;
+use std::collections::BTreeMap;
+
+/// Watches a path and keeps the worst of each residual.
+#[derive(Debug, Default)]
+pub struct Watch {
+    /// Name → worst value.
+    pub worst: BTreeMap<&'static str, f64>,
+    /// Number of states seen.
+    pub states: u64,
+    /// (displacement \[m\], λ) of the states of the last drive.
+    pub curve: Vec<[f64; 2]>,
+    /// Whether equilibrium holds in displaced positions, so that small-displacement checks do not
+    /// apply.
+    pub finite: bool,
+    last: Option<(usize, f64)>,
+}
+
+impl Watch {
+    fn note(&mut self, name: &'static str, value: f64) {
+        let worst = self.worst.entry(name).or_insert(0.0);
+        if value.is_nan() || value > *worst {
+            *worst = value;
+        }
+    }
+
+    /// Checks one state.
+    fn check(&mut self, problem: &PathProblem, state: &PathState) {
+        let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
+        let mut wrench = vec![[0.0; 3]; problem.bodies.len()];
+        let mut size = 0.0;
+        let mut gaps = vec![[0.0; 2]; problem.contacts.len()];
+        for (drive, factor) in problem.drives.iter().zip(&state.applied) {
+            for (sum, add) in wrench.iter_mut().zip(problem.wrenches(&drive.loading)) {
+                (0..3).for_each(|i| sum[i] += factor * add[i]);
+                size += (factor * add[0].hypot(add[1])).abs();
+            }
+        }
+        for (contact, force) in problem.contacts.iter().zip(&state.force) {
+            for plus in [false, true] {
+                let rows = problem.kinematics(contact, plus);
+                let body = if plus { contact.plus.body } else { contact.minus.body };
+                (0..3).for_each(|i| wrench[body][i] += rows[0][i] * force[0] + rows[1][i] * force[1]);
+            }
+            size += force[0].hypot(force[1]);
+        }
+        let mut deformation = state.gap.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
+        for motion in &state.motion {
+            deformation = deformation.max(motion[0].abs()).max(motion[1].abs());
+        }
+        let deformation = deformation.max(1e-300);
+        if !self.finite {
+            for (w, body) in wrench.iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
+                let _ = body;
+                self.note("path_equilibrium", w[0].hypot(w[1]).max(w[2].abs() / problem.length) / size.max(1e-300));
+            }
+            problem.small_gaps(state, &mut gaps);
+            for (g, own) in gaps.iter().zip(&state.gap) {
+                self.note("path_kinematics", (g[0] - own[0]).abs().max((g[1] - own[1]).abs()) / deformation);
+            }
+        }
+        let force_scale = largest.max(1e-300);
+        for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
+            let ContactLaw::Law(law) = contact.law else {
+                self.note("path_kinematics", gap[0].abs().max(gap[1].abs()) / deformation);
+                continue;
+            };
+            let facets = &problem.facets[law];
+            for facet in facets {
+                let excess = facet.normal[0] * force[0] + facet.normal[1] * force[1] - facet.bound * contact.area;
+                self.note("path_strength", excess / force_scale);
+            }
+            if facets.iter().any(|f| f.mode == FacetMode::Opening && f.bound == 0.0) {
+                let crushes = facets.iter().any(|f| f.mode == FacetMode::Crushing);
+                if !crushes {
+                    self.note("path_penetration", -gap[0] / deformation);
+                }
+                let dilates = facets.iter().any(|f| f.mode == FacetMode::Sliding && f.flow[0] != 0.0);
+                if !dilates && !crushes {
+                    let product = (force[0] / force_scale).max(0.0).min((gap[0] / deformation).max(0.0));
+                    self.note("path_complementarity", product);
+                }
+            }
+        }
+        let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());
+        self.note("path_energy", (state.work - state.stored - state.dissipated).abs() / energy.max(1e-300));
+        let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
+        self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
+        self.last = Some((state.drive, state.dissipated));
+    }
+}
+
+impl PathObserver for Watch {
+    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.states += 1;
+        self.check(problem, state);
+        if self.curve.is_empty() || self.last.is_none_or(|(drive, _)| drive == state.drive) {
+            if state.drive + 1 == problem.drives.len() {
+                self.curve.push([state.displacement, state.factor]);
+            }
+        }
+        true
+    }
+}

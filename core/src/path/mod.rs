@@ -24,6 +24,8 @@ pub struct PathState {
     pub drive: usize,
     /// λ of that drive.
     pub factor: f64,
+    /// How much of each drive's loading is applied.
+    pub applied: Vec<f64>,
     /// (r_n, r_t) of every contact point \[N\].
     pub force: Vec<[f64; 2]>,
     /// (g_n, g_t) of every contact point, initial gap included \[m\].

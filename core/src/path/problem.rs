@@ -403,3 +403,51 @@ impl PathProblem {
         [contact.normal, contact.tangent].map(|e| [sign * e.x, sign * e.y, sign * cross(arm, e)])
     }
 }
+
+impl PathProblem {
+    /// Gaps of all contact points from motions, forces and loads of a state, small displacements
+    /// \[m\]; written into `gaps`.
+    pub fn small_gaps(&self, state: &super::PathState, gaps: &mut [[f64; 2]]) {
+        let mut forces: Vec<Vec<Vec2>> = self.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
+        for (contact, f) in self.contacts.iter().zip(&state.force) {
+            let on_plus = contact.normal * f[0] + contact.tangent * f[1];
+            for (side, sign) in [(contact.minus, -1.0), (contact.plus, 1.0)] {
+                if let Some(slot) = side.slot {
+                    forces[side.body][slot] += on_plus * sign;
+                }
+            }
+        }
+        for (drive, factor) in self.drives.iter().zip(&state.applied) {
+            for (body, slot, _, f) in &drive.loading.forces {
+                if let Some(slot) = slot {
+                    forces[*body][*slot] += f * *factor;
+                }
+            }
+        }
+        let elastic: Vec<Vec<Vec2>> = self
+            .bodies
+            .iter()
+            .zip(&forces)
+            .map(|(body, f)| match &body.flexibility {
+                None => Vec::new(),
+                Some(flexibility) => {
+                    let flat = nalgebra::DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
+                    let u = &**flexibility * flat;
+                    (0..f.len()).map(|i| Vec2::new(u[2 * i], u[2 * i + 1])).collect()
+                }
+            })
+            .collect();
+        for ((contact, force), gap) in self.contacts.iter().zip(&state.force).zip(gaps) {
+            let side = |attachment: Attachment| {
+                let [x, y, theta] = state.motion[attachment.body];
+                let arm = contact.position - self.bodies[attachment.body].pole;
+                Vec2::new(x, y) + turned(arm) * theta + attachment.slot.map_or(Vec2::zeros(), |slot| elastic[attachment.body][slot])
+            };
+            let jump = side(contact.plus) - side(contact.minus);
+            *gap = [
+                contact.gap + jump.dot(&contact.normal) + contact.compliance[0] * force[0],
+                jump.dot(&contact.tangent) + contact.compliance[1] * force[1],
+            ];
+        }
+    }
+}

@@ -13,6 +13,8 @@ use voussoir_core::path::{
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
 const SAME: f64 = 1e-12;
+/// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
+const MECHANISM: f64 = 1e-8;
 /// Points with a piece of their own beside the factorised one before factorising anew.
 const FRESH: usize = 40;
 /// Points at the verge of a change above which they are searched on the whole system.
@@ -212,6 +214,7 @@ impl<'a> Tracer<'a> {
                     _ => f64::INFINITY,
                 };
                 let (step, hits) = self.next_event(&direction);
+                if std::env::var("DBG").is_ok() { eprintln!("step {step:e} rate {} λ {} hits {:?} verge {:?}", direction.factor, self.factor, hits, (0..self.points.len()).filter(|c| self.points[*c].settled().is_none()).map(|c| (c, self.points[c].piece, self.points[c].active.clone(), self.points[c].opening, self.force(c), direction.gaps[c])).collect::<Vec<_>>()); }
                 let whole = bound <= step;
                 let step = step.min(bound);
                 if step.is_infinite() {
@@ -288,7 +291,7 @@ impl<'a> Tracer<'a> {
                     facets: system.facets[c].as_deref().unwrap_or_default(),
                     active: point.active.clone(),
                     open: if point.open() { point.opening_facet } else { None },
-                    apex: point.apex,
+                    apex: point.apex && point.opening_facet.is_some_and(|f| point.active.contains(&f)),
                     guess: point.piece,
                     hit: point.hit,
                     stiffness: point.stiffness,
@@ -389,8 +392,18 @@ impl<'a> Tracer<'a> {
     }
 
     /// The direction with gaps of all points; those of settled points are made exact.
-    fn completed(&mut self, x: Vec<f64>, factor: f64, load: &Load) -> Direction {
+    fn completed(&mut self, mut x: Vec<f64>, factor: f64, load: &Load) -> Direction {
         let mut gaps = self.system.gaps(&x);
+        if factor == 0.0 {
+            // In a mechanism forces stand still; what is left of them is rounding.
+            let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a: f64, b| a.max(b.abs()));
+            let forces = 2 * self.system.contacts;
+            let still = size(&mut x[..forces].iter().copied()) < MECHANISM * size(&mut gaps.iter().flatten().copied());
+            if still {
+                x[..forces].fill(0.0);
+                gaps = self.system.gaps(&x);
+            }
+        }
         for (c, gap) in gaps.iter_mut().enumerate() {
             (0..2).for_each(|i| gap[i] += factor * load.gap[c][i]);
             if let Some(piece) = self.points[c].settled() {
@@ -486,7 +499,7 @@ impl<'a> Tracer<'a> {
             } else {
                 size
             };
-            -e.1 > 1e-13 * own
+            -e.1 > if direction.factor == 0.0 { MECHANISM } else { 1e-13 } * own
         };
         let step = all.iter().filter(real).map(|e| e.0).fold(f64::INFINITY, f64::min).max(step);
         let hits = all.iter().filter(real).filter(|e| (e.0 - step) * -e.1 <= SAME).map(|e| (e.2, e.3)).collect();
@@ -659,6 +672,7 @@ impl<'a> Tracer<'a> {
         PathState {
             drive: self.drive,
             factor: self.factor,
+            applied: self.applied.clone(),
             gap,
             motion: self.motion(),
             stored: self.last.as_ref().map_or(0.0, |(s, _)| s.stored),
