@@ -38,11 +38,32 @@ fn the_last_factor_is_that_of_limit_analysis() {
 #[test]
 fn other_arches() {
     for friction_law in ["coulomb", "coulomb_associated"] {
-        for (rise, mu, ends, voussoirs) in [(2.99, 0.6, "jointed", 13), (2.99, 0.3, "bonded", 15), (4.49, 0.6, "bonded", 15), (1.49, 0.6, "bonded", 15), (2.09, 0.4, "bonded", 15), (0.59, 0.6, "bonded", 15), (1.19, 0.6, "bonded", 15)] {
-            let arch = Arch { rise, voussoirs, ends, joint: friction(mu).replace("coulomb_associated", friction_law), ..Arch::default() };
+        for (rise, mu, ends, voussoirs) in [
+            (2.99, 0.6, "jointed", 13),
+            (2.99, 0.3, "bonded", 15),
+            (4.49, 0.6, "bonded", 15),
+            (1.49, 0.6, "bonded", 15),
+            (2.09, 0.4, "bonded", 15),
+            (0.59, 0.6, "bonded", 15),
+            (1.19, 0.6, "bonded", 15),
+        ] {
+            let arch = Arch {
+                rise,
+                voussoirs,
+                ends,
+                joint: friction(mu).replace("coulomb_associated", friction_law),
+                ..Arch::default()
+            };
             let limit = voussoir_tests::answered(&Arch { joint: friction(mu), ..arch.clone() }.study());
             let answer = path(&elastic(&arch.study(), "elements = [4, 6]\norder = 2"));
-            eprintln!("{friction_law} {rise} {mu} {ends}: limit {:?} {:?} path {:?} {:?} {:e}", limit.status, limit.load_factor, answer.status, answer.factor, answer.factor.unwrap_or(f64::NAN) / limit.load_factor.unwrap_or(f64::NAN) - 1.0);
+            eprintln!(
+                "{friction_law} {rise} {mu} {ends}: limit {:?} {:?} path {:?} {:?} {:e}",
+                limit.status,
+                limit.load_factor,
+                answer.status,
+                answer.factor,
+                answer.factor.unwrap_or(f64::NAN) / limit.load_factor.unwrap_or(f64::NAN) - 1.0
+            );
         }
     }
 }

@@ -441,7 +441,9 @@ impl PathProblem {
             let side = |attachment: Attachment| {
                 let [x, y, theta] = state.motion[attachment.body];
                 let arm = contact.position - self.bodies[attachment.body].pole;
-                Vec2::new(x, y) + turned(arm) * theta + attachment.slot.map_or(Vec2::zeros(), |slot| elastic[attachment.body][slot])
+                Vec2::new(x, y)
+                    + turned(arm) * theta
+                    + attachment.slot.map_or(Vec2::zeros(), |slot| elastic[attachment.body][slot])
             };
             let jump = side(contact.plus) - side(contact.minus);
             *gap = [

@@ -204,7 +204,7 @@ pub enum Verdict {
 /// Share of a singular value below which a combination of pieces is a mechanism.
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
-const INEQUALITY: f64 = 1e-9;
+const INEQUALITY: f64 = 1e-10;
 /// Combinations that are tried.
 const COMBINATIONS: usize = 6000;
 
@@ -291,7 +291,7 @@ impl RateProblem<'_> {
             // A mechanism moves without forces: their size is that of what stiffness could do.
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
-            self.drive.amax()
+            1e-4 * self.drive.amax()
         });
         let sizes = [force_size.max(1e-300), gap_size];
         let mut at = 0;

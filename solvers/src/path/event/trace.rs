@@ -13,6 +13,8 @@ use voussoir_core::path::{
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
 const SAME: f64 = 1e-12;
+/// Relative residual of a direction above which it is solved anew.
+const RESIDUAL: f64 = 1e-12;
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
 const MECHANISM: f64 = 1e-8;
 /// Points with a piece of their own beside the factorised one before factorising anew.
@@ -214,7 +216,6 @@ impl<'a> Tracer<'a> {
                     _ => f64::INFINITY,
                 };
                 let (step, hits) = self.next_event(&direction);
-                if std::env::var("DBG").is_ok() { eprintln!("step {step:e} rate {} λ {} hits {:?} verge {:?}", direction.factor, self.factor, hits, (0..self.points.len()).filter(|c| self.points[*c].settled().is_none()).map(|c| (c, self.points[c].piece, self.points[c].active.clone(), self.points[c].opening, self.force(c), direction.gaps[c])).collect::<Vec<_>>()); }
                 let whole = bound <= step;
                 let step = step.min(bound);
                 if step.is_infinite() {
@@ -387,8 +388,54 @@ impl<'a> Tracer<'a> {
         for (&c, piece) in verge.iter().zip(&rate.pieces) {
             self.points[c].piece = *piece;
         }
+        let x = self.refined(x, rate.factor, load);
         let direction = self.completed(x, rate.factor, load);
         Some(if falling { Next::Falling(direction) } else { Next::Go(direction) })
+    }
+
+    /// The direction solved anew with all pieces in the factorisation, where what was combined from
+    /// responses leaves residuals: close to a collapse the responses of single points cancel.
+    fn refined(&mut self, x: Vec<f64>, factor: f64, load: &Load) -> Vec<f64> {
+        let pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
+        if factor == 0.0 || self.residual(&x, factor, load, &pieces) <= RESIDUAL {
+            return x;
+        }
+        self.counts.factorisations += 1;
+        let Some(mut base) = Base::new(&self.system, pieces.clone()) else { return x };
+        let Some(direct) = base.drive(&self.system, self.drive, load) else { return x };
+        let direct: Vec<f64> = direct.iter().map(|v| v * factor).collect();
+        if self.residual(&direct, factor, load, &pieces) < self.residual(&x, factor, load, &pieces) {
+            self.base = Some(base);
+            return direct;
+        }
+        x
+    }
+
+    /// The worst residual of a direction: equilibrium and pieces, relative to the forces and gaps.
+    fn residual(&self, x: &[f64], factor: f64, load: &Load, pieces: &[Piece]) -> f64 {
+        let nc = self.system.contacts;
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(1e-300, |a: f64, b| a.max(b.abs()));
+        let forces = largest(&mut x[..2 * nc].iter().copied());
+        let motions = largest(&mut x[2 * nc..].iter().copied());
+        let mut worst: f64 = 0.0;
+        for (sum, p) in self.system.resultants(x).iter().zip(load.wrench.iter().flatten()) {
+            worst = worst.max((sum + factor * p).abs() / forces);
+        }
+        let gaps = self.system.gaps(x);
+        for (c, piece) in pieces.iter().enumerate() {
+            let gap = [0, 1].map(|i| gaps[c][i] + factor * load.gap[c][i]);
+            let force = [x[2 * c], x[2 * c + 1]];
+            let own = match piece {
+                Piece::Stick => gap[0].abs().max(gap[1].abs()) / motions.max(forces),
+                Piece::Free | Piece::Corner(..) => force[0].abs().max(force[1].abs()) / forces,
+                Piece::Facet(f) => match &self.system.facets[c] {
+                    Some(facets) => dot(facets[*f].normal, force).abs() / forces,
+                    None => 0.0,
+                },
+            };
+            worst = worst.max(own);
+        }
+        worst
     }
 
     /// The direction with gaps of all points; those of settled points are made exact.
