@@ -5,6 +5,7 @@ use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
 use std::sync::Arc;
 use voussoir_core::assembly::*;
 use voussoir_core::certificate::Certificate;
+use voussoir_core::elastic::MeshDensity;
 use voussoir_core::geometry::{Vec2, cross, turned};
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{Hinge, Mechanism, MechanismKind, Side, Sliding};
@@ -46,10 +47,19 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
         Body { name: format!("v{k}"), vertices: vec![a, c, d, b], material: 0, fixed: false }
     }));
     bodies.push(support("right"));
-    let joints =
-        (0..=voussoirs).map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: 0.0 }).collect();
+    let joints = (0..=voussoirs)
+        .map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: Gap::default() })
+        .collect();
     let arch = Some(ArchLayout { first: 1, voussoirs, span, rise });
-    Assembly { catalogue: catalogue(), bodies, joints, width: 5.81, plane: Plane::Strain, arch }
+    Assembly {
+        catalogue: catalogue(),
+        bodies,
+        joints,
+        width: 5.81,
+        plane: Plane::Strain,
+        mesh: MeshDensity::default(),
+        arch,
+    }
 }
 
 /// Dead load, then 1 kN at the quarter of the span.
@@ -241,7 +251,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
                         plus: body,
                         ends: [Vec2::new(high, y), Vec2::new(low, y)],
                         bond,
-                        gap: 0.0,
+                        gap: Gap::default(),
                     });
                 }
             }
@@ -251,7 +261,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
                     plus: body,
                     ends: [Vec2::new(x, y), Vec2::new(x, y + height)],
                     bond,
-                    gap: 0.0,
+                    gap: Gap::default(),
                 });
             }
             row.push((body, pair[0], pair[1]));
@@ -265,7 +275,15 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         stage("dead", Some(Vec2::new(0.0, -9.81)), vec![], Target::Factor(1.0)),
         stage("push", None, vec![force], Target::Collapse),
     ];
-    let assembly = Assembly { catalogue: catalogue(), bodies, joints, width: 0.2, plane: Plane::Strain, arch: None };
+    let assembly = Assembly {
+        catalogue: catalogue(),
+        bodies,
+        joints,
+        width: 0.2,
+        plane: Plane::Strain,
+        mesh: MeshDensity::default(),
+        arch: None,
+    };
     let field = assembly.joints.iter().enumerate().flat_map(|(k, joint)| {
         let bed = joint.frame().0.y > 0.5;
         let depth = top - joint.middle().y;
