@@ -199,21 +199,19 @@ fn errors(plane: Plane, order: usize, n: usize) -> [f64; 2] {
 }
 
 /// Observed orders on a distorted block are those of theory: the energy's error falls as h^(2p), the
-/// displacement's as h^(p+1); and the errors are those once found (2 %).
+/// displacement's as h^(p+1); and the errors are those once found (1 %).
 #[test]
 fn orders_of_convergence() {
     for plane in PLANES {
         for (order, sizes, stored) in TABLE {
             let found: Vec<[f64; 2]> = sizes.iter().map(|&n| errors(plane, *order, n)).collect();
-            println!("{plane:?} order {order}: {found:?}");
             let last = found.len() - 1;
             let rate = |i: usize| (found[last - 1][i] / found[last][i]).log2();
-            println!("    rates {:.3} {:.3}", rate(0), rate(1));
             assert!(rate(0) > 2.0 * *order as f64 - 0.1, "energy, order {order}: {:.3}", rate(0));
             assert!(rate(1) > *order as f64 + 0.9, "displacement, order {order}: {:.3}", rate(1));
             if plane == Plane::Strain {
                 for (found, stored) in found.iter().flatten().zip(stored.iter().flatten()) {
-                    assert_close(*found, *stored, 0.02);
+                    assert_close(*found, *stored, 0.01);
                 }
             }
         }
@@ -222,8 +220,11 @@ fn orders_of_convergence() {
 
 /// Errors of energy and displacement in plane strain by order and elements a side.
 #[expect(clippy::type_complexity, reason = "a table")]
-const TABLE: &[(usize, &[usize], &[[f64; 2]])] =
-    &[(1, &[2, 4, 8, 16], &[]), (2, &[2, 4, 8, 16], &[]), (3, &[2, 4, 8], &[])];
+const TABLE: &[(usize, &[usize], &[[f64; 2]])] = &[
+    (1, &[2, 4, 8, 16], &[[4.657e-2, 1.559e-1], [1.364e-2, 4.934e-2], [3.668e-3, 1.270e-2], [9.411e-4, 2.963e-3]]),
+    (2, &[2, 4, 8, 16], &[[2.375e-3, 6.165e-3], [1.621e-4, 7.289e-4], [1.044e-5, 7.698e-5], [6.596e-7, 7.459e-6]]),
+    (3, &[2, 4, 8], &[[2.417e-5, 3.119e-4], [3.976e-7, 1.873e-5], [6.316e-9, 9.419e-7]]),
+];
 
 /// Pure bending is exact with one element of order 1 across the depth, ten times as long as deep,
 /// also where ν → 0.5 in plane strain: nothing locks. u = M x y / E'I, v = −M (x² + ν' y²) / 2E'I.
@@ -251,7 +252,7 @@ fn pure_bending_is_exact_for_every_order() {
 
 /// A cantilever under an end shear, σ_xx = −P (L − x) y / I, σ_xy = P (c² − y²) / 2I (Timoshenko &
 /// Goodier, art. 21): v(0) + v(L) − 2 v(L/2) = P L³ / 8E'I on the axis. Exact for order 3, whose
-/// elements hold the cubic solution.
+/// elements hold the cubic solution: what is left is rounding times the condition of a slender body.
 #[test]
 fn end_shear_of_a_cantilever() {
     let (length, height, nu) = (10.0, 1.0, 0.49);
@@ -260,7 +261,7 @@ fn end_shear_of_a_cantilever() {
     let shape = rectangle(length, height);
     let stress = |x: Vec2| [-12e5 * (length - x.x) * x.y, 0.0, 6e5 * (0.25 - x.y * x.y)];
     for (order, elements, tolerance) in
-        [(1, [20, 2], 0.01), (1, [40, 4], 0.0025), (2, [10, 2], 2e-3), (3, [4, 2], 1e-11)]
+        [(1, [20, 2], 0.01), (1, [40, 4], 0.0025), (2, [10, 2], 2e-3), (3, [4, 2], 1e-9)]
     {
         let mesh = density(elements, order);
         let (mut points, mut forces) = on_boundary(&shape, &mesh, stress);
@@ -270,13 +271,12 @@ fn end_shear_of_a_cantilever() {
         let c = Condenser::new(Plane::Strain, WIDTH).condense(&shape, material, &mesh, &points).unwrap().flexibility;
         let u = paired(&(c * flat(&forces)));
         let sag = u[first].y + u[first + 2].y - 2.0 * u[first + 1].y;
-        println!("order {order} {elements:?}: {:.3e}", sag / (12e5 * length.powi(3) / (8.0 * young)) - 1.0);
         assert_close(sag, 12e5 * length.powi(3) / (8.0 * young), tolerance);
     }
 }
 
 /// Own weight needs no extra term: a column on a uniform pressure is displaced as the closed form
-/// says, u = ν ρ g x (h − y) / E, v = −ρ g (h y − y²/2) / E − ν ρ g x² / 2E in plane stress.
+/// says, u = ν ρ g x (h − y) / E, v = −ρ g (h y − y²/2 − ν x²/2) / E in plane stress.
 #[test]
 fn own_weight_of_a_column() {
     let (length, height, gravity) = (0.6, 2.0, 9.81);
@@ -295,7 +295,7 @@ fn own_weight_of_a_column() {
         );
         let (nu, unit) = (STONE.poisson_ratio, weight / STONE.young_modulus);
         let exact = |x: &Vec2| {
-            Vec2::new(nu * x.x * (height - x.y), -(height * x.y - x.y * x.y / 2.0) - nu * x.x * x.x / 2.0) * unit
+            Vec2::new(nu * x.x * (height - x.y), -(height * x.y - x.y * x.y / 2.0) + nu * x.x * x.x / 2.0) * unit
         };
         let rest: Vec<_> = points.iter().zip(&found).map(|(x, u)| u - exact(x)).collect();
         assert!(beyond_rigid(&points, &rest) < 1e-12 * unit, "order {order}");
