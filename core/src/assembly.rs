@@ -4,6 +4,7 @@ use crate::elastic::MeshDensity;
 use crate::geometry::{Vec2, area_and_centroid, bounding_box, cross, turned};
 use crate::interface::InterfaceLaw;
 use crate::material::{BulkMaterial, Deformability};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The materials and interface laws of a study, by name.
@@ -49,6 +50,39 @@ pub enum Bond {
     Law(usize),
 }
 
+/// Initial opening of a joint: a number, or a table along it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Gap {
+    /// The same everywhere \[m\].
+    Uniform(f64),
+    /// Pairs \[s, gap\] \[m\], s ascending from the joint's end 0; linear between them, constant
+    /// before the first and behind the last.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Default for Gap {
+    fn default() -> Self {
+        Gap::Uniform(0.0)
+    }
+}
+
+impl Gap {
+    /// The opening at the distance s \[m\] from the joint's end 0 \[m\].
+    pub fn at(&self, s: f64) -> f64 {
+        let table = match self {
+            Gap::Uniform(gap) => return *gap,
+            Gap::Table(table) => table,
+        };
+        let behind = table.partition_point(|row| row[0] <= s);
+        match (behind.checked_sub(1).map(|i| table[i]), table.get(behind)) {
+            (Some([a, from]), Some(&[b, to])) => from + (to - from) * (s - a) / (b - a),
+            (Some([_, gap]), None) => gap,
+            (None, first) => first.map_or(0.0, |row| row[1]),
+        }
+    }
+}
+
 /// A straight contact between two bodies.
 #[derive(Debug, Clone)]
 pub struct Joint {
@@ -61,8 +95,8 @@ pub struct Joint {
     pub ends: [Vec2; 2],
     /// How the bodies meet.
     pub bond: Bond,
-    /// Initial opening \[m\].
-    pub gap: f64,
+    /// Initial opening, along s from end 0.
+    pub gap: Gap,
 }
 
 impl Joint {
@@ -119,7 +153,7 @@ pub struct Assembly {
     pub width: f64,
     /// Stress state of deformable bodies.
     pub plane: Plane,
-    /// Mesh of deformable bodies.
+    /// How deformable bodies are meshed.
     pub mesh: MeshDensity,
     /// Present for arches.
     pub arch: Option<ArchLayout>,
@@ -312,4 +346,19 @@ pub fn stage_loads(assembly: &Assembly, stages: &[Stage]) -> Vec<StageLoads> {
             StageLoads { fixed, varying }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A table is linear between its rows and constant outside.
+    #[test]
+    fn gaps_along_a_joint() {
+        let gap = Gap::Table(vec![[0.0, 0.1], [1.0, 0.3], [2.0, 0.0]]);
+        for (s, expected) in [(-1.0, 0.1), (0.0, 0.1), (0.5, 0.2), (1.0, 0.3), (1.5, 0.15), (2.0, 0.0), (3.0, 0.0)] {
+            assert!((gap.at(s) - expected).abs() < 1e-15, "{s}");
+        }
+        assert_eq!(Gap::Uniform(0.2).at(7.0), 0.2);
+    }
 }

@@ -1,6 +1,6 @@
 //! Finding the joints of an assembly of polygons: overlaps of edges, not given by hand.
 
-use crate::assembly::{Body, Bond, Joint};
+use crate::assembly::{Body, Bond, Gap, Joint};
 use crate::geometry::{Vec2, bounding_box, edges, overlap_depth};
 
 /// Tolerance for overlap, gap and interpenetration, as a share of the scene's size.
@@ -64,7 +64,7 @@ fn edge_overlap(a: Vec2, b: Vec2, c: Vec2, d: Vec2, tolerance: f64) -> Option<[V
 pub fn find_joints(
     bodies: &[Body],
     size: f64,
-    law: impl Fn(usize, usize) -> (Bond, f64),
+    law: impl Fn(usize, usize) -> (Bond, Gap),
 ) -> (Vec<Joint>, Vec<Interpenetration>) {
     let tolerance = CONTACT_TOLERANCE * size;
     let (mut joints, mut overlaps) = (Vec::new(), Vec::new());

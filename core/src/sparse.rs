@@ -78,23 +78,17 @@ impl Factorised {
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
-    /// Solves for every column at once, with one step of iterative refinement. Also gives the
-    /// greatest entry of the residual over the greatest of the right-hand side. `None` where a
-    /// solution is not finite.
-    pub fn solve_columns(&self, right: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+    /// Solves for every column at once, without refinement. `None` where a solution is not finite.
+    pub fn solve_columns(&self, mut right: DMatrix<f64>) -> Option<DMatrix<f64>> {
         let (rows, columns) = right.shape();
-        let target = MatRef::from_column_major_slice(right.as_slice(), rows, columns);
-        let mut x = target.to_owned();
-        self.solve_once(x.as_mut())?;
-        let mut step = target - &self.matrix * &x;
-        self.solve_once(step.as_mut())?;
-        x += step;
-        let rest = target - &self.matrix * &x;
-        let greatest = |m: MatRef<f64>| {
-            (0..columns).flat_map(|j| (0..rows).map(move |i| (i, j))).fold(0.0f64, |max, at| max.max(m[at].abs()))
-        };
-        let solution = DMatrix::from_fn(rows, columns, |i, j| x[(i, j)]);
-        let error = greatest(rest.as_ref()) / greatest(target).max(f64::MIN_POSITIVE);
-        (solution.iter().all(|v| v.is_finite()) && error.is_finite()).then_some((solution, error))
+        self.solve_once(MatMut::from_column_major_slice_mut(right.as_mut_slice(), rows, columns))?;
+        right.iter().all(|v| v.is_finite()).then_some(right)
+    }
+
+    /// The matrix times columns.
+    pub fn times(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let (rows, count) = columns.shape();
+        let product = &self.matrix * MatRef::from_column_major_slice(columns.as_slice(), rows, count);
+        DMatrix::from_fn(rows, count, |i, j| product[(i, j)])
     }
 }

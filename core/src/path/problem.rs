@@ -237,7 +237,7 @@ impl PathProblem {
                     minus: attach(joint.minus),
                     plus: attach(joint.plus),
                     area,
-                    gap: joint.gap,
+                    gap: joint.gap.at(position * height),
                     law: match joint.bond {
                         Bond::Bonded => ContactLaw::Bonded,
                         Bond::Law(law) => ContactLaw::Law(law),

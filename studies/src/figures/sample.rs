@@ -5,6 +5,7 @@ use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
 use std::sync::Arc;
 use voussoir_core::assembly::*;
 use voussoir_core::certificate::Certificate;
+use voussoir_core::elastic::MeshDensity;
 use voussoir_core::geometry::{Vec2, cross, turned};
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{Hinge, Mechanism, MechanismKind, Side, Sliding};
@@ -26,16 +27,7 @@ fn catalogue() -> Catalogue {
 }
 
 fn stage(name: &str, gravity: Option<Vec2>, forces: Vec<PointForce>, target: Target) -> Stage {
-    Stage {
-        name: name.into(),
-        gravity,
-        forces,
-        accelerations: vec![],
-        settlements: vec![],
-        target,
-        factor_min: 0.0,
-        factor_max: 1e9,
-    }
+    Stage { name: name.into(), gravity, forces, accelerations: vec![], settlements: vec![], target, factor_min: 0.0, factor_max: 1e9 }
 }
 
 /// A segmental arch of the Strathmashie bridge's size (thickness 0.6 m) between shapeless supports.
@@ -55,8 +47,9 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
         Body { name: format!("v{k}"), vertices: vec![a, c, d, b], material: 0, fixed: false }
     }));
     bodies.push(support("right"));
-    let joints =
-        (0..=voussoirs).map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: 0.0 }).collect();
+    let joints = (0..=voussoirs)
+        .map(|k| Joint { minus: k, plus: k + 1, ends: ends(k), bond: Bond::Law(0), gap: Gap::default() })
+        .collect();
     let arch = Some(ArchLayout { first: 1, voussoirs, span, rise });
     Assembly {
         catalogue: catalogue(),
@@ -64,7 +57,7 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
         joints,
         width: 5.81,
         plane: Plane::Strain,
-        mesh: Default::default(),
+        mesh: MeshDensity::default(),
         arch,
     }
 }
@@ -258,7 +251,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
                         plus: body,
                         ends: [Vec2::new(high, y), Vec2::new(low, y)],
                         bond,
-                        gap: 0.0,
+                        gap: Gap::default(),
                     });
                 }
             }
@@ -268,7 +261,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
                     plus: body,
                     ends: [Vec2::new(x, y), Vec2::new(x, y + height)],
                     bond,
-                    gap: 0.0,
+                    gap: Gap::default(),
                 });
             }
             row.push((body, pair[0], pair[1]));
@@ -288,7 +281,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         joints,
         width: 0.2,
         plane: Plane::Strain,
-        mesh: Default::default(),
+        mesh: MeshDensity::default(),
         arch: None,
     };
     let field = assembly.joints.iter().enumerate().flat_map(|(k, joint)| {

@@ -1,10 +1,11 @@
 //! `arch`: a ring of voussoirs between two supports.
 #![doc = include_str!("arch.md")]
 
+use super::mesh::{MESH, Mesh, density, mistakes};
 use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
 use super::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{ArchLayout, Assembly, Body, Bond, Catalogue, Joint};
+use voussoir_core::assembly::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint};
 use voussoir_core::card::{Card, check_as};
 use voussoir_core::contact::find_joints;
 use voussoir_core::geometry::bounding_box;
@@ -24,38 +25,7 @@ pub enum Ends {
     Jointed,
 }
 
-/// Mesh of each voussoir, where it deforms.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mesh {
-    /// Elements along the ring, across it.
-    #[serde(default = "Mesh::default_elements")]
-    pub elements: [usize; 2],
-    /// Order of the elements, 1 or 2.
-    #[serde(default = "Mesh::default_order")]
-    pub order: usize,
-    /// Ratio of element sizes; more than 1 is finer towards the joint's ends.
-    #[serde(default = "Mesh::default_grading")]
-    pub grading: f64,
-}
-
-impl Mesh {
-    fn default_elements() -> [usize; 2] {
-        [4, 6]
-    }
-
-    fn default_order() -> usize {
-        2
-    }
-
-    fn default_grading() -> f64 {
-        1.0
-    }
-}
-
-const MAX_ELEMENTS: usize = 1000;
 const MAX_VOUSSOIRS: usize = 100_000;
-const GRADING: Range = Range::new(0.0, true, 100.0, false);
 
 /// A ring of voussoirs between two supports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,18 +60,7 @@ impl Arch {
     pub fn ring(&self) -> Result<Ring, Vec<Issue>> {
         let mut issues = Vec::new();
         issues.extend(out_of_range("width", self.width, Range::POSITIVE));
-        if let Some(mesh) = &self.mesh {
-            for (i, &count) in mesh.elements.iter().enumerate().filter(|&(_, n)| !(1..=MAX_ELEMENTS).contains(n)) {
-                issues.push(Issue::new(
-                    format!("mesh.elements.{i}"),
-                    format!("{count} must be from 1 to {MAX_ELEMENTS}"),
-                ));
-            }
-            if !(1..=2).contains(&mesh.order) {
-                issues.push(Issue::new("mesh.order", format!("{} must be 1 or 2", mesh.order)));
-            }
-            issues.extend(out_of_range("mesh.grading", mesh.grading, GRADING));
-        }
+        issues.extend(mistakes(self.mesh.as_ref()));
         if self.voussoirs.is_some_and(|n| n > MAX_VOUSSOIRS) {
             issues.push(Issue::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));
             return Err(issues);
@@ -122,7 +81,7 @@ impl Arch {
     fn overlap(&self, ring: &Ring) -> Option<Issue> {
         let bodies: Vec<_> = (0..ring.voussoirs()).map(|k| voussoir(ring, k, 0)).collect();
         let (low, high) = bounding_box(ring.intrados.iter().chain(&ring.extrados));
-        let (_, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Bonded, 0.0));
+        let (_, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Bonded, Gap::default()));
         let worst = overlaps.into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
         let [a, b] = worst.bodies;
         let key = if self.springing.is_some() { "springing" } else { "profile" };
@@ -161,7 +120,7 @@ impl Scene for Arch {
             plus: k + 1,
             ends: [ring.intrados[k], ring.extrados[k]],
             bond: if self.ends == Ends::Bonded && (k == 0 || k == count) { Bond::Bonded } else { Bond::Law(law) },
-            gap: 0.0,
+            gap: Gap::default(),
         };
         Ok(Assembly {
             catalogue: catalogue.clone(),
@@ -174,27 +133,11 @@ impl Scene for Arch {
                 grading: m.grading,
             }),
             plane: self.plane.into(),
+            mesh: density(self.mesh),
             arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),
         })
     }
 }
-
-const MESH: &[Parameter] = &[
-    Parameter {
-        name: "elements",
-        doc: "elements along the ring, across it",
-        shape: Shape::List { of: &Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 }, min: 2, max: 2 },
-        need: Need::Default("[4, 6]"),
-    },
-    Parameter {
-        name: "order",
-        doc: "order of the elements",
-        shape: Shape::Integer { min: 1, max: 2 },
-        need: Need::Default("2"),
-    },
-    Parameter::number("grading", Quantity::Ratio, GRADING, "more than 1 is finer towards the joint's ends")
-        .default("1.0"),
-];
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "profile", doc: "shape of the intrados", shape: PROFILE, need: Need::Required },
@@ -222,12 +165,7 @@ const PARAMETERS: &[Parameter] = &[
     },
     MATERIAL,
     JOINT,
-    Parameter {
-        name: "mesh",
-        doc: "mesh of deformable voussoirs",
-        shape: Shape::Table(MESH),
-        need: Need::Optional("the defaults of its keys"),
-    },
+    MESH,
 ];
 
 voussoir_core::inventory::submit! {
@@ -284,7 +222,7 @@ mod tests {
     #[test]
     fn joints_found_from_the_polygons_are_those_of_the_ring() {
         let arch = arch(json!({})).unwrap();
-        let (found, overlaps) = find_joints(&arch.bodies[1..16], arch.size(), |_, _| (Bond::Law(0), 0.0));
+        let (found, overlaps) = find_joints(&arch.bodies[1..16], arch.size(), |_, _| (Bond::Law(0), Gap::default()));
         assert!(overlaps.is_empty());
         assert_eq!(found.len(), 14);
         for (found, joint) in found.iter().zip(&arch.joints[1..]) {
@@ -296,7 +234,7 @@ mod tests {
     fn mistakes_are_reported_together_each_at_its_key() {
         let wrong = arch(json!({
             "material": "ston", "joint": "damp", "width": 0.0, "thickness": -1.0, "springing": 100.0,
-            "mesh": { "elements": [0, 4], "order": 3, "grading": 0.0 },
+            "mesh": { "elements": [0, 4], "order": 4, "grading": 0.5 },
             "profile": { "shape": "pointed", "span": 4.0, "rise": 1.0 },
         }));
         let mut paths: Vec<_> = wrong.unwrap_err().into_iter().map(|issue| issue.path).collect();

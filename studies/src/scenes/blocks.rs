@@ -1,11 +1,12 @@
 //! `blocks`: a free assembly of polygonal blocks.
 #![doc = include_str!("blocks.md")]
 
+use super::mesh::{MESH, Mesh, density, mistakes};
 use super::{
     JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take, unknown,
 };
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Joint};
+use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Gap, Joint};
 use voussoir_core::card::{Card, check_as};
 use voussoir_core::contact::{Interpenetration, find_joints};
 use voussoir_core::geometry::{Vec2, area_and_centroid, bounding_box, cross, crosses_itself};
@@ -39,9 +40,9 @@ pub struct Pair {
     pub between: [String; 2],
     /// Law of their joints.
     pub joint: Option<String>,
-    /// Initial opening \[m\].
+    /// Initial opening, along s from each joint's end 0.
     #[serde(default)]
-    pub gap: f64,
+    pub gap: Gap,
 }
 
 /// A free assembly.
@@ -62,6 +63,8 @@ pub struct Blocks {
     /// Joints with a law or gap of their own.
     #[serde(default)]
     pub pairs: Vec<Pair>,
+    /// Mesh of deformable blocks.
+    pub mesh: Option<Mesh>,
 }
 
 /// The polygon of a list of vertices, anticlockwise and beginning at the same vertex.
@@ -101,11 +104,33 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
     Ok(polygon)
 }
 
+/// Openings are ≥ 0, and a table goes along the joint.
+fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Issue> {
+    let table = match gap {
+        Gap::Uniform(gap) => return out_of_range(path, *gap, Range::NON_NEGATIVE).into_iter().collect(),
+        Gap::Table(table) => table,
+    };
+    let mut issues = Vec::new();
+    if table.is_empty() {
+        issues.push(Issue::new(path, "the table has no row [s, gap]"));
+    }
+    for (i, [s, gap]) in table.iter().enumerate() {
+        issues.extend(out_of_range(&format!("{path}.{i}.0"), *s, Range::ANY));
+        issues.extend(out_of_range(&format!("{path}.{i}.1"), *gap, Range::NON_NEGATIVE));
+        if i > 0 && *s <= table[i - 1][0] {
+            let message = format!("{s} does not come after {}: s grows along the joint", table[i - 1][0]);
+            issues.push(Issue::new(format!("{path}.{i}.0"), message));
+        }
+    }
+    issues
+}
+
 impl Blocks {
     /// Polygons, and every mistake that needs no catalogue, with paths from the scene's table.
     fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Issue>) {
         let mut issues = Vec::new();
         issues.extend(out_of_range("width", self.width, Range::POSITIVE));
+        issues.extend(mistakes(self.mesh.as_ref()));
         if self.blocks.is_empty() {
             issues.push(Issue::new("blocks", "there is no block"));
         } else if self.blocks.iter().all(|block| !block.fixed) {
@@ -145,7 +170,7 @@ impl Blocks {
                     issues.push(unknown(&format!("pairs.{i}.between.{end}"), "block", name, names));
                 }
             }
-            issues.extend(out_of_range(&format!("pairs.{i}.gap"), pair.gap, Range::NON_NEGATIVE));
+            issues.extend(gap_mistakes(&format!("pairs.{i}.gap"), &pair.gap));
             let key = format!("pairs.{i}.between");
             if pair.between[0] == pair.between[1] {
                 issues.push(Issue::new(&key, "names one block twice"));
@@ -214,7 +239,7 @@ impl Blocks {
     /// Joints of sound bodies; overlaps, and pairs that share no joint, are mistakes.
     fn joints(&self, bodies: &[Body], bond: impl Fn(usize, usize) -> Bond) -> Result<Vec<Joint>, Vec<Issue>> {
         let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
-        let gap = |a, b| self.pair(a, b).map_or(0.0, |(_, pair)| pair.gap);
+        let gap = |a, b| self.pair(a, b).map_or(Gap::default(), |(_, pair)| pair.gap.clone());
         let (joints, overlaps) = find_joints(bodies, (high - low).norm(), |a, b| (bond(a, b), gap(a, b)));
         let mut issues: Vec<_> = overlaps.iter().map(|overlap| self.overlap(overlap)).collect();
         for (i, pair) in self.pairs.iter().enumerate() {
@@ -292,16 +317,8 @@ impl Scene for Blocks {
         if !issues.is_empty() {
             return Err(from_root(issues));
         }
-        let (width, plane) = (self.width, self.plane.into());
-        Ok(Assembly {
-            catalogue: catalogue.clone(),
-            bodies,
-            joints,
-            width,
-            plane,
-            mesh: Default::default(),
-            arch: None,
-        })
+        let (width, plane, mesh) = (self.width, self.plane.into(), density(self.mesh));
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None })
     }
 }
 
@@ -326,8 +343,17 @@ const PAIR: &[Parameter] = &[
         need: Need::Required,
     },
     JOINT.optional("that of the blocks, or the scene's"),
-    Parameter::number("gap", Quantity::Length, Range::NON_NEGATIVE, "initial opening").default("0.0"),
+    Parameter {
+        name: "gap",
+        doc: "initial opening: a number, or a table [[s, gap], …] along the joint, s from its end 0",
+        shape: Shape::Either(&[OPENING, Shape::List { of: &GAP_ROW, min: 1, max: usize::MAX }]),
+        need: Need::Default("0.0"),
+    },
 ];
+
+const OPENING: Shape = Shape::Number(Quantity::Length, Range::NON_NEGATIVE);
+/// \[s, gap\]: that the gap is not negative is said by the scene's own check.
+const GAP_ROW: Shape = POINT;
 
 const PARAMETERS: &[Parameter] = &[
     WIDTH,
@@ -346,6 +372,7 @@ const PARAMETERS: &[Parameter] = &[
         shape: Shape::List { of: &Shape::Table(PAIR), min: 0, max: usize::MAX },
         need: Need::Default("[]"),
     },
+    MESH,
 ];
 
 voussoir_core::inventory::submit! {
@@ -401,10 +428,10 @@ mod tests {
         let mut b = box_at("b", 1.0, 0.0);
         b["joint"] = json!("wet");
         let blocks = json!([ground(), box_at("a", 0.0, 0.0), b]);
-        let pairs = json!({ "pairs": [{ "between": ["b", "a"], "joint": "dry", "gap": 0.001 }] });
+        let pairs = json!({ "pairs": [{ "between": ["b", "a"], "joint": "dry", "gap": [[0.0, 0.001], [1.0, 0.0]] }] });
         let scene = build(blocks, pairs).unwrap();
-        let bonds: Vec<_> = scene.joints.iter().map(|j| (j.minus, j.plus, j.bond, j.gap)).collect();
-        let expected = [(0, 1, Bond::Law(0), 0.0), (0, 2, Bond::Law(1), 0.0), (1, 2, Bond::Law(0), 0.001)];
+        let bonds: Vec<_> = scene.joints.iter().map(|j| (j.minus, j.plus, j.bond, j.gap.at(0.5))).collect();
+        let expected = [(0, 1, Bond::Law(0), 0.0), (0, 2, Bond::Law(1), 0.0), (1, 2, Bond::Law(0), 0.0005)];
         assert_eq!(bonds, expected);
     }
 
@@ -429,6 +456,11 @@ mod tests {
         assert_eq!(path(json!([a()]), none()), "scene.blocks");
         let pair = |one: &str, other: &str| json!({ "pairs": [{ "between": [one, other] }] });
         assert_eq!(path(json!([ground(), a()]), pair("a", "b")), "scene.pairs.0.between.1");
+        let gap = |gap: Value| json!({ "pairs": [{ "between": ["a", "ground"], "gap": gap }] });
+        assert_eq!(path(json!([ground(), a()]), gap(json!(-1.0))), "scene.pairs.0.gap");
+        assert_eq!(path(json!([ground(), a()]), gap(json!([[0.0, 0.0], [1.0, -1.0]]))), "scene.pairs.0.gap.1.1");
+        assert_eq!(path(json!([ground(), a()]), gap(json!([[0.0, 0.0], [0.0, 1.0]]))), "scene.pairs.0.gap.1.0");
+        assert_eq!(path(json!([ground(), a()]), json!({ "mesh": { "order": 7 } })), "scene.mesh.order");
         let far = || json!([ground(), a(), box_at("b", 3.0, 0.0)]);
         assert_eq!(path(far(), pair("a", "b")), "scene.pairs.0.between");
         assert_eq!(path(far(), json!({ "joint": null })), "scene.joint");

@@ -10,6 +10,7 @@ use voussoir_core::units::Quantity;
 pub mod arch;
 pub mod blocks;
 mod curve;
+pub mod mesh;
 pub mod profile;
 pub mod wall;
 

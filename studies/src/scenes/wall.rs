@@ -1,9 +1,10 @@
 //! `wall`: bricks in running bond on the ground.
 #![doc = include_str!("wall.md")]
 
+use super::mesh::{MESH, Mesh, density, mistakes};
 use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue};
+use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Gap};
 use voussoir_core::card::{Card, check_as};
 use voussoir_core::contact::find_joints;
 use voussoir_core::geometry::{Vec2, bounding_box};
@@ -58,6 +59,8 @@ pub struct Wall {
     /// Rectangles cut out.
     #[serde(default)]
     pub openings: Vec<Opening>,
+    /// Mesh of deformable bricks.
+    pub mesh: Option<Mesh>,
 }
 
 const MAX_BRICKS: usize = 1000;
@@ -113,6 +116,7 @@ impl Wall {
     fn courses(&self) -> Result<Vec<Course>, Vec<Issue>> {
         let mut issues = Vec::new();
         issues.extend(out_of_range("width", self.width, Range::POSITIVE));
+        issues.extend(mistakes(self.mesh.as_ref()));
         for (i, &side) in self.brick.iter().enumerate() {
             issues.extend(out_of_range(&format!("brick.{i}"), side, Range::POSITIVE));
         }
@@ -219,18 +223,10 @@ impl Scene for Wall {
             }
         }
         let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
-        let (joints, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), 0.0));
+        let (joints, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), Gap::default()));
         debug_assert!(overlaps.is_empty(), "bricks of a wall overlap: {overlaps:?}");
-        let (width, plane) = (self.width, self.plane.into());
-        Ok(Assembly {
-            catalogue: catalogue.clone(),
-            bodies,
-            joints,
-            width,
-            plane,
-            mesh: Default::default(),
-            arch: None,
-        })
+        let (width, plane, mesh) = (self.width, self.plane.into(), density(self.mesh));
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None })
     }
 }
 
@@ -279,6 +275,7 @@ const PARAMETERS: &[Parameter] = &[
         shape: Shape::List { of: &Shape::Table(OPENING), min: 0, max: usize::MAX },
         need: Need::Default("[]"),
     },
+    MESH,
 ];
 
 voussoir_core::inventory::submit! {

@@ -1,0 +1,83 @@
+//! `[scene.mesh]`: how deformable blocks are meshed, the same key in every scene.
+
+use super::out_of_range;
+use serde::{Deserialize, Serialize};
+use voussoir_core::elastic::MeshDensity;
+use voussoir_core::issue::Issue;
+use voussoir_core::schema::{Need, Parameter, Range, Shape};
+use voussoir_core::units::Quantity;
+
+/// Mesh of each deformable block.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Mesh {
+    /// Elements along the ring, across it; of other blocks along edges 0 and 2, along 1 and 3.
+    pub elements: [usize; 2],
+    /// Order of the elements, 1 to 3.
+    pub order: usize,
+    /// Greatest over least element size along an edge; more than 1 is finer towards the edge's ends.
+    pub grading: f64,
+}
+
+impl Default for Mesh {
+    fn default() -> Self {
+        let MeshDensity { elements, order, grading } = MeshDensity::default();
+        Mesh { elements, order, grading }
+    }
+}
+
+impl From<Mesh> for MeshDensity {
+    fn from(Mesh { elements, order, grading }: Mesh) -> MeshDensity {
+        MeshDensity { elements, order, grading }
+    }
+}
+
+const MAX_ELEMENTS: usize = 1000;
+const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
+const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
+
+/// The density of a scene's mesh, where it gives none the default.
+pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
+    mesh.unwrap_or_default().into()
+}
+
+/// Mistakes in a scene's mesh, with paths from the scene's table.
+pub(super) fn mistakes(mesh: Option<&Mesh>) -> Vec<Issue> {
+    let Some(mesh) = mesh else {
+        return Vec::new();
+    };
+    let mut issues = Vec::new();
+    for (i, &count) in mesh.elements.iter().enumerate().filter(|&(_, n)| !(1..=MAX_ELEMENTS).contains(n)) {
+        issues.push(Issue::new(format!("mesh.elements.{i}"), format!("{count} must be from 1 to {MAX_ELEMENTS}")));
+    }
+    if !(1..=MAX_ORDER).contains(&mesh.order) {
+        issues.push(Issue::new("mesh.order", format!("{} must be from 1 to {MAX_ORDER}", mesh.order)));
+    }
+    issues.extend(out_of_range("mesh.grading", mesh.grading, GRADING));
+    issues
+}
+
+const KEYS: &[Parameter] = &[
+    Parameter {
+        name: "elements",
+        doc: "elements along the ring, across it; of other blocks along edges 0 and 2, along 1 and 3",
+        shape: Shape::List { of: &Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 }, min: 2, max: 2 },
+        need: Need::Default("[4, 6]"),
+    },
+    Parameter {
+        name: "order",
+        doc: "order of the elements",
+        shape: Shape::Integer { min: 1, max: MAX_ORDER as i64 },
+        need: Need::Default("2"),
+    },
+    Parameter::number("grading", Quantity::Ratio, GRADING, "more than 1 is finer towards the joint's ends")
+        .default("1.0"),
+];
+
+/// The key `mesh` of a scene.
+pub(super) const MESH: Parameter = Parameter {
+    name: "mesh",
+    doc: "mesh of deformable blocks",
+    shape: Shape::Table(KEYS),
+    need: Need::Optional("the defaults of its keys"),
+};
