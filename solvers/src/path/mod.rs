@@ -1,1 +1,4 @@
 //! Path solvers: elastic blocks under growing loads until they collapse, and behind.
+
+pub mod continuation;
+pub mod newton;
