@@ -23,6 +23,7 @@ pub mod mechanism;
 pub mod path;
 pub mod scene;
 pub mod schema;
+pub mod sparse;
 pub mod strength;
 pub mod units;
 

@@ -1,80 +1,52 @@
-//! Placeholder of the elastic blocks; replaced by the real ones.
-use crate::assembly::Plane;
-use crate::geometry::Vec2;
-use nalgebra::DMatrix;
+//! Linear elastic bodies: their finite-element meshes and the static condensation of a mesh on the
+//! points where something acts on the body.
+//!
+//! **Elements.** Straight-sided quadrilaterals with the bilinear map, nodes at the tensor product of
+//! Gauss–Lobatto points. Order 1: the five-parameter hybrid-stress element of Pian and Sumihara
+//! (1984, Int. J. Numer. Methods Eng. 20, 1685–1695), which neither locks in bending nor for
+//! ν → 0.5. Order 2: nine nodes, order 3: sixteen nodes, the full tensor product, because the
+//! serendipity elements lose an order on quadrilaterals that are no parallelograms (Arnold, Boffi
+//! & Falk 2002, Math. Comp. 71, 909–922).
+//!
+//! **Meshes.** A strictly convex quadrilateral is meshed by its bilinear map: edges 0 and 2 (edge i
+//! starts at vertex i) are divided into `elements[0]` parts, edges 1 and 3 into `elements[1]`. The
+//! voussoirs of the scene `arch` have the intrados as edge 0 and joints as edges 1 and 3, so their
+//! `elements` count along the ring and across it. Any other polygon is cut into triangles, each of
+//! them into three quadrilaterals with k × k elements, k = ⌈max(elements) / 2⌉, so that every edge
+//! has 2 k parts. With a grading g > 1 the parts of an edge grow geometrically from its ends to its
+//! middle, the greatest being g times the least; both directions are graded, because at a joint's
+//! end the stress varies as fast into the body as along the joint.
+//!
+//! **Points.** Points of a body need not be nodes: the displacement there is that of the element's
+//! shape functions N, a force there acts by Nᵀ. All resultants stay exact, because the shape
+//! functions reproduce the coordinates.
+//!
+//! **Rigid motion.** Displacements are elastic ones, relative to the body's mean motion (Tisserand's
+//! mean axes): ∫ u dA = 0 and ∫ X × u dA = 0, X from the centroid. With R the rigid motions of the
+//! nodes, M the mass matrix, P = I − R (Rᵀ M R)⁻¹ Rᵀ M and K⁺ any generalised inverse of the
+//! stiffness,
+//!
+//! u = C f,  C = N P K⁺ Pᵀ Nᵀ,
+//!
+//! symmetric and positive semi-definite for all f. Forces that are not in equilibrium are balanced
+//! by the inertia of a rigid motion, Pᵀ. The body force of a uniform acceleration is such an
+//! inertia force itself, Pᵀ M R = 0, so it adds nothing: where contact forces carry the weight,
+//! their own inertia relief is the weight, and C f is the exact answer.
+//!
+//! **Contact points.** [`joint_points`] puts a Gauss–Lobatto rule of order + 1 points on each segment
+//! between the element boundaries of both sides. It integrates a uniform traction times the shape
+//! functions of either side exactly, so the patch test passes across meshes that do not match; on
+//! meshes that match, its points are the nodes and its weights the consistent nodal forces.
 
-/// How bodies are meshed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeshDensity {
-    /// Along, across.
-    pub elements: [usize; 2],
-    /// Order.
-    pub order: usize,
-    /// Grading.
-    pub grading: f64,
-}
-/// Material.
-#[derive(Debug, Clone, Copy)]
-pub struct IsotropicElastic {
-    /// E.
-    pub young_modulus: f64,
-    /// ν.
-    pub poisson_ratio: f64,
-    /// ρ.
-    pub density: f64,
-}
-/// Flexibility.
-pub struct Condensed {
-    /// Points.
-    pub points: Vec<Vec2>,
-    /// C.
-    pub flexibility: DMatrix<f64>,
-    /// From acceleration.
-    pub gravity: DMatrix<f64>,
-}
-/// Condenser.
-pub struct Condenser {}
-impl Condenser {
-    /// New.
-    pub fn new(_plane: Plane, _width: f64) -> Self {
-        Condenser {}
-    }
-    /// Condense.
-    pub fn condense(
-        &mut self,
-        _v: &[Vec2],
-        _m: IsotropicElastic,
-        _mesh: &MeshDensity,
-        _points: &[Vec2],
-    ) -> Result<Condensed, String> {
-        Err("no elastic blocks yet".into())
-    }
-    /// Count.
-    pub fn factorisations(&self) -> u64 {
-        0
-    }
-}
-/// Element boundaries along an edge.
-pub fn edge_breaks(_v: &[Vec2], density: &MeshDensity, _edge: usize) -> Vec<f64> {
-    let n = density.elements[1];
-    (0..=n).map(|i| i as f64 / n as f64).collect()
-}
-/// Points and weights.
-pub fn joint_points(breaks: &[f64], _order: usize) -> (Vec<f64>, Vec<f64>) {
-    let (mut p, mut w) = (vec![breaks[0]], vec![0.0]);
-    for s in breaks.windows(2) {
-        let h = s[1] - s[0];
-        *w.last_mut().unwrap() += h / 6.0;
-        p.push((s[0] + s[1]) / 2.0);
-        w.push(h * 4.0 / 6.0);
-        p.push(s[1]);
-        w.push(h / 6.0);
-    }
-    (p, w)
-}
+mod condensation;
+mod element;
+mod joint;
+mod mesh;
+mod polygon;
+mod quadrature;
+mod stress;
 
-impl Default for MeshDensity {
-    fn default() -> Self {
-        MeshDensity { elements: [4, 6], order: 2, grading: 1.0 }
-    }
-}
+pub use condensation::{Condensed, Condenser, IsotropicElastic};
+pub use joint::{breaks_on_joint, joint_points, union_breaks};
+pub use mesh::{Mesh, MeshDensity, edge_breaks, edge_points};
+pub use stress::Recovered;

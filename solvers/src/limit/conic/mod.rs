@@ -2,7 +2,6 @@
 
 mod interior_point;
 mod polish;
-mod sparse;
 mod system;
 
 use super::{Engine, Greatest, Verdict, answer, driven, force_scale, force_unit};

@@ -5,8 +5,8 @@
 //! iterated, which converges to the solution nearest to where it starts.
 
 use super::interior_point::Pair;
-use super::sparse::{Entries, Factorised};
 use super::system::{Row, System};
+use voussoir_core::sparse::{Entries, Factorised};
 
 /// Regularisation; the second is tried where the first leaves no pivot.
 const DELTAS: [f64; 2] = [1e-8, 1e-6];

@@ -1,0 +1,412 @@
+//! Static condensation of a body's mesh on the points where something acts on it.
+//!
+//! Everything is computed for E = 1 and width 1 in the shape's own frame (origin at the centroid,
+//! x along edge 0), in units of the shape's size: in plane problems the flexibility then does not
+//! depend on the size, and C = Q C̃ Qᵀ / (E width) with Q the body's rotation.
+
+use super::element::{Hooke, Reference, bilinear, inertia, stiffness};
+use super::mesh::{Mesh, MeshDensity};
+use super::stress::{Recovered, recovered};
+use crate::assembly::Plane;
+use crate::geometry::{Vec2, area_and_centroid, bounding_box, turned};
+use crate::sparse::{Entries, Factorised};
+use nalgebra::{DMatrix, Matrix2};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Shapes and points that differ by less than this share of the size are congruent.
+const CONGRUENT: f64 = 1e-9;
+/// How far outside an element a point may lie, in the element's coordinates: contact points are
+/// found to a tolerance that counts in sizes of the scene.
+const OUTSIDE: f64 = 1e-4;
+/// Greatest residual of the solved equations, relative to the right-hand side.
+const RESIDUAL: f64 = 1e-9;
+
+/// An isotropic, linear elastic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IsotropicElastic {
+    /// E \[Pa\].
+    pub young_modulus: f64,
+    /// ν.
+    pub poisson_ratio: f64,
+    /// ρ \[kg/m³\].
+    pub density: f64,
+}
+
+impl IsotropicElastic {
+    fn check(&self) -> Result<(), String> {
+        let IsotropicElastic { young_modulus: e, poisson_ratio: nu, density } = *self;
+        let sound = e.is_finite() && e > 0.0 && nu > -1.0 && nu < 0.5 && density.is_finite() && density >= 0.0;
+        sound.then_some(()).ok_or(format!("no elastic material has E = {e} Pa, ν = {nu}, ρ = {density} kg/m³"))
+    }
+}
+
+/// A body seen from some of its points, in world axes of its undeformed placement. Displacements
+/// are relative to the body's mean rigid motion.
+#[derive(Debug, Clone)]
+pub struct Condensed {
+    /// The points, as asked for \[m\].
+    pub points: Vec<Vec2>,
+    /// C, 2m × 2m with rows and columns (x, y) per point \[m/N\]: u = C f. Symmetric, positive
+    /// semi-definite; forces that are not in equilibrium are balanced by the body's inertia.
+    pub flexibility: DMatrix<f64>,
+    /// u at the points from a uniform acceleration a_x, a_y of 1 m/s² as body force, 2m × 2
+    /// \[m per m/s²\]. It is zero: relative to the mean motion the body force of a uniform
+    /// acceleration is the inertia force of a rigid motion, so the weight is already in C f
+    /// where contact forces carry it.
+    pub gravity: DMatrix<f64>,
+}
+
+/// A placed polygon: vertex i of the shape is `origin` + Q × local vertex × `size`.
+struct Placement {
+    local: Vec<Vec2>,
+    origin: Vec2,
+    rotation: Matrix2<f64>,
+    size: f64,
+}
+
+impl Placement {
+    fn new(vertices: &[Vec2]) -> Result<Self, String> {
+        if vertices.len() < 3 || vertices.iter().any(|v| !(v.x.is_finite() && v.y.is_finite())) {
+            return Err("an elastic body needs three finite vertices or more".into());
+        }
+        let (area, origin) = area_and_centroid(vertices);
+        let (low, high) = bounding_box(vertices);
+        let edge = vertices[1] - vertices[0];
+        if !(area > 1e-12 * (high - low).norm_squared() && edge.norm() > 0.0) {
+            return Err(format!("an elastic body needs vertices that go round an area anticlockwise, not {area} m²"));
+        }
+        let size = area.sqrt();
+        let x = edge.normalize();
+        let rotation = Matrix2::from_columns(&[x, turned(x)]);
+        let placement = Placement { local: Vec::new(), origin, rotation, size };
+        Ok(Placement { local: vertices.iter().map(|v| placement.local(*v)).collect(), ..placement })
+    }
+
+    fn local(&self, point: Vec2) -> Vec2 {
+        self.rotation.transpose() * (point - self.origin) / self.size
+    }
+}
+
+/// Whether two lists of points agree within `CONGRUENT`.
+fn agree(a: &[Vec2], b: &[Vec2]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).amax() <= CONGRUENT)
+}
+
+/// A point's place in the mesh: nodes with their shape functions.
+type Place = Vec<(usize, f64)>;
+
+/// A mesh with its factorisation, for E = 1, width 1 and area 1, centroid at the origin.
+struct Shape {
+    vertices: Vec<Vec2>,
+    /// √area \[m\].
+    size: f64,
+    poisson_ratio: f64,
+    density: MeshDensity,
+    reference: Reference,
+    hooke: Hooke,
+    mesh: Mesh,
+    /// Row of each degree of freedom; `None` for the three that are held.
+    rows: Vec<Option<usize>>,
+    factorised: Factorised,
+    /// M R: columns translation x, y, rotation about the centroid.
+    inertia: DMatrix<f64>,
+    /// R.
+    rigid: DMatrix<f64>,
+    /// Diagonal of Rᵀ M R: area twice, polar moment.
+    masses: [f64; 3],
+    /// Flexibilities by local points.
+    condensed: Vec<(Vec<Vec2>, Arc<DMatrix<f64>>)>,
+}
+
+impl Shape {
+    fn new(placement: &Placement, nu: f64, density: &MeshDensity, plane: Plane) -> Result<Self, String> {
+        let mesh = Mesh::new(&placement.local, density)?;
+        let (reference, hooke) = (Reference::new(density.order), Hooke::new(plane, nu));
+        let count = mesh.nodes.len();
+        // Three held degrees of freedom, statically determinate: the ends of edge 0, which lies on
+        // the local x axis. What is held does not matter, because loads are in equilibrium.
+        let held = [0, 1, 3];
+        let mut next = 0;
+        let rows: Vec<Option<usize>> = (0..2 * count)
+            .map(|dof| {
+                (!held.contains(&dof)).then(|| {
+                    next += 1;
+                    next - 1
+                })
+            })
+            .collect();
+        let mut entries: Entries = Vec::with_capacity(mesh.elements.len() * (2 * mesh.elements[0].len()).pow(2));
+        let mut moments = vec![(0.0, Vec2::zeros()); count];
+        for (index, nodes) in mesh.elements.iter().enumerate() {
+            let corners = mesh.corners(index);
+            let k = stiffness(&reference, &corners, hooke);
+            let row = |i: usize| rows[2 * nodes[i / 2] + i % 2];
+            for j in 0..k.ncols() {
+                let Some(column) = row(j) else { continue };
+                entries.extend((0..k.nrows()).filter_map(|i| Some((row(i)?, column, k[(i, j)]))));
+            }
+            for (node, (mass, moment)) in nodes.iter().zip(inertia(&reference, &corners)) {
+                moments[*node].0 += mass;
+                moments[*node].1 += moment;
+            }
+        }
+        let factorised = Factorised::new(next, next, &entries).ok_or("the stiffness of a body has no factorisation")?;
+        let columns = |mass: f64, place: Vec2, i: usize| match i {
+            0 => [mass, 0.0, -place.y],
+            _ => [0.0, mass, place.x],
+        };
+        let inertia = DMatrix::from_fn(2 * count, 3, |i, j| columns(moments[i / 2].0, moments[i / 2].1, i % 2)[j]);
+        let rigid = DMatrix::from_fn(2 * count, 3, |i, j| columns(1.0, mesh.nodes[i / 2], i % 2)[j]);
+        let masses = [0, 1, 2].map(|i| rigid.column(i).dot(&inertia.column(i)));
+        Ok(Shape {
+            vertices: placement.local.clone(),
+            size: placement.size,
+            poisson_ratio: nu,
+            density: *density,
+            reference,
+            hooke,
+            mesh,
+            rows,
+            factorised,
+            inertia,
+            rigid,
+            masses,
+            condensed: Vec::new(),
+        })
+    }
+
+    fn is(&self, placement: &Placement, nu: f64, density: &MeshDensity) -> bool {
+        self.poisson_ratio == nu
+            && self.density == *density
+            && (self.size / placement.size - 1.0).abs() <= CONGRUENT
+            && agree(&self.vertices, &placement.local)
+    }
+
+    /// The element that holds a point, with the shape functions there; those of an element are also
+    /// right a little outside it, so that resultants stay exact.
+    fn place(&self, point: Vec2) -> Option<Place> {
+        let mut best: Option<(f64, usize, [f64; 2])> = None;
+        for element in 0..self.mesh.elements.len() {
+            let corners = self.mesh.corners(element);
+            let (low, high) = bounding_box(&corners);
+            let margin = OUTSIDE * (high - low).amax();
+            if (0..2).any(|i| point[i] < low[i] - margin || point[i] > high[i] + margin) {
+                continue;
+            }
+            let Some(place) = inverse(&corners, point) else { continue };
+            let outside = place[0].abs().max(place[1].abs()) - 1.0;
+            if best.is_none_or(|best| outside < best.0) {
+                best = Some((outside, element, place));
+            }
+            if outside <= 0.0 {
+                break;
+            }
+        }
+        let (_, element, place) = best.filter(|best| best.0 <= OUTSIDE)?;
+        let values = self.reference.at(place).values;
+        Some(self.mesh.elements[element].iter().copied().zip(values).collect())
+    }
+
+    /// The places of points given in the shape's frame; `asked` are the same in the world.
+    fn places(&self, points: &[Vec2], asked: &[Vec2]) -> Result<Vec<Place>, String> {
+        let place = |(point, asked): (&Vec2, &Vec2)| {
+            self.place(*point).ok_or_else(|| format!("the point ({}, {}) m lies outside its body", asked.x, asked.y))
+        };
+        points.iter().zip(asked).map(place).collect()
+    }
+
+    /// P K⁺ Pᵀ times each column of `loads`; the residual is checked.
+    fn displacements(&self, mut loads: DMatrix<f64>) -> Result<DMatrix<f64>, String> {
+        // Pᵀ = I − M R (Rᵀ M R)⁻¹ Rᵀ.
+        let mut motion = self.rigid.tr_mul(&loads);
+        (0..3).for_each(|i| motion.row_mut(i).scale_mut(1.0 / self.masses[i]));
+        loads -= &self.inertia * motion;
+        let free: Vec<usize> = (0..self.rows.len()).filter(|&dof| self.rows[dof].is_some()).collect();
+        let (solution, error) = self
+            .factorised
+            .solve_columns(&loads.select_rows(&free))
+            .ok_or("the equations of an elastic body have no finite solution")?;
+        if error > RESIDUAL {
+            return Err(format!(
+                "the equations of an elastic body are solved to {error:.1e} only: its mesh is too distorted or graded"
+            ));
+        }
+        let mut all = DMatrix::zeros(self.rows.len(), loads.ncols());
+        for (row, &dof) in free.iter().enumerate() {
+            all.row_mut(dof).copy_from(&solution.row(row));
+        }
+        let mut motion = self.inertia.tr_mul(&all);
+        (0..3).for_each(|i| motion.row_mut(i).scale_mut(1.0 / self.masses[i]));
+        all -= &self.rigid * motion;
+        Ok(all)
+    }
+
+    /// C̃ of points given in the shape's frame.
+    fn flexibility(&self, places: &[Place]) -> Result<DMatrix<f64>, String> {
+        let columns = 2 * places.len();
+        let mut loads = DMatrix::zeros(self.rows.len(), columns);
+        for (j, place) in places.iter().enumerate() {
+            for &(node, value) in place {
+                loads[(2 * node, 2 * j)] += value;
+                loads[(2 * node + 1, 2 * j + 1)] += value;
+            }
+        }
+        let all = self.displacements(loads)?;
+        let entry = |i: usize, j: usize| -> f64 {
+            places[i / 2].iter().map(|&(node, value)| value * all[(2 * node + i % 2, j)]).sum()
+        };
+        let full = DMatrix::from_fn(columns, columns, entry);
+        // Symmetric but for rounding: the two triangles come from different solutions.
+        Ok(DMatrix::from_fn(columns, columns, |i, j| 0.5 * (full[(i, j)] + full[(j, i)])))
+    }
+}
+
+/// Where the bilinear map of an element takes a point from, by Newton's method; `None` where it
+/// does not converge, which happens far outside only.
+fn inverse(corners: &[Vec2; 4], point: Vec2) -> Option<[f64; 2]> {
+    let mut place = [0.0, 0.0];
+    let mut last = f64::INFINITY;
+    for _ in 0..50 {
+        let (x, jacobian) = bilinear(corners, place);
+        let step = jacobian.try_inverse()? * (point - x);
+        place = [place[0] + step.x, place[1] + step.y];
+        let size = step.amax();
+        if size <= 1e-15 || (size < 1e-12 && size >= last) {
+            return Some(place);
+        }
+        last = size;
+    }
+    (last < 1e-9).then_some(place)
+}
+
+/// Condenses bodies. Congruent shapes (equal up to translation and rotation, vertices in the same
+/// order, with the same mesh density and Poisson's ratio) share one factorisation, and one
+/// flexibility where also their points agree.
+pub struct Condenser {
+    plane: Plane,
+    width: f64,
+    shapes: Vec<Shape>,
+    /// Indices of shapes by a rounded logarithm of their area.
+    by_area: HashMap<i64, Vec<usize>>,
+    factorisations: u64,
+}
+
+impl Condenser {
+    /// For bodies of this width \[m\].
+    pub fn new(plane: Plane, width: f64) -> Self {
+        Condenser { plane, width, shapes: Vec::new(), by_area: HashMap::new(), factorisations: 0 }
+    }
+
+    /// How many meshes were factorised.
+    pub fn factorisations(&self) -> u64 {
+        self.factorisations
+    }
+
+    /// The index of the shape of a body, made where there is none yet.
+    fn shape(&mut self, placement: &Placement, nu: f64, mesh: &MeshDensity) -> Result<usize, String> {
+        let area = (placement.size.ln() * 1e6).floor() as i64;
+        let near = (area - 1..=area + 1).filter_map(|key| self.by_area.get(&key)).flatten();
+        if let Some(&index) = near.into_iter().find(|&&index| self.shapes[index].is(placement, nu, mesh)) {
+            return Ok(index);
+        }
+        self.shapes.push(Shape::new(placement, nu, mesh, self.plane)?);
+        self.factorisations += 1;
+        self.by_area.entry(area).or_default().push(self.shapes.len() - 1);
+        Ok(self.shapes.len() - 1)
+    }
+
+    fn prepare(
+        &mut self,
+        vertices: &[Vec2],
+        material: IsotropicElastic,
+        mesh: &MeshDensity,
+        points: &[Vec2],
+    ) -> Result<(Placement, usize, Vec<Vec2>), String> {
+        material.check()?;
+        mesh.check()?;
+        if !(self.width.is_finite() && self.width > 0.0) {
+            return Err(format!("a body's width is greater than 0, not {} m", self.width));
+        }
+        let placement = Placement::new(vertices)?;
+        let shape = self.shape(&placement, material.poisson_ratio, mesh)?;
+        let local = points.iter().map(|&p| placement.local(p)).collect();
+        Ok((placement, shape, local))
+    }
+
+    /// The body of simple anticlockwise `vertices` \[m\] seen from `points` \[m\] on or in it. An
+    /// error says what is wrong with the body, its mesh or a point.
+    pub fn condense(
+        &mut self,
+        vertices: &[Vec2],
+        material: IsotropicElastic,
+        mesh: &MeshDensity,
+        points: &[Vec2],
+    ) -> Result<Condensed, String> {
+        let (placement, index, local) = self.prepare(vertices, material, mesh, points)?;
+        let shape = &mut self.shapes[index];
+        let known = shape.condensed.iter().find(|(points, _)| agree(points, &local));
+        let flexibility = match known.map(|(_, flexibility)| flexibility.clone()) {
+            Some(flexibility) => flexibility,
+            None => {
+                let flexibility = Arc::new(shape.flexibility(&shape.places(&local, points)?)?);
+                shape.condensed.push((local, flexibility.clone()));
+                flexibility
+            }
+        };
+        let (q, scale) = (placement.rotation, 1.0 / (material.young_modulus * self.width));
+        let mut turned = DMatrix::zeros(2 * points.len(), 2 * points.len());
+        for j in 0..points.len() {
+            for i in 0..=j {
+                let block = flexibility.fixed_view::<2, 2>(2 * i, 2 * j);
+                let mut block = q * block * q.transpose() * scale;
+                if i == j {
+                    block = (block + block.transpose()) / 2.0;
+                }
+                turned.fixed_view_mut::<2, 2>(2 * i, 2 * j).copy_from(&block);
+                turned.fixed_view_mut::<2, 2>(2 * j, 2 * i).copy_from(&block.transpose());
+            }
+        }
+        let gravity = DMatrix::zeros(2 * points.len(), 2);
+        Ok(Condensed { points: points.to_vec(), flexibility: turned, gravity })
+    }
+
+    /// Displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform
+    /// `acceleration` \[m/s²\] as body force. They are those of a body in equilibrium; what is left of
+    /// the resultant is in [`Recovered::imbalance`] and is balanced by inertia.
+    #[expect(clippy::too_many_arguments, reason = "the body's own four, and what acts on it")]
+    pub fn recover(
+        &mut self,
+        vertices: &[Vec2],
+        material: IsotropicElastic,
+        mesh: &MeshDensity,
+        points: &[Vec2],
+        forces: &[Vec2],
+        acceleration: Vec2,
+    ) -> Result<Recovered, String> {
+        if points.len() != forces.len() {
+            return Err(format!("{} forces act at {} points", forces.len(), points.len()));
+        }
+        let (placement, index, local) = self.prepare(vertices, material, mesh, points)?;
+        let shape = &self.shapes[index];
+        let scale = 1.0 / (material.young_modulus * self.width * placement.size);
+        let to_local = placement.rotation.transpose();
+        let mut loads = DMatrix::zeros(shape.rows.len(), 1);
+        for (place, force) in shape.places(&local, points)?.iter().zip(forces) {
+            let force = to_local * force * scale;
+            for &(node, value) in place {
+                (0..2).for_each(|i| loads[(2 * node + i, 0)] += value * force[i]);
+            }
+        }
+        let weight = acceleration * (material.density * placement.size.powi(2) * self.width);
+        let all = shape.displacements(loads)?;
+        let displacement: Vec<Vec2> =
+            (0..shape.mesh.nodes.len()).map(|i| Vec2::new(all[(2 * i, 0)], all[(2 * i + 1, 0)])).collect();
+        let mut imbalance = [weight.x, weight.y, 0.0];
+        for (point, force) in points.iter().zip(forces) {
+            crate::assembly::add_force(&mut imbalance, point - placement.origin, *force, 1.0);
+        }
+        let local = recovered(&shape.mesh, &shape.reference, shape.hooke, &displacement);
+        Ok(local.placed(placement.origin, placement.rotation, placement.size, material.young_modulus, imbalance))
+    }
+}

@@ -1,0 +1,301 @@
+//! One element: its map, its stiffness, its stresses. E = 1 and width 1 throughout.
+//!
+//! Displacement elements (orders 2 and 3): K = ∫ Bᵀ D B dA with (order + 1)² Gauss points, written
+//! with Lamé's constants, K_ab,ij = ∫ λ ∂_i N_a ∂_j N_b + μ (∂_j N_a ∂_i N_b + δ_ij ∇N_a · ∇N_b).
+//! In plane stress λ is replaced by ν / (1 − ν²).
+//!
+//! Order 1 (Pian & Sumihara 1984, eq. 25): σ = P β, H = ∫ Pᵀ S P dA, G = ∫ Pᵀ B dA,
+//! K = Gᵀ H⁻¹ G, β = H⁻¹ G u, with S the compliance of the plane problem and P the three uniform
+//! stresses and two linear ones, t₁ ⊗ t₁ η and t₃ ⊗ t₃ ξ, along the element's mean axes t₁, t₃.
+
+use super::quadrature::{gauss, lagrange, lagrange_slopes, lobatto};
+use crate::assembly::Plane;
+use crate::geometry::Vec2;
+use nalgebra::{DMatrix, Matrix2, Matrix3, Matrix5, SMatrix, SVector};
+
+/// Lamé's constants for E = 1, λ as the plane problem sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Hooke {
+    pub lambda: f64,
+    pub mu: f64,
+}
+
+impl Hooke {
+    pub fn new(plane: Plane, nu: f64) -> Self {
+        let lambda = match plane {
+            Plane::Strain => nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            Plane::Stress => nu / (1.0 - nu * nu),
+        };
+        Hooke { lambda, mu: 0.5 / (1.0 + nu) }
+    }
+
+    /// (σ_xx, σ_yy, σ_xy) from the displacement's gradient ∂u_i/∂x_j.
+    pub fn stress(&self, gradient: &Matrix2<f64>) -> [f64; 3] {
+        let pressure = self.lambda * gradient.trace();
+        let shear = self.mu * (gradient[(0, 1)] + gradient[(1, 0)]);
+        [pressure + 2.0 * self.mu * gradient[(0, 0)], pressure + 2.0 * self.mu * gradient[(1, 1)], shear]
+    }
+
+    /// S: (ε_xx, ε_yy, γ_xy) from (σ_xx, σ_yy, σ_xy).
+    fn compliance(&self) -> Matrix3<f64> {
+        let (l, m) = (self.lambda, self.mu);
+        let (direct, cross) = ((l + 2.0 * m) / (4.0 * m * (l + m)), -l / (4.0 * m * (l + m)));
+        Matrix3::new(direct, cross, 0.0, cross, direct, 0.0, 0.0, 0.0, 1.0 / m)
+    }
+}
+
+/// Shape functions at one point of the reference square \[−1, 1\]².
+#[derive(Debug, Clone)]
+pub struct ShapeValues {
+    /// N of each node.
+    pub values: Vec<f64>,
+    /// ∂N/∂ξ, ∂N/∂η of each node.
+    pub slopes: Vec<[f64; 2]>,
+    /// Where.
+    pub place: [f64; 2],
+    /// Weight of the quadrature; 0 where it is no quadrature point.
+    pub weight: f64,
+}
+
+/// Everything about elements of one order that does not depend on their shape.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    pub order: usize,
+    /// Nodes in one direction.
+    pub nodes: Vec<f64>,
+    /// Quadrature points, (order + 1)².
+    pub points: Vec<ShapeValues>,
+}
+
+impl Reference {
+    pub fn new(order: usize) -> Self {
+        let nodes = lobatto(order + 1).0;
+        let mut reference = Reference { order, nodes, points: Vec::new() };
+        let (places, weights) = gauss(order + 1);
+        for (eta, w) in places.iter().zip(&weights) {
+            for (xi, v) in places.iter().zip(&weights) {
+                let point = reference.at([*xi, *eta]);
+                reference.points.push(ShapeValues { weight: v * w, ..point });
+            }
+        }
+        reference
+    }
+
+    /// Shape functions at a point.
+    pub fn at(&self, place: [f64; 2]) -> ShapeValues {
+        let [along, across] = place.map(|x| (lagrange(&self.nodes, x), lagrange_slopes(&self.nodes, x)));
+        let n = self.nodes.len();
+        let pairs = || (0..n * n).map(move |k| (k % n, k / n));
+        ShapeValues {
+            values: pairs().map(|(i, j)| along.0[i] * across.0[j]).collect(),
+            slopes: pairs().map(|(i, j)| [along.1[i] * across.0[j], along.0[i] * across.1[j]]).collect(),
+            place,
+            weight: 0.0,
+        }
+    }
+}
+
+/// The bilinear map of an element: its place and Jacobian ∂x_i/∂ξ_j.
+pub fn bilinear(corners: &[Vec2; 4], [xi, eta]: [f64; 2]) -> (Vec2, Matrix2<f64>) {
+    let [a, b, c, d] = corners;
+    let place = (a * (1.0 - xi) + b * (1.0 + xi)) * ((1.0 - eta) / 4.0)
+        + (d * (1.0 - xi) + c * (1.0 + xi)) * ((1.0 + eta) / 4.0);
+    let along = ((b - a) * (1.0 - eta) + (c - d) * (1.0 + eta)) / 4.0;
+    let across = ((d - a) * (1.0 - xi) + (c - b) * (1.0 + xi)) / 4.0;
+    (place, Matrix2::from_columns(&[along, across]))
+}
+
+/// ∇N of each node, and the Jacobian's determinant.
+fn gradients(corners: &[Vec2; 4], shape: &ShapeValues) -> (Vec<Vec2>, f64) {
+    let (_, jacobian) = bilinear(corners, shape.place);
+    let determinant = jacobian.determinant();
+    let (j, d) = (jacobian, determinant);
+    let gradient = |[along, across]: &[f64; 2]| {
+        Vec2::new((j[(1, 1)] * along - j[(1, 0)] * across) / d, (j[(0, 0)] * across - j[(0, 1)] * along) / d)
+    };
+    (shape.slopes.iter().map(gradient).collect(), determinant)
+}
+
+/// ∫ N_a dA and ∫ N_a x dA of each node: the element's part of M R.
+pub fn inertia(reference: &Reference, corners: &[Vec2; 4]) -> Vec<(f64, Vec2)> {
+    let mut sums = vec![(0.0, Vec2::zeros()); reference.nodes.len().pow(2)];
+    for point in &reference.points {
+        let (place, jacobian) = bilinear(corners, point.place);
+        let area = point.weight * jacobian.determinant();
+        for (sum, value) in sums.iter_mut().zip(&point.values) {
+            sum.0 += value * area;
+            sum.1 += place * (value * area);
+        }
+    }
+    sums
+}
+
+/// The element's stiffness, rows and columns (x, y) per node.
+pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], hooke: Hooke) -> DMatrix<f64> {
+    if reference.order == 1 {
+        let hybrid = Hybrid::new(reference, corners, hooke);
+        let k = hybrid.coupling.transpose() * hybrid.stresses_from_displacements();
+        return DMatrix::from_fn(8, 8, |i, j| 0.5 * (k[(i, j)] + k[(j, i)]));
+    }
+    let count = reference.nodes.len().pow(2);
+    let mut k = DMatrix::zeros(2 * count, 2 * count);
+    let Hooke { lambda, mu } = hooke;
+    for point in &reference.points {
+        let (gradient, determinant) = gradients(corners, point);
+        let area = point.weight * determinant;
+        for b in 0..count {
+            let h = gradient[b] * area;
+            for a in 0..=b {
+                let g = gradient[a];
+                let (xx, yy) = (g.x * h.x, g.y * h.y);
+                let both = mu * (xx + yy);
+                k[(2 * a, 2 * b)] += (lambda + mu) * xx + both;
+                k[(2 * a + 1, 2 * b + 1)] += (lambda + mu) * yy + both;
+                k[(2 * a, 2 * b + 1)] += lambda * g.x * h.y + mu * g.y * h.x;
+                k[(2 * a + 1, 2 * b)] += lambda * g.y * h.x + mu * g.x * h.y;
+            }
+        }
+    }
+    k.fill_lower_triangle_with_upper_triangle();
+    k
+}
+
+/// Pian and Sumihara's element.
+struct Hybrid {
+    /// H⁻¹.
+    inverse: Matrix5<f64>,
+    /// G.
+    coupling: SMatrix<f64, 5, 8>,
+    /// t₁ ⊗ t₁ and t₃ ⊗ t₃ as (xx, yy, xy).
+    modes: [[f64; 3]; 2],
+}
+
+impl Hybrid {
+    fn new(reference: &Reference, corners: &[Vec2; 4], hooke: Hooke) -> Self {
+        let (_, middle) = bilinear(corners, [0.0, 0.0]);
+        let modes = [0, 1].map(|i| {
+            let t = middle.column(i).normalize();
+            [t[0] * t[0], t[1] * t[1], t[0] * t[1]]
+        });
+        let mut hybrid = Hybrid { inverse: Matrix5::zeros(), coupling: SMatrix::zeros(), modes };
+        let compliance = hooke.compliance();
+        let mut h = Matrix5::zeros();
+        for point in &reference.points {
+            let (gradient, determinant) = gradients(corners, point);
+            let area = point.weight * determinant;
+            let p = hybrid.field(point.place);
+            let mut b = SMatrix::<f64, 3, 8>::zeros();
+            for (a, g) in gradient.iter().enumerate() {
+                b[(0, 2 * a)] = g.x;
+                b[(1, 2 * a + 1)] = g.y;
+                b[(2, 2 * a)] = g.y;
+                b[(2, 2 * a + 1)] = g.x;
+            }
+            h += p.transpose() * compliance * p * area;
+            hybrid.coupling += p.transpose() * b * area;
+        }
+        // H is positive definite for any convex element; a failure shows as not a number in the
+        // residual that every solution is checked by.
+        hybrid.inverse = h.cholesky().map_or(Matrix5::repeat(f64::NAN), |c| c.inverse());
+        hybrid
+    }
+
+    /// P at a place.
+    fn field(&self, [xi, eta]: [f64; 2]) -> SMatrix<f64, 3, 5> {
+        let [one, three] = self.modes;
+        SMatrix::from_fn(|i, j| match j {
+            3 => one[i] * eta,
+            4 => three[i] * xi,
+            _ => f64::from(i == j),
+        })
+    }
+
+    fn stresses_from_displacements(&self) -> SMatrix<f64, 5, 8> {
+        self.inverse * self.coupling
+    }
+}
+
+/// Stresses (xx, yy, xy) at the element's nodes and at its middle, from its nodes' displacements.
+/// Orders 2 and 3: extrapolated from order × order Gauss points, where derivatives are most accurate
+/// (Barlow 1976, Int. J. Numer. Methods Eng. 10, 243–251). Order 1: the hybrid element's own.
+pub fn stresses(
+    reference: &Reference,
+    corners: &[Vec2; 4],
+    hooke: Hooke,
+    displacement: &[Vec2],
+) -> (Vec<[f64; 3]>, [f64; 3]) {
+    let grid: Vec<[f64; 2]> =
+        reference.nodes.iter().flat_map(|&eta| reference.nodes.iter().map(move |&xi| [xi, eta])).collect();
+    if reference.order == 1 {
+        let hybrid = Hybrid::new(reference, corners, hooke);
+        let u = SVector::<f64, 8>::from_fn(|i, _| displacement[i / 2][i % 2]);
+        let beta = hybrid.stresses_from_displacements() * u;
+        let at = |place: [f64; 2]| <[f64; 3]>::from(hybrid.field(place) * beta);
+        return (grid.into_iter().map(at).collect(), at([0.0, 0.0]));
+    }
+    let sampling = gauss(reference.order).0;
+    let sample = |place: [f64; 2]| {
+        let (gradient, _) = gradients(corners, &reference.at(place));
+        let sum = gradient.iter().zip(displacement).fold(Matrix2::zeros(), |sum, (g, u)| sum + u * g.transpose());
+        hooke.stress(&sum)
+    };
+    let samples: Vec<[f64; 3]> =
+        sampling.iter().flat_map(|&eta| sampling.iter().map(move |&xi| [xi, eta])).map(sample).collect();
+    let at = |[xi, eta]: [f64; 2]| {
+        let (along, across) = (lagrange(&sampling, xi), lagrange(&sampling, eta));
+        let mut stress = [0.0; 3];
+        for (k, sample) in samples.iter().enumerate() {
+            let factor = along[k % sampling.len()] * across[k / sampling.len()];
+            (0..3).for_each(|i| stress[i] += factor * sample[i]);
+        }
+        stress
+    };
+    (grid.into_iter().map(at).collect(), at([0.0, 0.0]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.2], [1.7, 1.1], [-0.1, 0.9]];
+
+    /// Each element has exactly three motions without energy, and the energy of a uniform strain is
+    /// ½ σ·ε A, for both plane states and every order, on a distorted element.
+    #[test]
+    fn rigid_motions_and_uniform_strains() {
+        let corners = CORNERS.map(Vec2::from);
+        let area = crate::geometry::area_and_centroid(&corners).0;
+        for (order, plane) in [1, 2, 3].iter().flat_map(|&p| [(p, Plane::Strain), (p, Plane::Stress)]) {
+            let (reference, hooke) = (Reference::new(order), Hooke::new(plane, 0.3));
+            let k = stiffness(&reference, &corners, hooke);
+            let values = k.clone().symmetric_eigenvalues();
+            let zero = values.iter().filter(|v| v.abs() < 1e-12).count();
+            assert_eq!((zero, values.min() > -1e-12), (3, true), "order {order}");
+            let strain = Matrix2::new(1.0, 0.4, -0.1, -0.5);
+            let place = |k: usize| {
+                let n = order + 1;
+                bilinear(&corners, [reference.nodes[k % n], reference.nodes[k / n]]).0
+            };
+            let nodes: Vec<Vec2> = (0..reference.nodes.len().pow(2)).map(|k| strain * place(k)).collect();
+            let u = nalgebra::DVector::from_fn(k.nrows(), |i, _| nodes[i / 2][i % 2]);
+            let stress = hooke.stress(&strain);
+            let energy = 0.5 * area * (stress[0] * 1.0 + stress[1] * -0.5 + stress[2] * 0.3);
+            assert!((0.5 * u.dot(&(&k * &u)) - energy).abs() < 1e-13, "order {order}");
+            let (at_nodes, middle) = stresses(&reference, &corners, hooke, &nodes);
+            for found in at_nodes.iter().chain([&middle]) {
+                assert!((0..3).all(|i| (found[i] - stress[i]).abs() < 1e-13), "order {order}: {found:?} {stress:?}");
+            }
+        }
+    }
+
+    /// The compliance inverts Hooke's law.
+    #[test]
+    fn compliance_inverts_hooke() {
+        for plane in [Plane::Strain, Plane::Stress] {
+            let hooke = Hooke::new(plane, 0.35);
+            let stress = hooke.stress(&Matrix2::new(0.3, 0.1, 0.5, -0.7));
+            let strain = hooke.compliance() * nalgebra::Vector3::from(stress);
+            assert!((strain - nalgebra::Vector3::new(0.3, -0.7, 0.6)).norm() < 1e-15);
+        }
+    }
+}

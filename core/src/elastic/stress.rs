@@ -1,0 +1,93 @@
+//! Stresses and displacements of a whole mesh, for pictures and files; nothing else needs them.
+
+use super::element::{Hooke, Reference, stresses};
+use super::mesh::Mesh;
+use crate::geometry::Vec2;
+use nalgebra::Matrix2;
+
+/// A deformed mesh with its stresses, in world axes of the undeformed placement.
+#[derive(Debug, Clone)]
+pub struct Recovered {
+    /// Places of the nodes, undeformed \[m\].
+    pub nodes: Vec<Vec2>,
+    /// Nodes of each element in VTK's order: corners, then the nodes on sides 0→1, 1→2, 3→2, 0→3,
+    /// then inner ones row by row (cell types 9, 28 and 70 for orders 1, 2, 3; type 28 takes its
+    /// sides as 0→1, 1→2, 2→3, 3→0, which is the same with one node each). Nodes of order 3 are
+    /// Gauss–Lobatto points: type 70 believes them evenly spaced, which shows between nodes only.
+    pub elements: Vec<Vec<usize>>,
+    /// Order of the elements.
+    pub order: usize,
+    /// Elastic displacement of each node, relative to the body's mean rigid motion \[m\].
+    pub displacement: Vec<Vec2>,
+    /// (σ_xx, σ_yy, σ_xy) at each node, tension positive, the mean of the elements that share it \[Pa\].
+    pub stress: Vec<[f64; 3]>,
+    /// The same in the middle of each element \[Pa\].
+    pub element_stress: Vec<[f64; 3]>,
+    /// Resultant of what was given, \[F_x, F_y, moment about the centroid\] \[N, N m\]; zero in
+    /// equilibrium.
+    pub imbalance: [f64; 3],
+}
+
+/// The places in an element's row-by-row list of nodes, in VTK's order.
+fn vtk_order(order: usize) -> Vec<usize> {
+    let (p, n) = (order, order + 1);
+    let mut places = vec![0, p, n * n - 1, n * p];
+    places.extend(1..p);
+    places.extend((1..p).map(|j| p + n * j));
+    places.extend((1..p).map(|i| i + n * p));
+    places.extend((1..p).map(|j| n * j));
+    places.extend((1..p).flat_map(|j| (1..p).map(move |i| i + n * j)));
+    places
+}
+
+/// Stresses of a mesh with E = 1.
+pub fn recovered(mesh: &Mesh, reference: &Reference, hooke: Hooke, displacement: &[Vec2]) -> Recovered {
+    let mut sums = vec![([0.0; 3], 0.0); mesh.nodes.len()];
+    let mut element_stress = Vec::with_capacity(mesh.elements.len());
+    for (index, nodes) in mesh.elements.iter().enumerate() {
+        let local: Vec<Vec2> = nodes.iter().map(|&node| displacement[node]).collect();
+        let (at_nodes, middle) = stresses(reference, &mesh.corners(index), hooke, &local);
+        for (node, stress) in nodes.iter().zip(at_nodes) {
+            (0..3).for_each(|i| sums[*node].0[i] += stress[i]);
+            sums[*node].1 += 1.0;
+        }
+        element_stress.push(middle);
+    }
+    let order = vtk_order(mesh.order);
+    Recovered {
+        nodes: mesh.nodes.clone(),
+        elements: mesh.elements.iter().map(|nodes| order.iter().map(|&k| nodes[k]).collect()).collect(),
+        order: mesh.order,
+        displacement: displacement.to_vec(),
+        // Triangles of a cut polygon list each vertex, so a node without an element cannot be.
+        stress: sums.into_iter().map(|(sum, count)| sum.map(|s| s / count)).collect(),
+        element_stress,
+        imbalance: [0.0; 3],
+    }
+}
+
+impl Recovered {
+    /// The same in the world: `self` has unit size and E = 1.
+    pub(super) fn placed(
+        self,
+        origin: Vec2,
+        rotation: Matrix2<f64>,
+        size: f64,
+        young_modulus: f64,
+        imbalance: [f64; 3],
+    ) -> Self {
+        let turn = |stress: [f64; 3]| {
+            let [xx, yy, xy] = stress.map(|s| s * young_modulus);
+            let turned = rotation * Matrix2::new(xx, xy, xy, yy) * rotation.transpose();
+            [turned[(0, 0)], turned[(1, 1)], turned[(0, 1)]]
+        };
+        Recovered {
+            nodes: self.nodes.iter().map(|x| origin + rotation * x * size).collect(),
+            displacement: self.displacement.iter().map(|u| rotation * u * size).collect(),
+            stress: self.stress.into_iter().map(turn).collect(),
+            element_stress: self.element_stress.into_iter().map(turn).collect(),
+            imbalance,
+            ..self
+        }
+    }
+}
