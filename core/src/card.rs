@@ -92,6 +92,18 @@ pub fn card(kind: PluginKind, tag: &str) -> Option<&'static Card> {
     inventory::iter::<Card>.into_iter().find(|card| card.kind == kind && card.tag == tag)
 }
 
+/// The cards that may stand in the place of one kind: `[solver] solver = …` names a limit solver or a
+/// path solver. Sorted by kind and tag.
+pub fn candidates(kind: PluginKind) -> Vec<&'static Card> {
+    let place = |of: PluginKind| if of == PluginKind::PathSolver { PluginKind::LimitSolver } else { of };
+    cards().into_iter().filter(|card| place(card.kind) == place(kind)).collect()
+}
+
+/// The card with this tag among those that may stand in the place of one kind.
+pub fn candidate(kind: PluginKind, tag: &str) -> Option<&'static Card> {
+    candidates(kind).into_iter().find(|card| card.tag == tag)
+}
+
 /// The name nearest to `wrong` among `names`, if any is near enough to be meant.
 pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     names

@@ -65,6 +65,10 @@ pub enum PluginKind {
     Scene,
     /// Limit analysis: `[solver] solver = …`.
     LimitSolver,
+    /// Paths of loads: `[solver] solver = …`.
+    PathSolver,
+    /// How a path goes on: `[solver] continuation = { strategy = … }`.
+    Continuation,
     /// What is done with the cases: `kind = …`.
     StudyKind,
     /// A kind of result file.
@@ -73,11 +77,13 @@ pub enum PluginKind {
 
 impl PluginKind {
     /// All kinds, in the order of `voussoir list`.
-    pub const ALL: [PluginKind; 6] = [
+    pub const ALL: [PluginKind; 8] = [
         PluginKind::InterfaceLaw,
         PluginKind::BulkMaterial,
         PluginKind::Scene,
         PluginKind::LimitSolver,
+        PluginKind::PathSolver,
+        PluginKind::Continuation,
         PluginKind::StudyKind,
         PluginKind::Writer,
     ];
@@ -87,7 +93,8 @@ impl PluginKind {
         match self {
             PluginKind::InterfaceLaw | PluginKind::BulkMaterial => "law",
             PluginKind::Scene => "scene",
-            PluginKind::LimitSolver => "solver",
+            PluginKind::LimitSolver | PluginKind::PathSolver => "solver",
+            PluginKind::Continuation => "strategy",
             PluginKind::StudyKind => "kind",
             PluginKind::Writer => "writer",
         }
@@ -100,6 +107,8 @@ impl PluginKind {
             PluginKind::BulkMaterial => "bulk material",
             PluginKind::Scene => "scene",
             PluginKind::LimitSolver => "limit solver",
+            PluginKind::PathSolver => "path solver",
+            PluginKind::Continuation => "continuation strategy",
             PluginKind::StudyKind => "study kind",
             PluginKind::Writer => "writer",
         }
@@ -112,6 +121,8 @@ impl PluginKind {
             PluginKind::BulkMaterial => "materials",
             PluginKind::Scene => "scenes",
             PluginKind::LimitSolver => "solvers",
+            PluginKind::PathSolver => "path_solvers",
+            PluginKind::Continuation => "strategies",
             PluginKind::StudyKind => "kinds",
             PluginKind::Writer => "writers",
         }

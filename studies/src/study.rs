@@ -12,8 +12,8 @@ use crate::loads::{LOAD, Load, place};
 use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
 use std::sync::Arc;
-use voussoir_core::assembly::{Assembly, Bond, Catalogue, Stage, Target};
-use voussoir_core::card::{Capability, Card, card, cards_of};
+use voussoir_core::assembly::{Assembly, Bond, Catalogue, Joint, Settlement, Stage, Target};
+use voussoir_core::card::{Capability, Card, candidate, candidates, card, cards_of};
 use voussoir_core::geometry::Vec2;
 use voussoir_core::interface::InterfaceLaw;
 use voussoir_core::issue::Issue;
@@ -96,8 +96,8 @@ pub static SOLVER: &[Parameter] = &[
     key("kinematics", Shape::Choice(&["small", "finite"]), Need::Default("\"small\""), "small or finite displacements"),
     key(
         "continuation",
-        Shape::Free,
-        Need::Optional("none is needed"),
+        Shape::Plugin(PluginKind::Continuation),
+        Need::Optional("the solver's own"),
         "strategy of path solvers: { strategy = \"arc_length\" }",
     ),
     Parameter::number(
@@ -189,6 +189,12 @@ pub struct SolverChoice {
     pub tolerance: f64,
     /// Small or finite displacements.
     pub kinematics: Kinematics,
+    /// Continuation strategy, as its plug-in reads it.
+    pub continuation: Option<Json>,
+    /// How far behind a peak: displacement of the load \[m\].
+    pub stop_displacement: Option<f64>,
+    /// At which factor a falling branch ends.
+    pub stop_factor: Option<f64>,
 }
 
 /// One case, ready to be solved.
@@ -484,10 +490,10 @@ fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Asse
             let message = format!("the search would go from factor_min = {least} to factor_max = {greatest}");
             builder.wrong(&join(&at, named), message, "factor_min must be at most factor_max");
         }
-        if stage["settlement"].as_array().is_some_and(|list| !list.is_empty()) && !offers(Capability::Settlement) {
-            let help = "remove the settlement; limit analysis knows loads only";
-            builder.wrong(&join(&at, "settlement"), "no registered solver offers settlements", help);
-        }
+        let settlements = match assembly {
+            Some(assembly) => build_settlements(builder, &stage["settlement"], assembly, &at),
+            None => Vec::new(),
+        };
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         for (number, load) in stage["loads"].as_array().into_iter().flatten().enumerate() {
             let path = format!("{at}.loads.{number}");
@@ -522,6 +528,7 @@ fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Asse
             && builder.mistakes.len() == before
             && forces.iter().all(|force| force.force.norm() == 0.0)
             && accelerations.iter().all(|acceleration| acceleration.norm() == 0.0)
+            && settlements.is_empty()
         {
             let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
             builder.wrong(&join(&at, "until"), "\"collapse\" needs a load to raise, but this stage has none", help);
@@ -538,7 +545,7 @@ fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Asse
             gravity,
             forces,
             accelerations,
-            settlements: Vec::new(),
+            settlements,
             target,
             factor_min: least,
             factor_max: greatest,
@@ -547,8 +554,32 @@ fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Asse
     Some(out)
 }
 
+/// The movements of supports of a stage.
+fn build_settlements(builder: &mut Builder<'_>, list: &Json, assembly: &Assembly, at: &str) -> Vec<Settlement> {
+    let mut out = Vec::new();
+    for (number, entry) in list.as_array().into_iter().flatten().enumerate() {
+        let support = entry["support"].as_str().unwrap_or_default();
+        let fixed: Vec<&str> = assembly.bodies.iter().filter(|b| b.fixed).map(|b| b.name.as_str()).collect();
+        let Some(body) = assembly.body(support).filter(|body| assembly.bodies[*body].fixed) else {
+            let path = format!("{at}.settlement.{number}.support");
+            let help = suggest(support, &fixed, "supports here");
+            builder.wrong(&path, format!("there is no support \"{support}\""), help);
+            continue;
+        };
+        let joint = assembly.joints.iter().find(|joint| joint.minus == body || joint.plus == body);
+        let number = |key: &str, i: usize| entry[key][i].as_f64().unwrap_or(0.0);
+        out.push(Settlement {
+            body,
+            displacement: Vec2::new(number("displacement", 0), number("displacement", 1)),
+            rotation: entry["rotation"].as_f64().unwrap_or(0.0),
+            about: joint.map_or(Vec2::zeros(), Joint::middle),
+        });
+    }
+    out
+}
+
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
-    cards_of(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
+    candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
 }
 
 fn offers(capability: Capability) -> bool {
@@ -566,7 +597,7 @@ fn choose_solver(
     assembly: Option<&Assembly>,
 ) -> Option<SolverChoice> {
     let tag = solver["solver"].as_str()?.to_string();
-    let chosen = card(PluginKind::LimitSolver, &tag);
+    let chosen = candidate(PluginKind::LimitSolver, &tag);
     let kinematics = if solver["kinematics"] == "finite" { Kinematics::Finite } else { Kinematics::Small };
     let finite = |card: &Card| card.provides.contains(&Capability::FiniteDisplacements);
     if kinematics == Kinematics::Finite && !chosen.map_or_else(|| offers(Capability::FiniteDisplacements), finite) {
@@ -611,7 +642,15 @@ fn choose_solver(
     let mut table = solver.as_object()?.clone();
     table.retain(|key, _| key == "solver" || own(key));
     let tolerance = solver["tolerance"].as_f64().unwrap_or(1e-9);
-    Some(SolverChoice { tag, table: Json::Object(table), tolerance, kinematics })
+    Some(SolverChoice {
+        tag,
+        table: Json::Object(table),
+        tolerance,
+        kinematics,
+        continuation: solver.get("continuation").cloned(),
+        stop_displacement: solver["stop"]["displacement"].as_f64(),
+        stop_factor: solver["stop"]["factor"].as_f64(),
+    })
 }
 
 /// Which kind of law a capability is asked of.

@@ -42,7 +42,7 @@ impl Watch {
         let mut wrench = vec![[0.0; 3]; problem.bodies.len()];
         let mut size = 0.0;
         let mut gaps = vec![[0.0; 2]; problem.contacts.len()];
-        for (drive, factor) in problem.drives.iter().zip(&state.applied) {
+        for (drive, factor) in problem.drives.iter().zip(problem.applied(state.drive, state.factor)) {
             for (sum, add) in wrench.iter_mut().zip(problem.wrenches(&drive.loading)) {
                 (0..3).for_each(|i| sum[i] += factor * add[i]);
                 size += (factor * add[0].hypot(add[1])).abs();

@@ -24,8 +24,6 @@ pub struct PathState {
     pub drive: usize,
     /// λ of that drive.
     pub factor: f64,
-    /// How much of each drive's loading is applied.
-    pub applied: Vec<f64>,
     /// (r_n, r_t) of every contact point \[N\].
     pub force: Vec<[f64; 2]>,
     /// (g_n, g_t) of every contact point, initial gap included \[m\].
@@ -144,13 +142,16 @@ pub trait PathSolver: Debug + Send + Sync {
 }
 
 /// The increment of a step as a continuation strategy sees it: all zero at the last converged state.
+/// Units: force F, the size of the loads; displacement U = F × mean compliance; factor Λ, with which
+/// the load that grows has the size F; energy F U. So nothing here depends on the unit system.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Increment {
-    /// Δλ, divided by the strategy's unit of factor.
+    /// Δλ in its unit Λ.
     pub factor: f64,
     /// Increment of the work-conjugate displacement of the load, in the unit of displacement.
     pub displacement: f64,
-    /// Euclidean norm of the increments of all rigid motions, in the unit of displacement.
+    /// Root mean square of the increments of all rigid motions and gaps, in the unit of displacement
+    /// (gaps, so that a body that the ground holds but that deforms counts too).
     pub motion: f64,
     /// Increment of dissipated energy, in the unit of energy.
     pub dissipation: f64,
@@ -165,11 +166,14 @@ pub struct Constraint {
     pub derivative: Increment,
 }
 
-/// How the next point of a path is chosen, by `[solver] continuation = { strategy = … }`.
+/// How the next point of a path is chosen, by `[solver] continuation = { strategy = … }`. Pure: the
+/// solver keeps the length of the step and lets it grow and shrink.
 #[typetag::serde(tag = "strategy")]
 pub trait Continuation: Debug + Send + Sync {
-    /// The constraint of a step.
-    fn constraint(&self, increment: &Increment) -> Constraint;
+    /// The constraint of a step. `previous` is the increment of the last converged step of this
+    /// drive, `None` before the first: a strategy may change what it measures between two steps,
+    /// never within one.
+    fn constraint(&self, increment: &Increment, previous: Option<&Increment>) -> Constraint;
 
     /// Whether λ may fall during a step.
     fn passes_limit_points(&self) -> bool;
@@ -177,5 +181,17 @@ pub trait Continuation: Debug + Send + Sync {
     /// Whether it steps at all, or goes exactly from event to event.
     fn exact_events(&self) -> bool {
         false
+    }
+
+    /// Length of a drive's first step: the share of the unit load (of size F) that an elastic
+    /// structure would take up during it.
+    fn first_step(&self) -> f64 {
+        0.1
+    }
+
+    /// Greatest increment of a step in its `motion`, as a share of the scene's length; infinite
+    /// where only the solver bounds it.
+    fn largest_step(&self) -> f64 {
+        f64::INFINITY
     }
 }

@@ -333,6 +333,16 @@ impl PathProblem {
         self.bodies.iter().any(|body| body.flexibility.is_some()) || self.contacts.iter().any(|c| c.compliance[0] > 0.0)
     }
 
+    /// How much of each drive's loading is applied at a factor of one of them.
+    pub fn applied(&self, drive: usize, factor: f64) -> Vec<f64> {
+        let reached = |(index, d): (usize, &Drive)| match (index.cmp(&drive), d.end) {
+            (std::cmp::Ordering::Less, DriveEnd::Factor(end) | DriveEnd::Collapse(end)) => end - d.start,
+            (std::cmp::Ordering::Equal, _) => factor - d.start,
+            (std::cmp::Ordering::Greater, _) => 0.0,
+        };
+        self.drives.iter().enumerate().map(reached).collect()
+    }
+
     /// Wrench of a loading on each body about its pole, undeformed positions \[N, N m\].
     pub fn wrenches(&self, loading: &Loading) -> Vec<[f64; 3]> {
         let mut wrenches: Vec<[f64; 3]> = self
@@ -417,10 +427,10 @@ impl PathProblem {
                 }
             }
         }
-        for (drive, factor) in self.drives.iter().zip(&state.applied) {
+        for (drive, factor) in self.drives.iter().zip(self.applied(state.drive, state.factor)) {
             for (body, slot, _, f) in &drive.loading.forces {
                 if let Some(slot) = slot {
-                    forces[*body][*slot] += f * *factor;
+                    forces[*body][*slot] += f * factor;
                 }
             }
         }

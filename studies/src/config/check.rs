@@ -5,7 +5,7 @@ use crate::config::document::{Node, Origin, Table, Value, parse_value};
 use crate::config::overlay::join;
 use crate::config::report::{Mistake, any_of, suggest};
 use serde_json::{Map, Value as Json};
-use voussoir_core::card::{Card, card, cards_of};
+use voussoir_core::card::{Card, candidate, candidates};
 use voussoir_core::schema::{Need, Parameter, PluginKind, Shape, Variant};
 use voussoir_core::units::{Quantity, STANDARD_GRAVITY};
 
@@ -38,6 +38,11 @@ pub struct Checker<'a> {
 /// Keys that every plug-in of a kind has besides those of its card.
 pub fn common_parameters(kind: PluginKind) -> &'static [Parameter] {
     if kind == PluginKind::LimitSolver { crate::study::SOLVER } else { &[] }
+}
+
+/// What a kind is called in messages: limit and path solvers share one place.
+fn word_for(kind: PluginKind) -> &'static str {
+    if kind == PluginKind::LimitSolver { "solver" } else { kind.describe() }
 }
 
 /// Words that the tag may be besides the registered tags.
@@ -376,14 +381,14 @@ impl<'a> Checker<'a> {
 
     fn plugin(&mut self, node: &Node, table: &Table, kind: PluginKind, key: &str) -> Option<Json> {
         let tag_key = kind.tag_key();
-        let registered = cards_of(kind);
+        let registered = candidates(kind);
         let words = common_words(kind);
         let tags: Vec<_> = words.iter().copied().chain(registered.iter().map(|card| card.tag)).collect();
         let tag = match (table.get(tag_key), words.first()) {
             (None, Some(word)) => word,
-            _ => self.tag(node, table, tag_key, &tags, kind.describe(), key)?,
+            _ => self.tag(node, table, tag_key, &tags, word_for(kind), key)?,
         };
-        let chosen: Option<&Card> = card(kind, tag);
+        let chosen: Option<&Card> = candidate(kind, tag);
         let own: &[Parameter] = chosen.map_or(&[], |card| card.parameters);
         let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
         let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
@@ -406,7 +411,7 @@ impl<'a> Checker<'a> {
                     }
                 }
                 let help = suggest(&entry.key, &names, "keys here");
-                let message = format!("is not a key of {} \"{tag}\", nor of any other", kind.describe());
+                let message = format!("is not a key of {} \"{tag}\", nor of any other", word_for(kind));
                 self.wrong_with_help(&entry.origin, &path, message, help);
             } else {
                 let before = self.mistakes.len();
@@ -420,7 +425,7 @@ impl<'a> Checker<'a> {
                         self.mistakes.truncate(wrong);
                     }
                 }
-                self.unused.push(Unused { key: path, by: format!("{} \"{tag}\"", kind.describe()) });
+                self.unused.push(Unused { key: path, by: format!("{} \"{tag}\"", word_for(kind)) });
             }
             skip.push(&entry.key);
         }

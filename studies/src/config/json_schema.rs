@@ -3,19 +3,25 @@
 use crate::config::check::{common_parameters, common_words};
 use crate::config::document::{Origin, parse_value};
 use serde_json::{Map, Value as Json, json};
-use voussoir_core::card::{Card, cards_of};
+use voussoir_core::card::{Card, candidates};
 use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
 use voussoir_core::units::Quantity;
 
 /// The schema of study files.
 pub fn json_schema() -> Json {
     let mut definitions = Map::new();
-    for kind in [PluginKind::InterfaceLaw, PluginKind::BulkMaterial, PluginKind::Scene, PluginKind::LimitSolver] {
+    for kind in [
+        PluginKind::InterfaceLaw,
+        PluginKind::BulkMaterial,
+        PluginKind::Scene,
+        PluginKind::LimitSolver,
+        PluginKind::Continuation,
+    ] {
         let mut choices = Vec::new();
         for word in common_words(kind) {
             choices.push(plugin(&mut definitions, kind, word, "chosen by the program", &[]));
         }
-        for Card { tag, summary, parameters, .. } in cards_of(kind) {
+        for Card { tag, summary, parameters, .. } in candidates(kind) {
             choices.push(plugin(&mut definitions, kind, tag, summary, parameters));
         }
         definitions.insert(name_of(kind), json!({ "oneOf": choices }));
@@ -35,7 +41,7 @@ fn plugin(defs: &mut Map<String, Json>, kind: PluginKind, tag: &str, summary: &s
     let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
     let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
     // Keys of other plug-ins of the kind are accepted, so that swapping one is a single line.
-    for other in cards_of(kind).iter().flat_map(|card| card.parameters) {
+    for other in candidates(kind).iter().flat_map(|card| card.parameters) {
         if parameters.iter().all(|p| p.name != other.name) {
             parameters.push(other.optional("not used here"));
         }

@@ -27,7 +27,16 @@ fn catalogue() -> Catalogue {
 }
 
 fn stage(name: &str, gravity: Option<Vec2>, forces: Vec<PointForce>, target: Target) -> Stage {
-    Stage { name: name.into(), gravity, forces, accelerations: vec![], settlements: vec![], target, factor_min: 0.0, factor_max: 1e9 }
+    Stage {
+        name: name.into(),
+        gravity,
+        forces,
+        accelerations: vec![],
+        settlements: vec![],
+        target,
+        factor_min: 0.0,
+        factor_max: 1e9,
+    }
 }
 
 /// A segmental arch of the Strathmashie bridge's size (thickness 0.6 m) between shapeless supports.

@@ -127,11 +127,6 @@ impl Scene for Arch {
             joints: (0..=count).map(joint).collect(),
             bodies,
             width: self.width,
-            mesh: self.mesh.as_ref().map_or_else(Default::default, |m| voussoir_core::elastic::MeshDensity {
-                elements: m.elements,
-                order: m.order,
-                grading: m.grading,
-            }),
             plane: self.plane.into(),
             mesh: density(self.mesh),
             arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),

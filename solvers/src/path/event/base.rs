@@ -101,11 +101,6 @@ impl Base {
         right
     }
 
-    /// Solves with the factorised matrix.
-    pub fn solve(&self, right: Vec<f64>) -> Option<Vec<f64>> {
-        Some(self.lu.solve(&[right], 2)?.swap_remove(0))
-    }
-
     /// Makes sure that the responses to the rows of these points are known. `solves` counts.
     pub fn respond(&mut self, system: &System, points: &[usize], solves: &mut u64) -> Option<()> {
         let new: Vec<usize> = points.iter().copied().filter(|c| !self.columns.contains_key(c)).collect();

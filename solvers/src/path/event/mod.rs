@@ -3,6 +3,7 @@
 //! Between events everything is linear. At an event the points at the verge of a change pose a rate
 //! problem ([`rate`]); its solution is the direction of the next piece of the path. λ is no
 //! parameter of the path: it may stand still (a mechanism) or fall.
+#![doc = include_str!("event_path.md")]
 
 mod base;
 mod energy;
@@ -12,7 +13,9 @@ mod system;
 mod trace;
 
 use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
+use voussoir_core::schema::PluginKind;
 
 /// The exact path of piecewise linear problems.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -36,5 +39,25 @@ impl PathSolver for EventPath {
             return Some("all blocks are rigid and no joint is compliant: there is no path before the collapse; limit analysis answers this scene".into());
         }
         None
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::PathSolver,
+        tag: "event_path",
+        summary: "exact path of elastic blocks and facet laws, small displacements, from event to event, to rounding",
+        parameters: &[],
+        provides: &[Capability::Settlement],
+        requires: &[Capability::Facets],
+        sources: &[
+            "Klarbring 1990, Ingenieur-Archiv 60, 529-541 (the frictional rate problem)",
+            "Maier 1970, Meccanica 5, 54-66 (piecewise linear laws as complementarity problems)",
+            "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
+            "Lemke 1965, Management Science 11, 681-689",
+        ],
+        file: file!(),
+        page: include_str!("event_path.md"),
+        check: no_further_check,
     }
 }

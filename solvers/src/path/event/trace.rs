@@ -719,7 +719,6 @@ impl<'a> Tracer<'a> {
         PathState {
             drive: self.drive,
             factor: self.factor,
-            applied: self.applied.clone(),
             gap,
             motion: self.motion(),
             stored: self.last.as_ref().map_or(0.0, |(s, _)| s.stored),

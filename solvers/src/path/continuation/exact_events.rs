@@ -1,0 +1,43 @@
+//! `exact_events`: no steps at all, from event to event.
+#![doc = include_str!("exact_events.md")]
+
+use serde::{Deserialize, Serialize};
+use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::path::{Constraint, Continuation, Increment};
+use voussoir_core::schema::PluginKind;
+
+/// The path is piecewise linear: the solver knows how far each piece goes.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExactEvents {}
+
+#[typetag::serde(name = "exact_events")]
+impl Continuation for ExactEvents {
+    /// Not asked for: zero.
+    fn constraint(&self, _increment: &Increment, _previous: Option<&Increment>) -> Constraint {
+        Constraint::default()
+    }
+
+    fn passes_limit_points(&self) -> bool {
+        true
+    }
+
+    fn exact_events(&self) -> bool {
+        true
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::Continuation,
+        tag: "exact_events",
+        summary: "from event to event of a piecewise linear path, without steps",
+        parameters: &[],
+        provides: &[],
+        requires: &[],
+        sources: &["Cocchetti & Maier 2003, Int. J. Numer. Meth. Engng 58 (piecewise linear paths as rate complementarity problems)"],
+        file: file!(),
+        page: include_str!("exact_events.md"),
+        check: no_further_check,
+    }
+}

@@ -1,0 +1,134 @@
+//! What is written down at converged states: energies, events, the state as others read it.
+
+use super::kinematics::Slopes;
+use super::law::Regime;
+use super::model::{Model, State};
+use voussoir_core::geometry::Vec2;
+use voussoir_core::interface::FacetMode;
+use voussoir_core::path::{Happening, PathEvent, PathState};
+
+/// Energies so far \[J\].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ledger {
+    pub dissipated: f64,
+    pub work: f64,
+}
+
+/// What a contact point does, as events see it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Doing {
+    Sticks,
+    Open,
+    Slides(i8),
+    Crushes,
+}
+
+fn doing(model: &Model, contact: usize, regime: Regime, gap: [f64; 2]) -> Doing {
+    let Some(law) = model.law(contact) else { return Doing::Sticks };
+    let by = |i: usize| match law.facets[i].mode {
+        FacetMode::Opening => Doing::Open,
+        FacetMode::Crushing => Doing::Crushes,
+        FacetMode::Sliding => Doing::Slides(if law.facets[i].flow[1] < 0.0 { 1 } else { -1 }),
+    };
+    match regime {
+        Regime::Stuck => Doing::Sticks,
+        Regime::Facet(i) => by(i as usize),
+        Regime::Corner(_) if law.opens(regime) => Doing::Open,
+        Regime::Corner(k) => by(law.pair(k, gap).0[0]),
+    }
+}
+
+/// Events of a step, in the order of the contact points.
+pub(super) fn events(model: &Model, drive: usize, start: &State, state: &State) -> Vec<PathEvent> {
+    let mut events = Vec::new();
+    for contact in 0..state.gap.len() {
+        if start.regime[contact] == state.regime[contact] {
+            continue;
+        }
+        let gap = model.step_gap(start, state, contact);
+        let before = doing(model, contact, start.regime[contact], gap);
+        let after = doing(model, contact, state.regime[contact], gap);
+        if before == after {
+            continue;
+        }
+        let what = match (before, after) {
+            (_, Doing::Open) => Happening::Opens,
+            (Doing::Open, Doing::Sticks) => Happening::Closes,
+            (_, Doing::Slides(1)) => Happening::SlipsForward,
+            (_, Doing::Slides(_)) => Happening::SlipsBackward,
+            (_, Doing::Crushes) => Happening::Crushes,
+            (Doing::Crushes, Doing::Sticks) => Happening::Unloads,
+            (_, Doing::Sticks) => Happening::Sticks,
+        };
+        events.push(PathEvent { drive, factor: state.factor, contact, what });
+    }
+    events
+}
+
+impl Ledger {
+    /// Adds a step: work of loads and reactions of settled supports and dissipation, both by the
+    /// trapezoidal rule, exact where forces change linearly during the step.
+    pub fn add(&mut self, model: &Model, start: &State, state: &State, slopes: [&Slopes; 2]) {
+        for contact in 0..state.gap.len() {
+            let Some(law) = model.law(contact) else { continue };
+            let (kept, _) = law.irreversible(state.regime[contact], model.step_gap(start, state, contact));
+            for k in 0..2 {
+                self.dissipated -= 0.5 * (start.force[contact][k] + state.force[contact][k]) * kept[k];
+            }
+        }
+        let problem = model.problem;
+        let place = |state: &State, slopes: &Slopes, body: usize, slot: Option<usize>, point: Vec2| {
+            let rigid = model.kinematics.rigid(body, point, &state.motion);
+            match slot {
+                Some(slot) if !slopes.deformation[body].is_empty() => {
+                    let v = &slopes.deformation[body];
+                    let theta = if model.finite() { state.motion[body][2] } else { 0.0 };
+                    rigid + nalgebra::Rotation2::new(theta) * Vec2::new(v[2 * slot], v[2 * slot + 1])
+                }
+                _ => rigid,
+            }
+        };
+        let loads = [model.loaded.at(start.factor), model.loaded.at(state.factor)];
+        for ((before, loading), (after, _)) in loads[0].parts.iter().zip(&loads[1].parts) {
+            let mean = 0.5 * (before + after);
+            for &(body, slot, point, force) in &loading.forces {
+                let moved = place(state, slopes[1], body, slot, point) - place(start, slopes[0], body, slot, point);
+                self.work += mean * force.dot(&moved);
+            }
+            for (body, b) in problem.bodies.iter().enumerate() {
+                let (from, to) = (start.motion[body], state.motion[body]);
+                self.work += mean * b.mass * loading.acceleration.dot(&Vec2::new(to[0] - from[0], to[1] - from[1]));
+            }
+        }
+        for (body, _) in problem.bodies.iter().enumerate().filter(|(_, b)| b.held) {
+            for k in 0..3 {
+                let reaction = -0.5 * (slopes[0].balance[body][k] + slopes[1].balance[body][k]);
+                self.work += reaction * (state.motion[body][k] - start.motion[body][k]);
+            }
+        }
+    }
+
+    /// The state as others read it.
+    pub fn recorded(&self, model: &Model, drive: usize, state: &State, slopes: &Slopes) -> PathState {
+        let mut stored = slopes.stored;
+        for contact in 0..state.gap.len() {
+            let Some(law) = model.law(contact) else { continue };
+            // A tensile strength that opens holds its force reversibly.
+            let gap = [state.gap[contact][0] - state.slip[contact][0], 0.0];
+            if law.opens(state.regime[contact]) && state.force[contact][0] < 0.0 {
+                stored -= state.force[contact][0] * gap[0].max(0.0);
+            }
+        }
+        PathState {
+            drive,
+            factor: state.factor,
+            force: state.force.clone(),
+            gap: state.gap.clone(),
+            motion: state.motion.clone(),
+            stored,
+            dissipated: self.dissipated,
+            work: self.work,
+            displacement: model.displacement(&state.motion),
+        }
+    }
+}

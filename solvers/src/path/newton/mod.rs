@@ -1,0 +1,66 @@
+//! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
+#![doc = include_str!("newton_path.md")]
+
+mod kinematics;
+mod law;
+mod ledger;
+mod model;
+mod trace;
+
+use super::continuation::arc_length::ArcLength;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
+use voussoir_core::schema::PluginKind;
+
+/// Steps with Newton's method.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NewtonPath {}
+
+#[typetag::serde(name = "newton_path")]
+impl PathSolver for NewtonPath {
+    fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
+        if let Some(why) = self.refuses(problem, settings) {
+            return trace::stalled(why);
+        }
+        let strategy = settings.continuation.clone();
+        let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
+        trace::trace(problem, settings, strategy, observer)
+    }
+
+    fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
+        if settings.continuation.as_ref().is_some_and(|c| c.exact_events()) {
+            return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
+        }
+        if problem.drives.is_empty() {
+            return Some("nothing is loaded".into());
+        }
+        (!problem.deforms()).then(|| {
+            "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them"
+                .into()
+        })
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::PathSolver,
+        tag: "newton_path",
+        summary: "steps by semismooth Newton: any facets, small or finite displacements, peaks and falling branches",
+        parameters: &[],
+        provides: &[Capability::FiniteDisplacements, Capability::Settlement],
+        requires: &[Capability::Facets],
+        sources: &[
+            "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
+            "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",
+            "Crisfield 1981, Computers & Structures 13, 55-62",
+            "Wriggers 2006, Computational Contact Mechanics, Springer",
+            "Judice & Pires 1994, Computers & Operations Research 21, 587-596",
+        ],
+        file: file!(),
+        page: include_str!("newton_path.md"),
+        check: no_further_check,
+    }
+}

@@ -1,0 +1,661 @@
+//! Following the drives: load steps, continuation, peaks, and what ends a path.
+
+use super::kinematics::Slopes;
+use super::law::Regime;
+use super::ledger::{Ledger, events};
+use super::model::{Control, Loaded, Model, Rate, Refusal, State, load_size};
+use std::sync::Arc;
+use voussoir_core::geometry::Vec2;
+use voussoir_core::limit::{Counters, Status};
+use voussoir_core::path::{
+    Continuation, Drive, DriveEnd, Increment, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
+};
+
+/// Greatest number of steps of a drive.
+const MOST_STEPS: u64 = 5000;
+
+/// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
+/// scene's size.
+const LARGEST_FINITE_STEP: f64 = 0.002;
+
+/// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
+const LARGEST_SLIP: f64 = 0.05;
+
+/// How a drive ended.
+enum Outcome {
+    /// At its factor.
+    Reached,
+    /// The path ends here.
+    Ended,
+}
+
+/// A peak or limit point.
+struct Peak {
+    state: PathState,
+    factor: f64,
+    motion: Option<Vec<[f64; 3]>>,
+}
+
+pub(super) struct Tracer<'a, 'o> {
+    model: Model<'a>,
+    settings: &'a PathSettings,
+    strategy: Arc<dyn Continuation>,
+    observer: &'o mut dyn PathObserver,
+    ledger: Ledger,
+    slopes: Slopes,
+    events: Vec<PathEvent>,
+    notes: Vec<String>,
+    state: State,
+    recorded: PathState,
+    drive: usize,
+    status: Status,
+    motion: Option<Vec<[f64; 3]>>,
+    ray: Option<Vec<[f64; 2]>>,
+    peak: Option<Peak>,
+    stopped: bool,
+}
+
+/// Follows all drives.
+pub(super) fn trace(
+    problem: &PathProblem,
+    settings: &PathSettings,
+    strategy: Arc<dyn Continuation>,
+    observer: &mut dyn PathObserver,
+) -> PathAnswer {
+    let model = match Model::new(problem, settings.finite) {
+        Ok(model) => model,
+        Err(why) => return stalled(why),
+    };
+    let state = model.undeformed();
+    let slopes = model.slopes(&state);
+    let recorded = Ledger::default().recorded(&model, 0, &state, &slopes);
+    let mut tracer = Tracer {
+        model,
+        settings,
+        strategy,
+        observer,
+        ledger: Ledger::default(),
+        slopes,
+        events: Vec::new(),
+        notes: Vec::new(),
+        state,
+        recorded,
+        drive: 0,
+        status: Status::Stalled,
+        motion: None,
+        ray: None,
+        peak: None,
+        stopped: false,
+    };
+    tracer.run(problem);
+    tracer.answer()
+}
+
+/// An answer that says only why there is none.
+pub(super) fn stalled(why: String) -> PathAnswer {
+    PathAnswer {
+        status: Status::Stalled,
+        drive: 0,
+        factor: None,
+        state: PathState::default(),
+        last: None,
+        motion: None,
+        unique: None,
+        ray: None,
+        events: Vec::new(),
+        counters: Counters::new(),
+        notes: vec![why],
+    }
+}
+
+impl<'a> Tracer<'a, '_> {
+    fn run(&mut self, problem: &'a PathProblem) {
+        let mut earlier = Vec::new();
+        for (index, drive) in problem.drives.iter().enumerate() {
+            self.drive = index;
+            self.state.factor = drive.start;
+            self.model.load(Loaded { earlier: earlier.clone(), growing: &drive.loading, start: drive.start });
+            self.slopes = self.model.slopes(&self.state);
+            let outcome = match drive.end {
+                DriveEnd::Factor(factor) => self.reach(drive, factor),
+                DriveEnd::Collapse(most) => self.follow(drive, most),
+            };
+            match outcome {
+                Outcome::Reached => earlier.push((self.state.factor - drive.start, &drive.loading)),
+                Outcome::Ended => {
+                    if drive.gravity && matches!(self.status, Status::Collapse | Status::LimitPoint) {
+                        self.notes.push(format!(
+                            "the change of gravity is carried up to {:.9} of its value only",
+                            self.peak.as_ref().map_or(self.state.factor, |p| p.factor)
+                        ));
+                        self.status = Status::NoEquilibrium;
+                    }
+                    return;
+                }
+            }
+        }
+        self.status = if let Some(peak) = &self.peak {
+            let _ = peak;
+            Status::LimitPoint
+        } else {
+            Status::Stands
+        };
+    }
+
+    fn answer(self) -> PathAnswer {
+        let mut counters = self.model.counters;
+        for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
+            counters.entry(name.into()).or_default();
+        }
+        let mut notes = self.notes;
+        let r = &self.recorded;
+        let (balance, size) = (r.work - r.stored - r.dissipated, r.work.abs() + r.stored.abs() + r.dissipated.abs());
+        if size > 0.0 {
+            notes.push(format!(
+                "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
+                balance / size
+            ));
+        }
+        let (state, last, factor, motion) = match self.peak {
+            Some(peak) => (peak.state, Some(self.recorded), Some(peak.factor), peak.motion.or(self.motion)),
+            None => {
+                let factor = matches!(
+                    self.status,
+                    Status::Collapse | Status::LimitPoint | Status::Stands | Status::NoEquilibrium
+                )
+                .then_some(self.state.factor);
+                (self.recorded, None, factor, self.motion)
+            }
+        };
+        PathAnswer {
+            status: self.status,
+            drive: self.drive,
+            factor,
+            state,
+            last,
+            motion,
+            unique: None,
+            ray: self.ray,
+            events: self.events,
+            counters,
+            notes,
+        }
+    }
+
+    /// Takes a converged state as the next one. Whether to go on.
+    fn commit(&mut self, mut next: State) -> bool {
+        let slopes = self.model.slopes(&next);
+        self.events.extend(events(&self.model, self.drive, &self.state, &next));
+        self.ledger.add(&self.model, &self.state, &next, [&self.slopes, &slopes]);
+        let start = self.state.clone();
+        self.model.keep(&start, &mut next);
+        self.recorded = self.ledger.recorded(&self.model, self.drive, &next, &slopes);
+        self.state = next;
+        self.slopes = slopes;
+        self.model.count("steps", 1);
+        if !self.observer.state(self.model.problem, &self.recorded) {
+            self.stopped = true;
+            self.end(Status::Stalled, "stopped by the observer".into());
+            return false;
+        }
+        if self.model.finite() {
+            if let Some(why) = self.left_its_pairing() {
+                let status = if self.peak.is_some() { Status::Collapse } else { Status::Stalled };
+                self.end(status, why);
+                return false;
+            }
+        }
+        true
+    }
+
+    fn end(&mut self, status: Status, note: String) {
+        self.status = status;
+        if !note.is_empty() {
+            self.notes.push(note);
+        }
+    }
+
+    /// Slip that the fixed pairing of contact points does not bear.
+    fn left_its_pairing(&self) -> Option<String> {
+        let problem = self.model.problem;
+        let mut heights: Vec<(usize, Vec2, Vec2)> = Vec::new();
+        for c in &problem.contacts {
+            match heights.last_mut() {
+                Some((joint, _, end)) if *joint == c.joint => *end = c.position,
+                _ => heights.push((c.joint, c.position, c.position)),
+            }
+        }
+        let largest = self.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+        let mut joints = heights.iter().peekable();
+        for (index, c) in problem.contacts.iter().enumerate() {
+            while joints.peek().is_some_and(|j| j.0 != c.joint) {
+                joints.next();
+            }
+            let (_, from, to) = joints.peek()?;
+            let (slip, height) = (self.state.gap[index][1].abs(), (to - from).norm());
+            let pressed = self.state.force[index][0] > 1e-9 * largest;
+            if pressed && height > 0.0 && slip > LARGEST_SLIP * height {
+                return Some(format!(
+                    "joint {} has slipped by {:.1} % of its height at factor {}: contact points are paired for less",
+                    c.joint,
+                    100.0 * slip / height,
+                    self.state.factor
+                ));
+            }
+        }
+        None
+    }
+
+    /// To a factor: in one step where nothing irreversible happens in it, else in steps.
+    fn reach(&mut self, drive: &Drive, factor: f64) -> Outcome {
+        let whole = self.model.newton(&self.state, self.state.clone(), &Control::Factor(factor));
+        if let Ok((next, iterations)) = whole {
+            let slips = (0..next.gap.len()).any(|c| {
+                let gap = self.model.step_gap(&self.state, &next, c);
+                self.model.law(c).is_some_and(|law| {
+                    !law.opens(next.regime[c]) && law.irreversible(next.regime[c], gap).0 != [0.0; 2]
+                })
+            });
+            let far = self.model.finite() && iterations > 12;
+            if !slips && !far {
+                return if self.commit(next) { Outcome::Reached } else { Outcome::Ended };
+            }
+        }
+        self.follow(drive, factor)
+    }
+
+    /// By the strategy, up to a factor or the end of the path.
+    fn follow(&mut self, drive: &Drive, target: f64) -> Outcome {
+        let direction = if target < drive.start { -1.0 } else { 1.0 };
+        let strategy = self.strategy.clone();
+        let unit = self.model.units.factor;
+        if target == self.state.factor {
+            return Outcome::Reached;
+        }
+        let to_factor = matches!(drive.end, DriveEnd::Factor(_));
+        let Some(first) = self.model.rate(&self.state, &self.state, &Control::Factor(target)) else {
+            self.end(
+                Status::Stalled,
+                format!("at factor {} there is no rate of equilibrium under the growing load", self.state.factor),
+            );
+            return Outcome::Ended;
+        };
+        // The rate is per unit Λ of the factor.
+        let mut rate = first.scaled(direction);
+        let mut previous: Option<Increment> = None;
+        let measure = |model: &Model, state: &State, rate: &Rate, previous: Option<&Increment>| {
+            strategy.constraint(&model.increment_of(state, rate), previous).value
+        };
+        let one = measure(&self.model, &self.state, &rate, None);
+        if one.is_nan() || one <= 1e-14 * self.model.rate_size(&rate) {
+            self.end(Status::Stalled, "what the continuation strategy controls does not change under this load".into());
+            return Outcome::Ended;
+        }
+        let mut length = strategy.first_step() * one;
+        if to_factor {
+            // A load history: never coarser than a sixteenth of it.
+            length = length.min(one * (target - self.state.factor).abs() / unit / 16.0);
+        }
+        let initial = length;
+        let largest = match strategy.largest_step() {
+            step if step.is_finite() => step,
+            _ if self.model.finite() => LARGEST_FINITE_STEP,
+            step => step,
+        } * self.model.units.length
+            / self.model.units.displacement;
+        let mut worst = Refusal { why: String::new(), restless: Vec::new() };
+        let mut before_peak_rate = rate.factor * direction;
+        for _ in 0..MOST_STEPS {
+            let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
+            if !(per_rate > 0.0) {
+                previous = None;
+                if measure(&self.model, &self.state, &rate, None) <= 0.0 {
+                    self.end(Status::Stalled, "what the continuation strategy controls stopped changing".into());
+                    return Outcome::Ended;
+                }
+                continue;
+            }
+            let mut share = length / per_rate;
+            let moves = self.model.increment_of(&self.state, &rate).motion * share;
+            if moves > largest {
+                share *= largest / moves;
+                length = share * per_rate;
+            }
+            if to_factor && rate.factor != 0.0 {
+                let most = (target - drive.start).abs() / 16.0 / rate.factor.abs();
+                if share > most {
+                    share = most;
+                    length = share * per_rate;
+                }
+            }
+            if !strategy.passes_limit_points() {
+                if let Some(slip) = self.first_slip(&rate).filter(|slip| *slip < share) {
+                    share = slip.max(1e-6 * share) * (1.0 + 1e-9);
+                    length = share * per_rate;
+                }
+            }
+            let reaches = (self.state.factor + rate.factor * share - target) * direction >= -1e-12 * unit;
+            let control = if reaches {
+                Control::Factor(target)
+            } else {
+                Control::Strategy { strategy: &*strategy, previous, length }
+            };
+            let step = if reaches { (target - self.state.factor) / rate.factor } else { share };
+            let guess = self.moved(&rate, step);
+            let found = self.model.newton(&self.state, guess, &control).and_then(|(next, iterations)| {
+                let judged = self.judge(&rate, step, &next, target, direction, reaches);
+                judged.map(|()| (next, iterations))
+            });
+            let (next, iterations) = match found {
+                Ok(found) => found,
+                Err(refusal) => {
+                    self.model.count("cutbacks", 1);
+                    worst = refusal;
+                    length *= 0.3;
+                    if length < 1e-10 * initial {
+                        self.no_step(&worst, &rate, direction);
+                        return Outcome::Ended;
+                    }
+                    continue;
+                }
+            };
+            let increment = self.model.increment(&self.state, &next);
+            let next_rate = self.model.rate(&self.state, &next, &control);
+            let Some(next_rate) = next_rate else {
+                self.model.count("cutbacks", 1);
+                worst = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
+                length *= 0.3;
+                if length < 1e-10 * initial {
+                    self.no_step(&worst, &rate, direction);
+                    return Outcome::Ended;
+                }
+                continue;
+            };
+            let next_rate = if reaches { next_rate.scaled(direction) } else { next_rate };
+            let size = next.factor.abs().max(unit * 1e-3);
+            let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
+            let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
+            if self.peak.is_none() && (fell || (falls && before_peak_rate > 0.0)) && !reaches {
+                self.peak = self.locate_peak(&rate, previous, length, direction);
+            }
+            before_peak_rate = next_rate.factor * direction;
+            let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
+            if !self.commit(next) {
+                return Outcome::Ended;
+            }
+            if reaches {
+                if self.peak.is_some() {
+                    self.notes.push(format!("after a limit point the path came back to the factor {target}"));
+                }
+                return Outcome::Reached;
+            }
+            rate = next_rate;
+            if !self.model.finite() && self.ray_ends(&rate, direction) {
+                return Outcome::Ended;
+            }
+            if self.stops(drive, direction) {
+                return Outcome::Ended;
+            }
+            previous = Some(increment);
+            let growth = match (changes, iterations) {
+                (0, 0..=6) => 2.0,
+                (0..=2, 0..=6) => 1.5,
+                (_, 0..=12) => 1.0,
+                _ => 0.5,
+            };
+            length = growth * strategy.constraint(&increment, previous.as_ref()).value;
+        }
+        self.end(
+            Status::Stalled,
+            format!("{MOST_STEPS} steps were not enough; the last state is at factor {}", self.state.factor),
+        );
+        Outcome::Ended
+    }
+
+    fn moved(&self, rate: &Rate, share: f64) -> State {
+        let mut guess = self.state.clone();
+        for (r, dr) in guess.force.iter_mut().zip(&rate.force) {
+            (0..2).for_each(|k| r[k] += share * dr[k]);
+        }
+        for (q, dq) in guess.motion.iter_mut().zip(&rate.motion) {
+            (0..3).for_each(|k| q[k] += share * dq[k]);
+        }
+        guess.factor += share * rate.factor;
+        guess
+    }
+
+    /// Share of the rate after which the first stuck point whose slip is not associated would slide.
+    fn first_slip(&self, rate: &Rate) -> Option<f64> {
+        let mut first = f64::INFINITY;
+        for c in 0..self.state.gap.len() {
+            let (Regime::Stuck, Some(law)) = (self.state.regime[c], self.model.law(c)) else { continue };
+            for f in law.facets.iter().filter(|f| f.flow != f.normal) {
+                let (r, dr) = (self.state.force[c], rate.force[c]);
+                let slack = f.bound * self.model.problem.contacts[c].area - f.normal[0] * r[0] - f.normal[1] * r[1];
+                let speed = f.normal[0] * dr[0] + f.normal[1] * dr[1];
+                if speed > 0.0 {
+                    first = first.min(slack.max(0.0) / speed);
+                }
+            }
+        }
+        first.is_finite().then_some(first)
+    }
+
+    /// Whether a converged step is one along the path.
+    fn judge(
+        &mut self,
+        rate: &Rate,
+        share: f64,
+        next: &State,
+        target: f64,
+        direction: f64,
+        reaches: bool,
+    ) -> Result<(), Refusal> {
+        let no = |why: &str| Err(Refusal { why: why.into(), restless: Vec::new() });
+        if !reaches && (next.factor - target) * direction > 0.0 {
+            return no("the step went beyond the factor asked for");
+        }
+        let u = self.model.units;
+        let (mut along, mut size) = (0.0, 0.0);
+        let mut force_jump = 0.0;
+        for c in 0..next.gap.len() {
+            for k in 0..2 {
+                let moved = (next.gap[c][k] - self.state.gap[c][k]) / u.displacement;
+                along += moved * rate.gap[c][k] / u.displacement;
+                size += moved * moved;
+                force_jump += ((next.force[c][k] - self.state.force[c][k]) / u.force).powi(2);
+            }
+        }
+        for b in 0..next.motion.len() {
+            for k in 0..3 {
+                let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
+                let moved = (next.motion[b][k] - self.state.motion[b][k]) / unit;
+                along += moved * rate.motion[b][k] / unit;
+                size += moved * moved;
+            }
+        }
+        along += (next.factor - self.state.factor) * rate.factor / (u.factor * u.factor);
+        if along <= 0.0 {
+            return no("the step turned back");
+        }
+        // Friction that is not associated: several states may belong to one load. A state far from
+        // what both ends' rates can reach is another branch.
+        let slides = (0..next.regime.len()).any(|c| {
+            next.regime[c] != self.state.regime[c] && self.model.law(c).is_some_and(|law| law.has_other_flow())
+        });
+        if slides && !self.strategy.passes_limit_points() {
+            let after = self.model.rate(&self.state, next, &Control::Factor(next.factor));
+            let Some(after) = after else { return no("the state has no rate under growing load") };
+            let before = self.model.rate_size(rate) * share;
+            let after = self.model.rate_size(&after) * (next.factor - self.state.factor).abs() / u.factor;
+            let jump = (size + force_jump).sqrt();
+            if jump > 2.0 * (before + after) {
+                return no("the state jumps to another branch");
+            }
+        }
+        Ok(())
+    }
+
+    /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
+    fn no_step(&mut self, refusal: &Refusal, rate: &Rate, direction: f64) {
+        let points: Vec<String> = refusal
+            .restless
+            .iter()
+            .take(6)
+            .map(|&c| format!("{c} of joint {}", self.model.problem.contacts[c].joint))
+            .collect();
+        let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
+        let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
+        if !self.strategy.passes_limit_points() && self.turns_back(rate, direction) {
+            self.end(Status::LimitPoint, format!("{why}; an arc-length step shows that the factor cannot grow"));
+        } else {
+            self.end(Status::Stalled, why);
+        }
+    }
+
+    /// Whether the path goes on with a factor that does not grow.
+    fn turns_back(&mut self, rate: &Rate, direction: f64) -> bool {
+        let arc = super::super::continuation::arc_length::ArcLength::default();
+        let size = arc.constraint(&self.model.increment_of(&self.state, rate), None).value;
+        for exponent in [-2, -3, -4, -6] {
+            let length = size * 10f64.powi(exponent);
+            let control = Control::Strategy { strategy: &arc, previous: None, length };
+            let guess = self.moved(rate, 10f64.powi(exponent));
+            if let Ok((next, _)) = self.model.newton(&self.state, guess, &control) {
+                let Some(after) = self.model.rate(&self.state, &next, &control) else { continue };
+                if after.factor * direction <= 1e-9 * self.model.units.factor * self.model.motion_size(&after) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// Bisects the step from the present state for the point where λ stops growing.
+    fn locate_peak(&mut self, rate: &Rate, previous: Option<Increment>, length: f64, direction: f64) -> Option<Peak> {
+        let strategy = self.strategy.clone();
+        let (mut low, mut high) = (0.0, length);
+        let mut best = (self.state.clone(), rate.clone());
+        let mut behind = rate.clone();
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            let control = Control::Strategy { strategy: &*strategy, previous, length: middle };
+            let per_rate = strategy.constraint(&self.model.increment_of(&self.state, rate), previous.as_ref()).value;
+            let guess = self.moved(rate, middle / per_rate);
+            let Ok((state, _)) = self.model.newton(&self.state, guess, &control) else { break };
+            let Some(here) = self.model.rate(&self.state, &state, &control) else { break };
+            if here.factor * direction > 0.0 {
+                low = middle;
+                best = (state, here);
+            } else {
+                high = middle;
+                behind = here;
+            }
+            let gain = best.1.factor.abs() * (high - low);
+            if low > 0.0 && gain <= 1e-11 * best.0.factor.abs().max(1e-6 * self.model.units.factor) {
+                break;
+            }
+        }
+        let (mut state, _) = best;
+        let slopes = self.model.slopes(&state);
+        let mut ledger = self.ledger;
+        ledger.add(&self.model, &self.state, &state, [&self.slopes, &slopes]);
+        let start = self.state.clone();
+        self.model.keep(&start, &mut state);
+        let recorded = ledger.recorded(&self.model, self.drive, &state, &slopes);
+        let motion = self.scaled_motion(&state, &behind);
+        Some(Peak { factor: state.factor, state: recorded, motion })
+    }
+
+    /// Velocities with p·q̇ = 1.
+    fn scaled_motion(&self, state: &State, rate: &Rate) -> Option<Vec<[f64; 3]>> {
+        let u = self.model.units;
+        let power = self.model.increment_of(state, rate).displacement
+            * u.displacement
+            * load_size(self.model.problem, self.model.loaded.growing);
+        let size = self.model.motion_size(rate) * u.displacement * u.force / u.factor;
+        (power > 1e-12 * size).then(|| rate.motion.iter().map(|q| q.map(|x| x / power)).collect())
+    }
+
+    /// Whether the rate goes on for ever: collapse, or a ray that carries any load.
+    fn ray_ends(&mut self, rate: &Rate, direction: f64) -> bool {
+        let u = self.model.units;
+        let motion = self.model.motion_size(rate);
+        let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
+        let factor = rate.factor / u.factor * direction;
+        let still = force <= 1e-9 * motion && factor.abs() <= 1e-9 * motion;
+        let force_unit = if still { f64::INFINITY } else { force * u.force };
+        for c in 0..rate.gap.len() {
+            let Some(law) = self.model.law(c) else { continue };
+            let gap = rate.gap[c].map(|g| g / (u.displacement * motion));
+            let r = rate.force[c].map(|r| r / force_unit);
+            if law.ray_violation(self.state.regime[c], r, gap) > 1e-8 {
+                return false;
+            }
+        }
+        if still {
+            self.motion = self.scaled_motion(&self.state, rate);
+            if self.motion.is_none() {
+                return false;
+            }
+            self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Collapse }, String::new());
+            if self.peak.is_some() {
+                self.notes.push(format!(
+                    "behind the limit point the path ends in a mechanism at factor {}",
+                    self.state.factor
+                ));
+            }
+            return true;
+        }
+        // What strengths bound is no ray: the facets have been looked at above with the ray's forces.
+        if factor > 1e-9 * (motion + force) {
+            self.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
+            self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Unbounded }, String::new());
+            if self.peak.is_some() {
+                self.notes.push(format!(
+                    "behind the limit point the load grows without bound from factor {}",
+                    self.state.factor
+                ));
+            }
+            return true;
+        }
+        false
+    }
+
+    /// Whether the path went as far behind its peak as was asked for.
+    fn stops(&mut self, drive: &Drive, direction: f64) -> bool {
+        let (factor, displacement) = (self.state.factor, self.recorded.displacement);
+        let Some(peak) = &self.peak else {
+            if let Some(stop) = self.settings.stop_displacement {
+                if self.model.finite() && displacement.abs() >= stop.max(self.model.units.length) {
+                    self.end(
+                        Status::Stalled,
+                        format!("no peak up to a displacement of {displacement} m, factor {factor}"),
+                    );
+                    return true;
+                }
+            }
+            if self.model.finite() && displacement.abs() > self.model.units.length {
+                self.end(Status::Stalled, format!("no peak up to a displacement of {displacement} m, factor {factor}"));
+                return true;
+            }
+            return false;
+        };
+        let behind = (displacement - peak.state.displacement).abs();
+        let (stop_displacement, stop_factor) = (self.settings.stop_displacement, self.settings.stop_factor);
+        let done = match (stop_displacement, stop_factor) {
+            (None, None) => {
+                let grown = (peak.factor - drive.start).abs();
+                (peak.factor - factor) * direction >= 0.1 * grown || behind >= peak.state.displacement.abs()
+            }
+            (most, least) => {
+                most.is_some_and(|most| behind >= most)
+                    || least.is_some_and(|least| (factor - least) * direction <= 0.0)
+            }
+        };
+        if done {
+            self.end(if self.model.finite() { Status::Collapse } else { Status::LimitPoint }, String::new());
+        }
+        done
+    }
+}
