@@ -349,7 +349,7 @@ fn flexibility_equals_a_dense_ritz_solution() {
     let shape = distorted();
     let (order, root) = (2usize, 0.6f64.sqrt());
     let rule = [(-root, 5.0 / 9.0), (0.0, 8.0 / 9.0), (root, 5.0 / 9.0)];
-    let terms: Vec<(i32, i32)> = (0..9).map(|k| ((k % 3) as i32, (k / 3) as i32)).collect();
+    let terms: Vec<(i32, i32)> = (0..9).map(|k| (k % 3, k / 3)).collect();
     let map = |[s, t]: [f64; 2]| {
         let corner = |a: f64, b: f64| (1.0 + a * s) * (1.0 + b * t) / 4.0;
         shape[0] * corner(-1.0, -1.0)

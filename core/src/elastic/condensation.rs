@@ -379,7 +379,6 @@ impl Condenser {
     /// Displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform
     /// `acceleration` \[m/s²\] as body force. They are those of a body in equilibrium; what is left of
     /// the resultant is in [`Recovered::imbalance`] and is balanced by inertia.
-    #[expect(clippy::too_many_arguments, reason = "the body's own four, and what acts on it")]
     pub fn recover(
         &mut self,
         vertices: &[Vec2],
