@@ -9,6 +9,7 @@ use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
 };
 use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
+use voussoir_core::path::{PathSettings, PathSolver};
 
 /// A choice of solver for the problems of a case.
 #[derive(Debug, Clone)]
@@ -17,6 +18,8 @@ pub enum Choice {
     Auto,
     /// This one, with its tag.
     Named(String, Arc<dyn LimitSolver>),
+    /// This path solver, with its tag.
+    Path(String, Arc<dyn PathSolver>),
 }
 
 /// One case, ready to be answered.
@@ -30,6 +33,8 @@ pub struct Question<'a> {
     pub solver: &'a Choice,
     /// Greatest relative gap between the bounds.
     pub tolerance: f64,
+    /// What a path solver is told.
+    pub settings: &'a PathSettings,
 }
 
 /// Where a stage's search for collapse starts.
@@ -61,9 +66,39 @@ fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
     idle && next.target == Target::Collapse && next.gravity.is_none() && start_of(next) == 0.0
 }
 
+/// The path solver that answers, if it is not for limit analysis: the one named, or for `auto` on
+/// deformable scenes the exact one where it can.
+pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)> {
+    use voussoir_solvers::path::{event::EventPath, newton::NewtonPath};
+    match question.solver {
+        Choice::Named(..) => None,
+        Choice::Path(tag, solver) => Some((tag.clone(), solver.clone())),
+        Choice::Auto => {
+            let assembly = question.assembly;
+            let deforms = (0..assembly.bodies.len()).any(|b| !assembly.bodies[b].fixed && !assembly.is_rigid(b))
+                || assembly.joints.iter().any(|j| assembly.law(j).is_some_and(|law| law.stiffness().is_some()));
+            let settles = question.stages.iter().any(|stage| !stage.settlements.is_empty());
+            if !deforms && !question.settings.finite && !settles {
+                return None;
+            }
+            let facets =
+                assembly.joints.iter().all(|j| assembly.law(j).is_none_or(|l| l.formulation().facets().is_some()));
+            let exact = question.settings.continuation.as_ref().is_none_or(|c| c.exact_events());
+            if !question.settings.finite && facets && exact {
+                Some(("event_path".into(), Arc::new(EventPath {})))
+            } else {
+                Some(("newton_path".into(), Arc::new(NewtonPath {})))
+            }
+        }
+    }
+}
+
 /// Answers a case. `id`, `variant`, `parameters` and `seconds` are left for the caller to fill.
 pub fn answer(question: &Question) -> CaseResult {
     let Question { assembly, stages, .. } = *question;
+    if let Some((tag, solver)) = path_solver(question) {
+        return crate::path::answer(question, &tag, &*solver);
+    }
     let loads = stage_loads(assembly, stages);
     let mut done: Vec<StageResult> = Vec::new();
     let mut counters = Counters::new();
@@ -109,7 +144,7 @@ pub fn answer(question: &Question) -> CaseResult {
     stalled("the study has no stage".into())
 }
 
-fn stalled(why: String) -> CaseResult {
+pub(crate) fn stalled(why: String) -> CaseResult {
     CaseResult {
         id: 0,
         variant: None,
@@ -132,6 +167,9 @@ fn stalled(why: String) -> CaseResult {
         counters: Counters::new(),
         seconds: 0.0,
         stages: Vec::new(),
+        events: Vec::new(),
+        curve: None,
+        displacements: None,
     }
 }
 
@@ -139,7 +177,7 @@ fn stalled(why: String) -> CaseResult {
 fn candidates(choice: &Choice, problem: &LimitProblem) -> Vec<(String, Arc<dyn LimitSolver>)> {
     match choice {
         Choice::Named(tag, solver) => vec![(tag.clone(), solver.clone())],
-        Choice::Auto => {
+        Choice::Auto | Choice::Path(..) => {
             use voussoir_solvers::limit::{chain::LimitChain, conic::LimitConic};
             let chain: Arc<dyn LimitSolver> = Arc::new(LimitChain {});
             let conic: Arc<dyn LimitSolver> = Arc::new(LimitConic {});
@@ -264,7 +302,7 @@ fn stalled_without(notes: Vec<String>) -> CaseResult {
     CaseResult { notes, ..stalled(String::new()) }
 }
 
-fn field_entries(forces: &[ContactForce]) -> Vec<FieldEntry> {
+pub(crate) fn field_entries(forces: &[ContactForce]) -> Vec<FieldEntry> {
     forces.iter().map(|c| FieldEntry { joint: c.joint, point: c.point.into(), force: c.force }).collect()
 }
 

@@ -9,6 +9,7 @@ pub mod config;
 pub mod figures;
 pub mod kinds;
 pub mod loads;
+pub mod path;
 pub mod plan;
 pub mod results;
 pub mod scenes;

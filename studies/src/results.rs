@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use voussoir_core::certificate::Certificate;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::mechanism::Mechanism;
+use voussoir_core::path::Happening;
 
 /// All results of a study.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -34,6 +35,33 @@ pub struct MotionEntry {
     pub body: String,
     /// \[v_x, v_y, ω\] at its centroid.
     pub velocity: [f64; 3],
+}
+
+/// Displacement of a body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DisplacementEntry {
+    /// Name of the body.
+    pub body: String,
+    /// \[u_x, u_y, θ\] at its centroid.
+    pub displacement: [f64; 3],
+}
+
+/// An event of a path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EventEntry {
+    /// Name of the stage; gravity of a stage comes before its loads.
+    pub stage: String,
+    /// The factor of that stage's loads (of its gravity, where `gravity` is set).
+    pub factor: f64,
+    /// Whether it happened while gravity was applied.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub gravity: bool,
+    /// Index of the joint.
+    pub joint: usize,
+    /// Where \[m\].
+    pub point: [f64; 2],
+    /// What happened there.
+    pub what: Happening,
 }
 
 /// What one stage came to.
@@ -94,4 +122,13 @@ pub struct CaseResult {
     pub seconds: f64,
     /// Each stage in turn.
     pub stages: Vec<StageResult>,
+    /// Of a path: what happened at the contact points, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventEntry>,
+    /// Of a path, on request: \[displacement of the load point \[m\], factor\] of the last stage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<Vec<[f64; 2]>>,
+    /// Of a path: displacement of every body as a rigid motion at the state of `field`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacements: Option<Vec<DisplacementEntry>>,
 }

@@ -212,6 +212,8 @@ pub struct Case {
     pub stages: Vec<Stage>,
     /// How it is to be answered.
     pub solver: SolverChoice,
+    /// Whether force-displacement points are asked for.
+    pub output_curve: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
     /// The case's own study file: numbers in SI units, defaults filled in.
@@ -413,7 +415,18 @@ fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
     notes.extend(unused_by_limit_analysis(&resolved));
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if builder.mistakes.is_empty() => {
-            Ok(Case { id, variant, parameters, assembly, stages, solver, notes, resolved: Json::Object(resolved) })
+            let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
+            Ok(Case {
+                id,
+                variant,
+                parameters,
+                assembly,
+                stages,
+                solver,
+                output_curve,
+                notes,
+                resolved: Json::Object(resolved),
+            })
         }
         _ => Err(builder.mistakes),
     }

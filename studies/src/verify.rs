@@ -7,11 +7,13 @@ use crate::answer::{start_of, thrust_line};
 use crate::results::{CaseResult, FieldEntry, StudyResults};
 use crate::study::{Case, Study};
 use voussoir_core::assembly::{Assembly, Bond, Target, stage_loads};
+use voussoir_core::card::card;
 use voussoir_core::certificate::{Claim, ContactForce, certify};
 use voussoir_core::geometry::{Vec2, distance_to_segment};
 use voussoir_core::interface::is_associated;
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{CentroidVelocity, Mechanism, mechanism};
+use voussoir_core::schema::PluginKind;
 
 /// Relative difference up to which recomputed numbers count as equal.
 const EQUAL: f64 = 1e-9;
@@ -40,7 +42,7 @@ fn close(a: f64, b: f64) -> bool {
 }
 
 /// Contact forces of a stored field, or why it is none.
-fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<ContactForce>, String> {
+pub(crate) fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<ContactForce>, String> {
     let size = assembly.size();
     field
         .iter()
@@ -98,6 +100,10 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         // A stage whose loads decrease is asked at its end, any other at its start.
         Target::Factor(factor) => factor.min(0.0),
     };
+    if card(PluginKind::PathSolver, &result.solver).is_some() {
+        wrong.extend(crate::path::verify(case, result)?);
+        return Ok(wrong);
+    }
     let field = result.field.as_deref().map(|f| contacts(assembly, f)).transpose()?;
     let ray = result.ray.as_deref().map(|f| contacts(assembly, f)).transpose()?;
     let motion = result.motion.as_ref().map(|_| velocities(assembly, result)).transpose()?;
@@ -176,7 +182,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     Ok(wrong)
 }
 
-fn velocities(assembly: &Assembly, result: &CaseResult) -> Result<Vec<CentroidVelocity>, String> {
+pub(crate) fn velocities(assembly: &Assembly, result: &CaseResult) -> Result<Vec<CentroidVelocity>, String> {
     let motion = result.motion.as_deref().unwrap_or_default();
     if motion.len() != assembly.bodies.len() {
         return Err("motion: not one velocity for each body".into());

@@ -29,6 +29,11 @@ pub struct Watch {
 }
 
 impl Watch {
+    /// A watch over small or `finite` displacements.
+    pub fn new(finite: bool) -> Self {
+        Watch { finite, ..Watch::default() }
+    }
+
     fn note(&mut self, name: &'static str, value: f64) {
         let worst = self.worst.entry(name).or_insert(0.0);
         if value.is_nan() || value > *worst {
@@ -113,4 +118,63 @@ impl PathObserver for Watch {
         }
         true
     }
+}
+
+/// Checks a mechanism against a field: how far the jumps leave the flow of the facets that yield,
+/// relative to the greatest jump. Every contact point with slack in all facets must not move.
+pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]]) -> f64 {
+    let largest = force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
+    let jumps: Vec<[f64; 2]> = problem
+        .contacts
+        .iter()
+        .map(|contact| {
+            let mut jump = [0.0; 2];
+            for plus in [false, true] {
+                let rows = problem.kinematics(contact, plus);
+                let body = if plus { contact.plus.body } else { contact.minus.body };
+                (0..2).for_each(|i| jump[i] += (0..3).map(|k| rows[i][k] * motion[body][k]).sum::<f64>());
+            }
+            jump
+        })
+        .collect();
+    let size = jumps.iter().map(|j| j[0].hypot(j[1])).fold(1e-300, f64::max);
+    let mut worst: f64 = 0.0;
+    for ((contact, force), jump) in problem.contacts.iter().zip(force).zip(&jumps) {
+        let ContactLaw::Law(law) = contact.law else {
+            worst = worst.max(jump[0].hypot(jump[1]) / size);
+            continue;
+        };
+        let yielding: Vec<[f64; 2]> = problem.facets[law]
+            .iter()
+            .filter(|f| {
+                let slack = f.bound * contact.area - f.normal[0] * force[0] - f.normal[1] * force[1];
+                slack <= YIELDING * largest
+            })
+            .map(|f| f.flow.map(|d| -d))
+            .collect();
+        worst = worst.max(outside(*jump, &yielding) / size);
+    }
+    worst
+}
+
+/// Slack, relative to the greatest contact force, up to which a facet counts as yielding.
+const YIELDING: f64 = 1e-9;
+
+/// Distance of v from the cone of some directions in the plane.
+fn outside(v: [f64; 2], cone: &[[f64; 2]]) -> f64 {
+    let mut least = v[0].hypot(v[1]);
+    for (k, a) in cone.iter().enumerate() {
+        let along = ((v[0] * a[0] + v[1] * a[1]) / (a[0] * a[0] + a[1] * a[1])).max(0.0);
+        least = least.min((v[0] - along * a[0]).hypot(v[1] - along * a[1]));
+        for b in &cone[k + 1..] {
+            let determinant = a[0] * b[1] - a[1] * b[0];
+            if determinant != 0.0 {
+                let shares = [(v[0] * b[1] - v[1] * b[0]) / determinant, (a[0] * v[1] - a[1] * v[0]) / determinant];
+                if shares.iter().all(|s| *s >= 0.0) {
+                    return 0.0;
+                }
+            }
+        }
+    }
+    least
 }

@@ -3,12 +3,13 @@
 use super::{KindEntry, Observer, StudyKind};
 use crate::answer::{Choice, Question, answer};
 use crate::results::CaseResult;
-use crate::study::{Case, Study};
+use crate::study::{Case, Kinematics, Study};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
-use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::card::{Card, card, no_further_check};
 use voussoir_core::limit::LimitSolver;
+use voussoir_core::path::{Continuation, PathSettings, PathSolver};
 use voussoir_core::schema::PluginKind;
 
 struct Run;
@@ -32,9 +33,28 @@ voussoir_core::inventory::submit! {
 
 /// The solver a case asks for.
 pub fn choice(case: &Case) -> Choice {
-    match serde_json::from_value::<Box<dyn LimitSolver>>(case.solver.table.clone()) {
-        Ok(solver) if case.solver.tag != "auto" => Choice::Named(case.solver.tag.clone(), Arc::from(solver)),
+    let tag = case.solver.tag.clone();
+    let table = &case.solver.table;
+    if card(PluginKind::LimitSolver, &tag).is_some()
+        && let Ok(solver) = serde_json::from_value::<Box<dyn LimitSolver>>(table.clone())
+    {
+        return Choice::Named(tag, Arc::from(solver));
+    }
+    match serde_json::from_value::<Box<dyn PathSolver>>(table.clone()) {
+        Ok(solver) if tag != "auto" => Choice::Path(tag, Arc::from(solver)),
         _ => Choice::Auto,
+    }
+}
+
+/// What a path solver is told.
+pub fn settings(case: &Case) -> PathSettings {
+    let read = |table: &serde_json::Value| serde_json::from_value::<Box<dyn Continuation>>(table.clone()).ok();
+    PathSettings {
+        finite: case.solver.kinematics == Kinematics::Finite,
+        tolerance: case.solver.tolerance,
+        stop_displacement: case.solver.stop_displacement,
+        stop_factor: case.solver.stop_factor,
+        continuation: case.solver.continuation.as_ref().and_then(read).map(Arc::from),
     }
 }
 
@@ -46,12 +66,16 @@ pub fn answer_case(case: &Case) -> CaseResult {
         stages: &case.stages,
         solver: &choice(case),
         tolerance: case.solver.tolerance,
+        settings: &settings(case),
     };
     let mut result = answer(&question);
     result.id = case.id;
     result.variant = case.variant.clone();
     result.parameters = case.parameters.clone();
     result.notes.extend(case.notes.iter().cloned());
+    if !case.output_curve {
+        result.curve = None;
+    }
     result.seconds = started.elapsed().as_secs_f64();
     result
 }

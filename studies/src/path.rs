@@ -1,0 +1,304 @@
+//! Answering one case by a path solver, with its certificate.
+
+use crate::answer::{Question, field_entries, stalled, thrust_line};
+use crate::results::{CaseResult, DisplacementEntry, EventEntry, MotionEntry, StageResult};
+use crate::study::Case;
+use std::collections::BTreeMap;
+use voussoir_core::assembly::{Assembly, Target};
+use voussoir_core::certificate::{Certificate, ContactForce, largest_jump};
+use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::limit::Status;
+use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
+use voussoir_core::path::certificate::{Watch, flow_residual};
+use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem, PathSolver, PathState};
+
+/// Tolerances of the residuals of a path.
+pub const TOLERANCES: &[(&str, f64)] = &[
+    ("path_equilibrium", 1e-9),
+    ("path_kinematics", 1e-8),
+    ("path_strength", 1e-8),
+    ("path_penetration", 1e-8),
+    ("path_complementarity", 1e-8),
+    ("path_dissipation", 1e-8),
+];
+
+/// Answers a case along its path.
+pub fn answer(question: &Question, tag: &str, solver: &dyn PathSolver) -> CaseResult {
+    let assembly = question.assembly;
+    let problem = match PathProblem::new(assembly, question.stages) {
+        Ok(problem) => problem,
+        Err(why) => return failed(tag, why),
+    };
+    if let Some(why) = solver.refuses(&problem, question.settings) {
+        return failed(tag, format!("{tag}: {why}"));
+    }
+    let mut watch = Watch::new(question.settings.finite);
+    let solved = solver.trace(&problem, question.settings, &mut watch);
+    result(question, tag, &problem, solved, watch)
+}
+
+fn failed(tag: &str, why: String) -> CaseResult {
+    CaseResult { solver: tag.into(), ..stalled(why) }
+}
+
+/// Velocity (or displacement) of every block at its centroid from those of the path's bodies about
+/// their poles. What moves by rounding beside the greatest stands still where the ground holds it.
+fn of_blocks(assembly: &Assembly, problem: &PathProblem, motion: &[[f64; 3]], rates: bool) -> Vec<CentroidVelocity> {
+    let mut all: Vec<CentroidVelocity> = (0..assembly.bodies.len())
+        .map(|block| {
+            let body = problem.body_of[block];
+            let [x, y, omega] = motion[body];
+            let v = Vec2::new(x, y) + turned(assembly.inertia(block).centroid - problem.bodies[body].pole) * omega;
+            [v.x, v.y, omega]
+        })
+        .collect();
+    if rates {
+        let largest = all.iter().flatten().fold(0.0, |a: f64, v| a.max(v.abs()));
+        for (velocity, group) in all.iter_mut().zip(assembly.rigid_groups().0) {
+            if group.is_none() && velocity.iter().all(|v| v.abs() <= 1e-7 * largest) {
+                *velocity = [0.0; 3];
+            }
+        }
+    }
+    all
+}
+
+fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAnswer, watch: Watch) -> CaseResult {
+    let assembly = question.assembly;
+    let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
+    for (name, value) in &watch.worst {
+        certificate.residuals.insert((*name).into(), *value);
+        let bound = TOLERANCES.iter().find(|(n, _)| n == name).map(|(_, t)| *t);
+        // Written so that NaN fails.
+        if bound.is_some_and(|bound| !(*value <= bound)) {
+            certificate.passed = false;
+            certificate.failures.push(format!("{name} is {value:.2e}"));
+        }
+    }
+    let field: Vec<ContactForce> = problem
+        .contacts
+        .iter()
+        .zip(&solved.state.force)
+        .map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force })
+        .collect();
+    let ray = solved.ray.as_ref().map(|ray| {
+        let forces = problem.contacts.iter().zip(ray);
+        forces.map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force }).collect::<Vec<_>>()
+    });
+    let mut motion = solved.motion.as_ref().map(|motion| of_blocks(assembly, problem, motion, true));
+    if let (Status::NoEquilibrium, Some(motion)) = (solved.status, &mut motion) {
+        let largest = largest_jump(&jumps(assembly, motion));
+        motion.iter_mut().flatten().for_each(|v| *v /= largest);
+    }
+    if let (Some(motion), false) = (&solved.motion, question.settings.finite) {
+        let flow = flow_residual(problem, &solved.state.force, motion);
+        certificate.residuals.insert("path_flow".into(), flow);
+        if !(flow <= 1e-6) {
+            certificate.passed = false;
+            certificate.failures.push(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
+        }
+    }
+    let mut status = solved.status;
+    let mut notes = solved.notes;
+    if status == Status::Stalled {
+        certificate.passed = false;
+        certificate.failures.push("not proven".into());
+    }
+    if !certificate.passed && status != Status::Stalled {
+        notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
+        status = Status::Stalled;
+    }
+    let drive = &problem.drives[solved.drive];
+    let stage = drive.stage;
+    let load_factor = match status {
+        Status::Collapse | Status::LimitPoint if !drive.gravity => solved.factor,
+        _ => None,
+    };
+    let name = |body: usize| assembly.bodies[body].name.clone();
+    let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique));
+    let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
+    let mut stages: Vec<StageResult> = question.stages[..stage]
+        .iter()
+        .map(|earlier| StageResult {
+            name: earlier.name.clone(),
+            status: Status::Stands,
+            factor: match earlier.target {
+                Target::Factor(factor) => Some(factor),
+                Target::Collapse => None,
+            },
+            hinges: Vec::new(),
+        })
+        .collect();
+    let reached = match status {
+        Status::Stands => match question.stages[stage].target {
+            Target::Factor(factor) => Some(factor),
+            Target::Collapse => solved.factor,
+        },
+        _ => load_factor,
+    };
+    stages.push(StageResult { name: question.stages[stage].name.clone(), status, factor: reached, hinges });
+    if status == Status::Stands {
+        for idle in &question.stages[stage + 1..] {
+            let Target::Factor(factor) = idle.target else { continue };
+            let (name, factor) = (idle.name.clone(), Some(factor));
+            stages.push(StageResult { name, status, factor, hinges: Vec::new() });
+        }
+    }
+    let events = solved
+        .events
+        .iter()
+        .map(|event| {
+            let (drive, contact) = (&problem.drives[event.drive], &problem.contacts[event.contact]);
+            EventEntry {
+                stage: question.stages[drive.stage].name.clone(),
+                factor: event.factor,
+                gravity: drive.gravity,
+                joint: contact.joint,
+                point: contact.position.into(),
+                what: event.what,
+            }
+        })
+        .collect();
+    let displacements = of_blocks(assembly, problem, &solved.state.motion, false);
+    let mut counters = solved.counters;
+    counters.insert("states".into(), watch.states);
+    let open: Vec<ContactForce> = problem
+        .contacts
+        .iter()
+        .zip(&field)
+        .filter(|(contact, _)| contact.law != ContactLaw::Bonded)
+        .map(|(_, force)| *force)
+        .collect();
+    CaseResult {
+        status,
+        load_factor,
+        solver: tag.into(),
+        mechanism,
+        field_factor: Some(solved.state.factor),
+        thrust_line: thrust_line(assembly, &open),
+        field: Some(field_entries(&field)),
+        ray: ray.as_deref().map(field_entries),
+        motion: motion.map(|motion| {
+            motion.into_iter().enumerate().map(|(body, velocity)| MotionEntry { body: name(body), velocity }).collect()
+        }),
+        displacements: Some(
+            displacements
+                .into_iter()
+                .enumerate()
+                .map(|(body, displacement)| DisplacementEntry { body: name(body), displacement })
+                .collect(),
+        ),
+        certificate,
+        counters,
+        stages,
+        events,
+        curve: Some(watch.curve),
+        notes,
+        ..stalled(String::new())
+    }
+}
+
+/// What a path's result claims that its own numbers do not confirm. The history (slip before the
+/// end) is not stored; equilibrium, strength, contact and mechanism of the state are recomputed.
+pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
+    let assembly = &case.assembly;
+    let problem = PathProblem::new(assembly, &case.stages)?;
+    let finite = case.solver.kinematics == crate::study::Kinematics::Finite;
+    let mut wrong = Vec::new();
+    let mut expect = |fine: bool, what: &str| {
+        if !fine {
+            wrong.push(what.to_string());
+        }
+    };
+    let read = |entries: &[crate::results::FieldEntry]| -> Result<Vec<[f64; 2]>, String> {
+        let forces = crate::verify::contacts(assembly, entries)?;
+        let same = forces.len() == problem.contacts.len()
+            && forces
+                .iter()
+                .zip(&problem.contacts)
+                .all(|(f, c)| f.joint == c.joint && (f.point - c.position).norm() <= 1e-9 * problem.length);
+        if same {
+            Ok(forces.iter().map(|f| f.force).collect())
+        } else {
+            Err("field: not the contact points of the scene".into())
+        }
+    };
+    let stage = result.stages.len() - 1;
+    let drive = problem.drives.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
+    let drive = match result.status {
+        Status::NoEquilibrium => problem.drives.iter().position(|d| d.stage == stage).unwrap_or(drive),
+        _ => drive,
+    };
+    let force = read(result.field.as_deref().ok_or("no field")?)?;
+    let displaced = result.displacements.as_ref().ok_or("no displacements")?;
+    let mut motion = vec![[0.0; 3]; problem.bodies.len()];
+    expect(displaced.len() == assembly.bodies.len(), "displacements: not one per block");
+    for (block, entry) in displaced.iter().enumerate().take(assembly.bodies.len()) {
+        expect(entry.body == assembly.bodies[block].name, "displacements: another block");
+        let [x, y, theta] = entry.displacement;
+        let body = problem.body_of[block];
+        let u = Vec2::new(x, y) + turned(problem.bodies[body].pole - assembly.inertia(block).centroid) * theta;
+        motion[body] = [u.x, u.y, theta];
+    }
+    let factor = result.field_factor.ok_or("no factor of the field")?;
+    let mut state = PathState { drive, factor, force, motion, ..PathState::default() };
+    state.gap = vec![[0.0; 2]; problem.contacts.len()];
+    let mut watch = Watch::new(finite);
+    if !finite {
+        let mut gaps = state.gap.clone();
+        problem.small_gaps(&state, &mut gaps);
+        state.gap = gaps;
+    }
+    watch.state(&problem, &state);
+    for (name, value) in &watch.worst {
+        let bound = TOLERANCES.iter().find(|(n, _)| n == name).map(|(_, t)| *t);
+        expect(bound.is_none_or(|bound| *value <= bound), &format!("{name} is {value:.2e}"));
+    }
+    if matches!(result.status, Status::Collapse | Status::LimitPoint) && result.load_factor.is_some() {
+        expect(result.load_factor == result.field_factor, "the load factor is not that of the field");
+    }
+    if result.status == Status::Collapse {
+        expect(result.motion.is_some(), "a collapse without a mechanism");
+    }
+    if let (Some(_), false) = (&result.motion, finite) {
+        let velocities = crate::verify::velocities(assembly, result)?;
+        let mut rates = vec![[0.0; 3]; problem.bodies.len()];
+        for (block, [x, y, omega]) in velocities.iter().enumerate() {
+            let body = problem.body_of[block];
+            let v = Vec2::new(*x, *y) + turned(problem.bodies[body].pole - assembly.inertia(block).centroid) * *omega;
+            rates[body] = [v.x, v.y, *omega];
+        }
+        let flow = flow_residual(&problem, &state.force, &rates);
+        expect(flow <= 1e-6, &format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
+        if result.status == Status::Collapse {
+            let p = problem.wrenches(&problem.drives[drive].loading);
+            let power: f64 = p.iter().flatten().zip(rates.iter().flatten()).map(|(p, v)| p * v).sum();
+            expect((power - 1.0).abs() <= 1e-6, "the mechanism is not scaled to p·q̇ = 1");
+        }
+        let found = mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique));
+        let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
+        expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
+    }
+    if result.status == Status::Unbounded {
+        let ray = read(result.ray.as_deref().ok_or("unbounded without a ray")?)?;
+        let mut sum = problem.wrenches(&problem.drives[drive].loading);
+        let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
+        let mut excess: f64 = 0.0;
+        for (contact, r) in problem.contacts.iter().zip(&ray) {
+            for plus in [false, true] {
+                let rows = problem.kinematics(contact, plus);
+                let body = if plus { contact.plus.body } else { contact.minus.body };
+                (0..3).for_each(|i| sum[body][i] += rows[0][i] * r[0] + rows[1][i] * r[1]);
+            }
+            if let ContactLaw::Law(law) = contact.law {
+                for f in &problem.facets[law] {
+                    excess = excess.max((f.normal[0] * r[0] + f.normal[1] * r[1]) / size);
+                }
+            }
+        }
+        let free = sum.iter().zip(&problem.bodies).filter(|(_, b)| !b.held);
+        let left = free.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
+        expect(left <= 1e-9 * size && excess <= 1e-9, "the ray does not carry the load");
+    }
+    Ok(wrong)
+}
