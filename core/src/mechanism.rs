@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Bond, Joint};
 use crate::geometry::{Vec2, turned};
-use crate::interface::{FacetMode, Formulation, InterfaceLaw};
+use crate::interface::{FacetMode, InterfaceLaw};
 use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
 
@@ -150,7 +150,8 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
     if tolerance == 0.0 {
         return None;
     }
-    let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law)).collect();
+    let all_rays = |own| assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law, own)).collect();
+    let (rays, own_rays): (Vec<Vec<[f64; 2]>>, Vec<Vec<[f64; 2]>>) = (all_rays(false), all_rays(true));
     let mut found = Mechanism {
         kind: MechanismKind::Rocking,
         hinge_count: 0,
@@ -163,8 +164,12 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
         let Bond::Law(law) = joint.bond else { continue };
         let height = joint.height();
         let between = || [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
-        let clear = jump.open.map(|open| clearance(&rays[law], open, jump.slip));
-        if clear[0] > tolerance && clear[1] > tolerance {
+        // A solver may have read the law with associated flow: then slip dilates by the friction
+        // angle and touching means no clearance in that sense.
+        let dilated = jump.open.map(|open| clearance(&rays[law], open, jump.slip));
+        let clear = jump.open.map(|open| clearance(&own_rays[law], open, jump.slip));
+        let touches_dilated = dilated.iter().any(|c| c.abs() <= tolerance);
+        if clear[0] > tolerance && clear[1] > tolerance && !touches_dilated {
             continue; // apart all along
         }
         if jump.slip.abs() > tolerance {
@@ -198,13 +203,18 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
     Some(found)
 }
 
-fn contact_rays(law: &dyn InterfaceLaw) -> Vec<[f64; 2]> {
-    let Formulation::Facets(facets) = law.formulation();
-    let uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
+/// Directions whose work on a jump tells how far a point is from touching: those of the forces that
+/// do no work on the flow of the facets that do not crush. `own`: the law's own flow, else associated.
+fn contact_rays(law: &dyn InterfaceLaw, own: bool) -> Vec<[f64; 2]> {
+    let facets = law.formulation().facets().unwrap_or_default();
+    let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
+    if own {
+        uncrushed.iter_mut().for_each(|f| f.normal = f.flow);
+    }
     let mut rays = YieldPolygon::of(&uncrushed).rays;
     let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;
     if rays.len() < 2 || rays.iter().any(|a| rays.iter().any(|b| opposite(a, b))) {
-        // Stuck along the joint: only opening parts the blocks.
+        // Stuck along the joint, or slip that does not dilate: only opening parts the blocks.
         rays = vec![[1.0, 0.0]];
     }
     rays
