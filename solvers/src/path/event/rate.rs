@@ -218,7 +218,7 @@ const PIVOTING: f64 = 1e-7;
 /// Unknowns above which linear algebra is that of large systems.
 const LARGE: usize = 30;
 /// Combinations that are tried.
-const COMBINATIONS: usize = 6000;
+const COMBINATIONS: usize = 40_000;
 
 /// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
 #[derive(Debug)]
@@ -473,6 +473,26 @@ impl RateProblem<'_> {
         Some(Pivoted::Guess(pieces))
     }
 
+    /// Associated flow makes the problem monotone: from its solution the flow is turned step by step
+    /// into the law's own.
+    fn from_associated(&self, counters: &mut u64) -> Option<Rate> {
+        let Some(Pivoted::Guess(mut pieces)) = self.pivoted(true, counters) else { return None };
+        for own in [0.0, 0.25, 0.5, 0.7, 0.85, 0.95, 1.0] {
+            let turned =
+                |f: &PointFacet| PointFacet { flow: [0, 1].map(|i| (1.0 - own) * f.normal[i] + own * f.flow[i]), ..*f };
+            let facets: Vec<Vec<PointFacet>> =
+                self.points.iter().map(|p| p.facets.iter().map(turned).collect()).collect();
+            let points = self.points.iter().zip(&facets).map(|(p, facets)| Verge { facets, ..p.clone() }).collect();
+            let problem = RateProblem { points, s: self.s.clone(), drive: self.drive.clone() };
+            match problem.corrected(pieces.clone(), counters) {
+                Some(rate) if own == 1.0 => return Some(rate),
+                Some(rate) => pieces = rate.pieces,
+                None => {}
+            }
+        }
+        None
+    }
+
     /// Solves the rate problem. `examine` asks for the number of other solutions where it is cheap.
     pub fn solve(&self, examine: bool, counters: &mut u64) -> Verdict {
         let combinations = self.combinations();
@@ -484,18 +504,17 @@ impl RateProblem<'_> {
             return Verdict::Found(rate, others);
         }
         if combinations > COMBINATIONS {
-            // Associated flow makes the problem monotone: its solution is where the search for the
-            // law's own flow starts.
-            for associated in [false, true] {
-                match self.pivoted(associated, counters) {
-                    Some(Pivoted::Guess(pieces)) => {
-                        if let Some(rate) = self.corrected(pieces, counters) {
-                            return Verdict::Found(rate, None);
-                        }
+            match self.pivoted(false, counters) {
+                Some(Pivoted::Guess(pieces)) => {
+                    if let Some(rate) = self.corrected(pieces, counters) {
+                        return Verdict::Found(rate, None);
                     }
-                    Some(Pivoted::Ray(rate)) if !associated => return Verdict::Found(rate, None),
-                    _ => {}
                 }
+                Some(Pivoted::Ray(rate)) => return Verdict::Found(rate, None),
+                None => {}
+            }
+            if let Some(rate) = self.from_associated(counters) {
+                return Verdict::Found(rate, None);
             }
             return Verdict::Undecided(combinations);
         }
