@@ -63,3 +63,6 @@ voussoir_core::inventory::submit! {
         check: no_further_check,
     }
 }
+
+#[cfg(test)]
+mod tests;
