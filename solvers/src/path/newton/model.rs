@@ -403,19 +403,26 @@ impl<'a> Model<'a> {
                 }
             }
         }
-        if by_gap.iter().any(|w| *w != 0.0) {
-            for &(i, j, value) in &curvature.entries {
-                if i < 2 * points && by_gap[i] != 0.0 {
-                    if let Some((column, unit)) = self.column(j) {
-                        row[column] += by_gap[i] * value * unit;
-                    }
+        self.add_gaps(&mut row, &by_gap, curvature);
+        row
+    }
+
+    /// Adds weighted gaps to a row over the scaled unknowns.
+    fn add_gaps(&self, row: &mut [f64], by_gap: &[f64], curvature: &Curvature) {
+        if by_gap.iter().all(|w| *w == 0.0) {
+            return;
+        }
+        for &(i, j, value) in &curvature.entries {
+            if i < by_gap.len() && by_gap[i] != 0.0 {
+                if let Some((column, unit)) = self.column(j) {
+                    row[column] += by_gap[i] * value * unit;
                 }
             }
-            for (i, weight) in by_gap.iter().enumerate() {
-                row[last] += weight * curvature.factor[i] * u.factor;
-            }
         }
-        row
+        let last = row.len() - 1;
+        for (i, weight) in by_gap.iter().enumerate() {
+            row[last] += weight * curvature.factor[i] * self.units.factor;
+        }
     }
 
     fn constraint(&self, start: &State, state: &State, control: &Control) -> (f64, Constraint) {
@@ -686,9 +693,41 @@ impl<'a> Model<'a> {
         let curvature = self.curvature(state, &slopes);
         let (_, constraint) = self.constraint(start, state, control);
         let row = self.gradient(start, state, &constraint, &curvature);
+        self.rate_of(state, &curvature, &row)
+    }
+
+    /// Regimes that a small share of a rate asks for, from a converged state.
+    pub fn regimes_ahead(&mut self, state: &State, ahead: &State) -> Vec<Regime> {
+        let mut ahead = ahead.clone();
+        ahead.gap = self.slopes(&ahead).gap;
+        self.wanted(state, &ahead)
+    }
+
+    /// Rate with other regimes than the state's, per unit of the sum of the multipliers of the points
+    /// that change: the branch on which they yield. `None` where there is none.
+    pub fn rate_of_yielding(&mut self, state: &State, regimes: &[Regime]) -> Option<Rate> {
+        let slopes = self.slopes(state);
+        let curvature = self.curvature(state, &slopes);
+        let mut by_gap = vec![0.0; 2 * state.gap.len()];
+        for c in (0..state.gap.len()).filter(|c| regimes[*c] != state.regime[*c]) {
+            let flow = match (regimes[c], self.law(c)) {
+                (Regime::Facet(i), Some(law)) => law.facets[i as usize].flow,
+                _ => [-1.0, 0.0],
+            };
+            (0..2).for_each(|k| by_gap[2 * c + k] = -flow[k] / self.units.displacement);
+        }
+        let mut row = vec![0.0; self.size()];
+        self.add_gaps(&mut row, &by_gap, &curvature);
+        let mut other = state.clone();
+        other.regime = regimes.to_vec();
+        self.rate_of(&other, &curvature, &row)
+    }
+
+    /// Rate of a state with its regimes held, per unit of `row`.
+    fn rate_of(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<Rate> {
         let mut right = vec![0.0; self.size()];
         right[self.size() - 1] = 1.0;
-        let x = self.solve(&state.regime, &curvature, &row, &right)?;
+        let x = self.solve(&state.regime, curvature, row, &right)?;
         let mut zero = State {
             force: vec![[0.0; 2]; state.force.len()],
             motion: vec![[0.0; 3]; state.motion.len()],

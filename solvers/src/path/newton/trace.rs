@@ -144,14 +144,14 @@ impl<'a> Tracer<'a, '_> {
     }
 
     fn answer(self) -> PathAnswer {
-        let mut counters = self.model.counters;
+        let mut counters = self.model.counters.clone();
         for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
             counters.entry(name.into()).or_default();
         }
         let mut notes = self.notes;
         let r = &self.recorded;
         let (balance, size) = (r.work - r.stored - r.dissipated, r.work.abs() + r.stored.abs() + r.dissipated.abs());
-        if size > 0.0 {
+        if size > 1e-12 * self.model.units.force * self.model.units.displacement {
             notes.push(format!(
                 "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
                 balance / size
@@ -301,7 +301,8 @@ impl<'a> Tracer<'a, '_> {
             step => step,
         } * self.model.units.length
             / self.model.units.displacement;
-        let mut worst = Refusal { why: String::new(), restless: Vec::new() };
+        let mut switched_at: Option<u64> = None;
+        let mut yielding: Option<Vec<Regime>> = None;
         let mut before_peak_rate = rate.factor * direction;
         for _ in 0..MOST_STEPS {
             let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
@@ -339,8 +340,14 @@ impl<'a> Tracer<'a, '_> {
                 Control::Strategy { strategy: &*strategy, previous, length }
             };
             let step = if reaches { (target - self.state.factor) / rate.factor } else { share };
-            let guess = self.moved(&rate, step);
+            let mut guess = self.moved(&rate, step);
+            if let Some(regimes) = &yielding {
+                guess.regime = regimes.clone();
+            }
             let found = self.model.newton(&self.state, guess, &control).and_then(|(next, iterations)| {
+                if yielding.is_some() && next.regime == self.state.regime {
+                    return Err(Refusal { why: "the step went back the way it came".into(), restless: Vec::new() });
+                }
                 let judged = self.judge(&rate, step, &next, target, direction, reaches);
                 judged.map(|()| (next, iterations))
             });
@@ -348,10 +355,31 @@ impl<'a> Tracer<'a, '_> {
                 Ok(found) => found,
                 Err(refusal) => {
                     self.model.count("cutbacks", 1);
-                    worst = refusal;
-                    length *= 0.3;
+                    let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
+                    if slip <= 1e-9 * share.max(initial / per_rate) && switched_at != self.model.counters.get("steps").copied() {
+                        // At the very event: another branch, on which the points at their limit yield.
+                        switched_at = self.model.counters.get("steps").copied();
+                        if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
+                            let falls = other.factor * direction <= 0.0;
+                            if falls && !strategy.passes_limit_points() {
+                                self.no_step(&refusal, &other, direction);
+                                return Outcome::Ended;
+                            }
+                            if falls && self.peak.is_none() {
+                                let motion = self.scaled_motion(&self.state, &other);
+                                self.peak = Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                            }
+                            rate = other;
+                            yielding = Some(regimes);
+                            before_peak_rate = rate.factor * direction;
+                            previous = None;
+                            length = 0.1 * initial;
+                            continue;
+                        }
+                    }
+                    length = if slip > 1e-9 * share && slip < share { slip * per_rate } else { 0.3 * length };
                     if length < 1e-10 * initial {
-                        self.no_step(&worst, &rate, direction);
+                        self.no_step(&refusal, &rate, direction);
                         return Outcome::Ended;
                     }
                     continue;
@@ -361,10 +389,10 @@ impl<'a> Tracer<'a, '_> {
             let next_rate = self.model.rate(&self.state, &next, &control);
             let Some(next_rate) = next_rate else {
                 self.model.count("cutbacks", 1);
-                worst = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
                 length *= 0.3;
                 if length < 1e-10 * initial {
-                    self.no_step(&worst, &rate, direction);
+                    let refusal = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
+                    self.no_step(&refusal, &rate, direction);
                     return Outcome::Ended;
                 }
                 continue;
@@ -388,6 +416,7 @@ impl<'a> Tracer<'a, '_> {
                 return Outcome::Reached;
             }
             rate = next_rate;
+            yielding = None;
             if !self.model.finite() && self.ray_ends(&rate, direction) {
                 return Outcome::Ended;
             }
@@ -420,6 +449,17 @@ impl<'a> Tracer<'a, '_> {
         }
         guess.factor += share * rate.factor;
         guess
+    }
+
+    /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
+    fn yielding(&mut self, rate: &Rate, share: f64) -> Option<(Rate, Vec<Regime>)> {
+        let ahead = self.moved(rate, 1e-3 * share);
+        let state = self.state.clone();
+        let regimes = self.model.regimes_ahead(&state, &ahead);
+        if regimes == state.regime {
+            return None;
+        }
+        self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
     }
 
     /// Share of the rate after which the first stuck point whose slip is not associated would slide.
@@ -504,8 +544,9 @@ impl<'a> Tracer<'a, '_> {
             .collect();
         let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
-        if !self.strategy.passes_limit_points() && self.turns_back(rate, direction) {
-            self.end(Status::LimitPoint, format!("{why}; an arc-length step shows that the factor cannot grow"));
+        let falls = rate.factor * direction <= 0.0;
+        if !self.strategy.passes_limit_points() && (falls || self.turns_back(rate, direction)) {
+            self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
         } else {
             self.end(Status::Stalled, why);
         }
@@ -582,7 +623,7 @@ impl<'a> Tracer<'a, '_> {
         let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
         let factor = rate.factor / u.factor * direction;
         let still = force <= 1e-9 * motion && factor.abs() <= 1e-9 * motion;
-        let force_unit = if still { f64::INFINITY } else { force * u.force };
+        let force_unit = if still { f64::INFINITY } else { force.max(factor.abs()) * u.force };
         for c in 0..rate.gap.len() {
             let Some(law) = self.model.law(c) else { continue };
             let gap = rate.gap[c].map(|g| g / (u.displacement * motion));
