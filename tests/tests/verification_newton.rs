@@ -66,3 +66,21 @@ fn elastic_voussoirs_end_at_the_limit_load() {
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
     assert_close(answer.factor.expect("a factor"), 698.022_665_212_378_8, 1e-8);
 }
+
+/// Finite displacements: exploratory.
+#[test]
+#[ignore]
+fn finite_peaks() {
+    for young in ["5e9", "2e10", "8e10", "3.2e11"] {
+        let arch = Arch { voussoirs: 15, ..Arch::default() };
+        let text = arch.study().replace(
+            "law = \"rigid\"",
+            &format!("law = \"elastic\"\nyoung_modulus = {young}\npoisson_ratio = 0.3"),
+        );
+        let how = PathSettings { finite: true, ..settings() };
+        let start = std::time::Instant::now();
+        let answer = NewtonPath {}.trace(&problem(&text), &how, &mut Unobserved);
+        println!("{young} {:?} {:?} {:?} {:?} {:?}", answer.status, answer.factor, answer.counters, answer.notes, start.elapsed());
+        println!("{} {:?}", answer.state.displacement, answer.last.map(|l| (l.factor, l.displacement)));
+    }
+}

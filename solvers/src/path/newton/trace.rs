@@ -417,7 +417,7 @@ impl<'a> Tracer<'a, '_> {
             }
             rate = next_rate;
             yielding = None;
-            if !self.model.finite() && self.ray_ends(&rate, direction) {
+            if !self.model.finite() && self.ray_ends(&rate, direction, target) {
                 return Outcome::Ended;
             }
             if self.stops(drive, direction) {
@@ -617,7 +617,7 @@ impl<'a> Tracer<'a, '_> {
     }
 
     /// Whether the rate goes on for ever: collapse, or a ray that carries any load.
-    fn ray_ends(&mut self, rate: &Rate, direction: f64) -> bool {
+    fn ray_ends(&mut self, rate: &Rate, direction: f64, target: f64) -> bool {
         let u = self.model.units;
         let motion = self.model.motion_size(rate);
         let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
@@ -644,7 +644,7 @@ impl<'a> Tracer<'a, '_> {
             return true;
         }
         // What strengths bound is no ray: the facets have been looked at above with the ray's forces.
-        if factor > 1e-9 * (motion + force) {
+        if target.is_infinite() && factor > 1e-9 * (motion + force) {
             self.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
             self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Unbounded }, String::new());
             if self.peak.is_some() {
