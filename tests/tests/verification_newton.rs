@@ -6,13 +6,7 @@ use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::{Arch, assert_close, first_case, friction};
 
 fn settings() -> PathSettings {
-    PathSettings {
-        finite: false,
-        tolerance: 1e-9,
-        stop_displacement: None,
-        stop_factor: None,
-        continuation: None,
-    }
+    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
 }
 
 fn problem(text: &str) -> PathProblem {
@@ -39,7 +33,10 @@ fn compliant_joints_end_at_the_limit_load() {
             491.370_923_687_825_1,
         ),
         (Arch { joint: compliant("law = \"unilateral\"".into()), ..Arch::default() }, 698.022_665_212_378_8),
-        (Arch { joint: compliant("law = \"coulomb\"\nfriction = 0.6".into()), ..Arch::default() }, 698.022_665_212_378_8),
+        (
+            Arch { joint: compliant("law = \"coulomb\"\nfriction = 0.6".into()), ..Arch::default() },
+            698.022_665_212_378_8,
+        ),
     ];
     for (arch, limit) in cases {
         let answer = traced(&arch.study());
@@ -73,14 +70,20 @@ fn elastic_voussoirs_end_at_the_limit_load() {
 fn finite_peaks() {
     for young in ["5e9", "2e10", "8e10", "3.2e11"] {
         let arch = Arch { voussoirs: 15, ..Arch::default() };
-        let text = arch.study().replace(
-            "law = \"rigid\"",
-            &format!("law = \"elastic\"\nyoung_modulus = {young}\npoisson_ratio = 0.3"),
-        );
+        let text = arch
+            .study()
+            .replace("law = \"rigid\"", &format!("law = \"elastic\"\nyoung_modulus = {young}\npoisson_ratio = 0.3"));
         let how = PathSettings { finite: true, ..settings() };
         let start = std::time::Instant::now();
         let answer = NewtonPath {}.trace(&problem(&text), &how, &mut Unobserved);
-        println!("{young} {:?} {:?} {:?} {:?} {:?}", answer.status, answer.factor, answer.counters, answer.notes, start.elapsed());
+        println!(
+            "{young} {:?} {:?} {:?} {:?} {:?}",
+            answer.status,
+            answer.factor,
+            answer.counters,
+            answer.notes,
+            start.elapsed()
+        );
         println!("{} {:?}", answer.state.displacement, answer.last.map(|l| (l.factor, l.displacement)));
     }
 }

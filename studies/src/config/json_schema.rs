@@ -10,7 +10,14 @@ use voussoir_core::units::Quantity;
 /// The schema of study files.
 pub fn json_schema() -> Json {
     let mut definitions = Map::new();
-    for kind in [PluginKind::InterfaceLaw, PluginKind::BulkMaterial, PluginKind::Scene, PluginKind::LimitSolver] {
+    for kind in [
+        PluginKind::InterfaceLaw,
+        PluginKind::BulkMaterial,
+        PluginKind::Scene,
+        PluginKind::LimitSolver,
+        PluginKind::PathSolver,
+        PluginKind::Continuation,
+    ] {
         let mut choices = Vec::new();
         for word in common_words(kind) {
             choices.push(plugin(&mut definitions, kind, word, "chosen by the program", &[]));

@@ -29,10 +29,7 @@ impl Default for LoadControl {
 impl Continuation for LoadControl {
     fn constraint(&self, increment: &Increment, _previous: Option<&Increment>) -> Constraint {
         let sign = if increment.factor < 0.0 { -1.0 } else { 1.0 };
-        Constraint {
-            value: increment.factor.abs(),
-            derivative: Increment { factor: sign, ..Increment::default() },
-        }
+        Constraint { value: increment.factor.abs(), derivative: Increment { factor: sign, ..Increment::default() } }
     }
 
     fn passes_limit_points(&self) -> bool {

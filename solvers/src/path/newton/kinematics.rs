@@ -410,12 +410,7 @@ impl<'a> Kinematics<'a> {
             add(c.minus.body, side.slot, -swing);
             let bend = -0.25 * side.sign * (turn * r).dot(&at(v, side.slot));
             let (plus, minus) = (theta(c.plus.body), theta(c.minus.body));
-            out.entries.extend([
-                (plus, plus, bend),
-                (minus, minus, bend),
-                (plus, minus, -bend),
-                (minus, plus, -bend),
-            ]);
+            out.entries.extend([(plus, plus, bend), (minus, minus, bend), (plus, minus, -bend), (minus, plus, -bend)]);
         }
         for (factor, loading) in &loads.parts {
             for (_, slot, _, load) in loading.forces.iter().filter(|l| l.0 == body) {

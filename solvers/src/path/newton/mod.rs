@@ -38,7 +38,8 @@ impl PathSolver for NewtonPath {
             return Some("nothing is loaded".into());
         }
         (!problem.deforms()).then(|| {
-            "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them".into()
+            "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them"
+                .into()
         })
     }
 }

@@ -148,7 +148,12 @@ impl<'a> Model<'a> {
         }
         let size = |loading: &Loading| load_size(problem, loading);
         let sizes: Vec<f64> = problem.drives.iter().map(|d| size(&d.loading)).collect();
-        let settlement = problem.drives.iter().flat_map(|d| &d.loading.settlements).map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * problem.length)).fold(0.0, f64::max);
+        let settlement = problem
+            .drives
+            .iter()
+            .flat_map(|d| &d.loading.settlements)
+            .map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * problem.length))
+            .fold(0.0, f64::max);
         let force = sizes.iter().copied().find(|s| *s > 0.0).unwrap_or(settlement / mean);
         let force = if force > 0.0 { force } else { 1.0 };
         let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
@@ -171,7 +176,12 @@ impl<'a> Model<'a> {
     /// Begins a drive.
     pub fn load(&mut self, loaded: Loaded<'a>) {
         let size = load_size(self.problem, loaded.growing);
-        let settlement = loaded.growing.settlements.iter().map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * self.units.length)).fold(0.0, f64::max);
+        let settlement = loaded
+            .growing
+            .settlements
+            .iter()
+            .map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * self.units.length))
+            .fold(0.0, f64::max);
         self.units.factor = match (size, settlement) {
             (s, _) if s > 0.0 => self.units.force / s,
             (_, s) if s > 0.0 => self.units.displacement / s,
@@ -260,8 +270,10 @@ impl<'a> Model<'a> {
         let forces: f64 =
             loading.forces.iter().map(|(body, _, point, f)| f.dot(&self.kinematics.rigid(*body, *point, motion))).sum();
         let bodies = self.problem.bodies.iter().zip(motion);
-        let masses: f64 =
-            bodies.filter(|(b, _)| !b.held).map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1]))).sum();
+        let masses: f64 = bodies
+            .filter(|(b, _)| !b.held)
+            .map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1])))
+            .sum();
         (forces + masses) / size
     }
 
@@ -645,10 +657,7 @@ impl<'a> Model<'a> {
             let right: Vec<f64> = residual.iter().map(|x| -x).collect();
             self.count("newton_iterations", 1);
             let Some(step) = self.solve(&state.regime, &curvature, &row, &right) else {
-                return Err(Refusal {
-                    why: "the regimes of the contact points leave no equilibrium".into(),
-                    restless,
-                });
+                return Err(Refusal { why: "the regimes of the contact points leave no equilibrium".into(), restless });
             };
             // Rotations of an iteration stay where the linearisation means something.
             let share = if self.finite() {

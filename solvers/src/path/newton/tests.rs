@@ -22,9 +22,8 @@ fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
 
 fn body(pole: Vec2, points: Vec<Vec2>, flexibility: Option<DMatrix<f64>>, held: bool) -> PathBody {
     let rows = 2 * points.len();
-    let gravity = flexibility.as_ref().map(|_| {
-        Arc::new(DMatrix::from_fn(rows, 2, |i, j| 1e-3 * ((3 * i + 5 * j) as f64).sin()))
-    });
+    let gravity =
+        flexibility.as_ref().map(|_| Arc::new(DMatrix::from_fn(rows, 2, |i, j| 1e-3 * ((3 * i + 5 * j) as f64).sin())));
     PathBody { members: vec![0], pole, held, mass: 2.0, points, flexibility: flexibility.map(Arc::new), gravity }
 }
 
@@ -131,7 +130,10 @@ fn the_tangent_is_the_derivative() {
             for i in 0..size {
                 let difference = (above[i] - below[i]) / (2.0 * h);
                 let exact = if j < size { dense[(i, j)] } else { curvature.factor[i] };
-                assert!((difference - exact).abs() < 1e-8, "finite {finite}, row {i}, column {j}: {difference} {exact}");
+                assert!(
+                    (difference - exact).abs() < 1e-8,
+                    "finite {finite}, row {i}, column {j}: {difference} {exact}"
+                );
                 checked += 1;
             }
         }
@@ -245,10 +247,7 @@ fn turning() -> PathProblem {
     two_degrees(
         K,
         1.25,
-        vec![
-            (Vec2::new(0.0, -1.0), DriveEnd::Factor(1.0)),
-            (Vec2::new(1.0, 0.0), DriveEnd::Collapse(f64::INFINITY)),
-        ],
+        vec![(Vec2::new(0.0, -1.0), DriveEnd::Factor(1.0)), (Vec2::new(1.0, 0.0), DriveEnd::Collapse(f64::INFINITY))],
     )
 }
 
@@ -266,7 +265,9 @@ fn a_path_that_turns_back() {
         let [normal, tangent] = state.gap[0];
         if normal > 1e-9 {
             open += 1;
-            assert!((tangent - (2.0 * state.factor - 1.0)).abs() < 1e-9 && (normal - (state.factor - 1.0)).abs() < 1e-9);
+            assert!(
+                (tangent - (2.0 * state.factor - 1.0)).abs() < 1e-9 && (normal - (state.factor - 1.0)).abs() < 1e-9
+            );
         } else if tangent > 1e-9 {
             slid += 1;
             assert!((state.factor - (1.25 - 0.25 * tangent)).abs() < 1e-9);
@@ -279,8 +280,7 @@ fn a_path_that_turns_back() {
 
 #[test]
 fn load_control_stops_at_the_limit_point() {
-    let answer =
-        NewtonPath {}.trace(&turning(), &settings(Some(Arc::new(LoadControl::default()))), &mut Unobserved);
+    let answer = NewtonPath {}.trace(&turning(), &settings(Some(Arc::new(LoadControl::default()))), &mut Unobserved);
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     assert!((answer.factor.unwrap() - 1.25).abs() < 1e-6, "{:?} {:?}", answer.factor, answer.notes);
     assert!(answer.counters["cutbacks"] > 0);
@@ -374,8 +374,7 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         hinge(2, supports[1], 2, 0, compliance),
     ];
     let half = Vec2::new(0.0, -0.5);
-    let loading =
-        Loading { forces: vec![(1, None, crown, half), (2, None, crown, half)], ..Loading::default() };
+    let loading = Loading { forces: vec![(1, None, crown, half), (2, None, crown, half)], ..Loading::default() };
     PathProblem {
         bodies,
         body_of: vec![0, 1, 2],
@@ -400,7 +399,8 @@ fn two_bars_snap_through() {
     let peak = load((at_peak * at_peak - a * a).sqrt());
     for strategy in [
         None,
-        Some(Arc::new(crate::path::continuation::displacement_control::DisplacementControl::default()) as Arc<dyn Continuation>),
+        Some(Arc::new(crate::path::continuation::displacement_control::DisplacementControl::default())
+            as Arc<dyn Continuation>),
         Some(Arc::new(Dissipation::default()) as Arc<dyn Continuation>),
     ] {
         let mut how = settings(strategy);
@@ -424,7 +424,10 @@ fn two_bars_snap_through() {
             least = least.min(state.factor);
             last = state.factor;
         }
-        assert!(least < -0.99 * peak && last > least, "{least} {last}: the snap goes to −peak and the load grows again");
+        assert!(
+            least < -0.99 * peak && last > least,
+            "{least} {last}: the snap goes to −peak and the load grows again"
+        );
         let end = answer.last.expect("a state behind the peak");
         assert!((end.work - end.stored).abs() < 2e-3 * peak * h, "{} {}", end.work, end.stored);
     }

@@ -8,8 +8,7 @@ use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{
-    Continuation, Drive, DriveEnd, Increment, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings,
-    PathState,
+    Continuation, Drive, DriveEnd, Increment, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
 
 /// Greatest number of steps of a drive.
@@ -160,8 +159,11 @@ impl<'a> Tracer<'a, '_> {
         let (state, last, factor, motion) = match self.peak {
             Some(peak) => (peak.state, Some(self.recorded), Some(peak.factor), peak.motion.or(self.motion)),
             None => {
-                let factor = matches!(self.status, Status::Collapse | Status::LimitPoint | Status::Stands | Status::NoEquilibrium)
-                    .then_some(self.state.factor);
+                let factor = matches!(
+                    self.status,
+                    Status::Collapse | Status::LimitPoint | Status::Stands | Status::NoEquilibrium
+                )
+                .then_some(self.state.factor);
                 (self.recorded, None, factor, self.motion)
             }
         };
@@ -356,7 +358,9 @@ impl<'a> Tracer<'a, '_> {
                 Err(refusal) => {
                     self.model.count("cutbacks", 1);
                     let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
-                    if slip <= 1e-9 * share.max(initial / per_rate) && switched_at != self.model.counters.get("steps").copied() {
+                    if slip <= 1e-9 * share.max(initial / per_rate)
+                        && switched_at != self.model.counters.get("steps").copied()
+                    {
                         // At the very event: another branch, on which the points at their limit yield.
                         switched_at = self.model.counters.get("steps").copied();
                         if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
@@ -367,7 +371,8 @@ impl<'a> Tracer<'a, '_> {
                             }
                             if falls && self.peak.is_none() {
                                 let motion = self.scaled_motion(&self.state, &other);
-                                self.peak = Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                                self.peak =
+                                    Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
                             }
                             rate = other;
                             yielding = Some(regimes);
@@ -639,7 +644,10 @@ impl<'a> Tracer<'a, '_> {
             }
             self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Collapse }, String::new());
             if self.peak.is_some() {
-                self.notes.push(format!("behind the limit point the path ends in a mechanism at factor {}", self.state.factor));
+                self.notes.push(format!(
+                    "behind the limit point the path ends in a mechanism at factor {}",
+                    self.state.factor
+                ));
             }
             return true;
         }
@@ -648,7 +656,10 @@ impl<'a> Tracer<'a, '_> {
             self.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
             self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Unbounded }, String::new());
             if self.peak.is_some() {
-                self.notes.push(format!("behind the limit point the load grows without bound from factor {}", self.state.factor));
+                self.notes.push(format!(
+                    "behind the limit point the load grows without bound from factor {}",
+                    self.state.factor
+                ));
             }
             return true;
         }
@@ -661,7 +672,10 @@ impl<'a> Tracer<'a, '_> {
         let Some(peak) = &self.peak else {
             if let Some(stop) = self.settings.stop_displacement {
                 if self.model.finite() && displacement.abs() >= stop.max(self.model.units.length) {
-                    self.end(Status::Stalled, format!("no peak up to a displacement of {displacement} m, factor {factor}"));
+                    self.end(
+                        Status::Stalled,
+                        format!("no peak up to a displacement of {displacement} m, factor {factor}"),
+                    );
                     return true;
                 }
             }
