@@ -96,8 +96,8 @@ pub static SOLVER: &[Parameter] = &[
     key("kinematics", Shape::Choice(&["small", "finite"]), Need::Default("\"small\""), "small or finite displacements"),
     key(
         "continuation",
-        Shape::Free,
-        Need::Optional("none is needed"),
+        Shape::Plugin(PluginKind::Continuation),
+        Need::Optional("the solver's own choice"),
         "strategy of path solvers: { strategy = \"arc_length\" }",
     ),
     Parameter::number(

@@ -75,10 +75,8 @@ impl Ledger {
             // Where the point yielded before on the same facet, the trapezoidal rule; where it began
             // to, its force when it began is not known: the force at the end.
             let same = start.regime[contact] == state.regime[contact];
-            for k in 0..2 {
-                let begun = if same { start.force[contact][k] } else { state.force[contact][k] };
-                self.dissipated -= 0.5 * (begun + state.force[contact][k]) * kept[k];
-            }
+            let (end, begun) = (state.force[contact], if same { start.force[contact] } else { state.force[contact] });
+            self.dissipated -= 0.5 * ((begun[0] + end[0]) * kept[0] + (begun[1] + end[1]) * kept[1]);
         }
         let problem = model.problem;
         let place = |state: &State, slopes: &Slopes, body: usize, slot: Option<usize>, point: Vec2| {

@@ -52,7 +52,6 @@ pub(super) struct Tracer<'a, 'o> {
     motion: Option<Vec<[f64; 3]>>,
     ray: Option<Vec<[f64; 2]>>,
     peak: Option<Peak>,
-    stopped: bool,
 }
 
 /// Follows all drives.
@@ -85,7 +84,6 @@ pub(super) fn trace(
         motion: None,
         ray: None,
         peak: None,
-        stopped: false,
     };
     tracer.run(problem);
     tracer.answer()
@@ -134,12 +132,7 @@ impl<'a> Tracer<'a, '_> {
                 }
             }
         }
-        self.status = if let Some(peak) = &self.peak {
-            let _ = peak;
-            Status::LimitPoint
-        } else {
-            Status::Stands
-        };
+        self.status = if self.peak.is_some() { Status::LimitPoint } else { Status::Stands };
     }
 
     fn answer(self) -> PathAnswer {
@@ -194,16 +187,15 @@ impl<'a> Tracer<'a, '_> {
         self.slopes = slopes;
         self.model.count("steps", 1);
         if !self.observer.state(self.model.problem, &self.recorded) {
-            self.stopped = true;
             self.end(Status::Stalled, "stopped by the observer".into());
             return false;
         }
-        if self.model.finite() {
-            if let Some(why) = self.left_its_pairing() {
-                let status = if self.peak.is_some() { Status::Collapse } else { Status::Stalled };
-                self.end(status, why);
-                return false;
-            }
+        if self.model.finite()
+            && let Some(why) = self.left_its_pairing()
+        {
+            let status = if self.peak.is_some() { Status::Collapse } else { Status::Stalled };
+            self.end(status, why);
+            return false;
         }
         true
     }
@@ -308,7 +300,7 @@ impl<'a> Tracer<'a, '_> {
         let mut before_peak_rate = rate.factor * direction;
         for _ in 0..MOST_STEPS {
             let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
-            if !(per_rate > 0.0) {
+            if per_rate.is_nan() || per_rate <= 0.0 {
                 previous = None;
                 if measure(&self.model, &self.state, &rate, None) <= 0.0 {
                     self.end(Status::Stalled, "what the continuation strategy controls stopped changing".into());
@@ -329,11 +321,11 @@ impl<'a> Tracer<'a, '_> {
                     length = share * per_rate;
                 }
             }
-            if !strategy.passes_limit_points() {
-                if let Some(slip) = self.first_slip(&rate).filter(|slip| *slip < share) {
-                    share = slip.max(1e-6 * share) * (1.0 + 1e-9);
-                    length = share * per_rate;
-                }
+            if !strategy.passes_limit_points()
+                && let Some(slip) = self.first_slip(&rate).filter(|slip| *slip < share)
+            {
+                share = slip.max(1e-6 * share) * (1.0 + 1e-9);
+                length = share * per_rate;
             }
             let reaches = (self.state.factor + rate.factor * share - target) * direction >= -1e-12 * unit;
             let control = if reaches {
@@ -670,15 +662,6 @@ impl<'a> Tracer<'a, '_> {
     fn stops(&mut self, drive: &Drive, direction: f64) -> bool {
         let (factor, displacement) = (self.state.factor, self.recorded.displacement);
         let Some(peak) = &self.peak else {
-            if let Some(stop) = self.settings.stop_displacement {
-                if self.model.finite() && displacement.abs() >= stop.max(self.model.units.length) {
-                    self.end(
-                        Status::Stalled,
-                        format!("no peak up to a displacement of {displacement} m, factor {factor}"),
-                    );
-                    return true;
-                }
-            }
             if self.model.finite() && displacement.abs() > self.model.units.length {
                 self.end(Status::Stalled, format!("no peak up to a displacement of {displacement} m, factor {factor}"));
                 return true;
