@@ -114,9 +114,9 @@ fn random_scenes_agree_with_limit_analysis() {
             Arch {
                 rise: 0.7 + 3.5 * random(),
                 thickness: 0.3 + 0.6 * random(),
-                voussoirs: 3 + (15.0 * random()) as usize,
+                voussoirs: 5 + (13.0 * random()) as usize,
                 ends: if random() < 0.5 { "bonded" } else { "jointed" },
-                span_fraction: 0.1 + 0.8 * random(),
+                span_fraction: 0.25 + 0.5 * random(),
                 joint: law,
                 ..Arch::default()
             }

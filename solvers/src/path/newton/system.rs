@@ -162,14 +162,15 @@ impl Model<'_> {
         out
     }
 
-    /// Solves the regimes' linear equations for one right-hand side in units. `None`: no solution.
+    /// Solves the regimes' linear equations for one right-hand side in units, and whether it is solved:
+    /// where the equations contradict each other, what comes back is the answer of the shifted ones.
     pub(super) fn solve(
         &mut self,
         regimes: &[Regime],
         curvature: &Curvature,
         row: &[f64],
         right: &[f64],
-    ) -> Option<Vec<f64>> {
+    ) -> Option<(Vec<f64>, bool)> {
         let u = self.units;
         let (points, size) = (regimes.len(), self.size());
         let last = size - 1;
@@ -242,7 +243,7 @@ impl Model<'_> {
         let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
         let aim = norm(right);
         if aim == 0.0 {
-            return Some(x);
+            return Some((x, true));
         }
         let mut best = x.clone();
         for _ in 0..30 {
@@ -264,6 +265,6 @@ impl Model<'_> {
         }
         // What is left over is rounding of the solution's own size, or the system has no solution.
         let size = norm(&best).max(aim);
-        (before <= 1e-9 * size).then_some(best)
+        Some((best, before <= 1e-9 * size))
     }
 }
