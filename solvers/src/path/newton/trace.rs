@@ -603,14 +603,15 @@ impl<'a> Tracer<'a, '_> {
         Some(Peak { factor: state.factor, state: recorded, motion })
     }
 
-    /// Velocities with p·q̇ = 1.
+    /// Velocities with p·q̇ = 1. `None` where the load does next to no work on them: rates are checked to
+    /// 1e-8 of their size, so less work than a hundred times that proves nothing.
     fn scaled_motion(&self, state: &State, rate: &Rate) -> Option<Vec<[f64; 3]>> {
         let u = self.model.units;
         let power = self.model.increment_of(state, rate).displacement
             * u.displacement
             * load_size(self.model.problem, self.model.loaded.growing);
         let size = self.model.motion_size(rate) * u.displacement * u.force / u.factor;
-        (power > 1e-12 * size).then(|| rate.motion.iter().map(|q| q.map(|x| x / power)).collect())
+        (power > 1e-6 * size).then(|| rate.motion.iter().map(|q| q.map(|x| x / power)).collect())
     }
 
     /// Whether the rate goes on for ever: collapse, or a ray that carries any load.
