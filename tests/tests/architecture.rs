@@ -60,7 +60,7 @@ fn every_card_is_complete() {
             .expect("a name")
             .to_string_lossy()
             .into_owned();
-        let named = [stem.clone(), format!("limit_{folder}"), format!("results_{stem}")];
+        let named = [stem.clone(), format!("limit_{folder}"), format!("{folder}_path"), format!("results_{stem}")];
         assert!(named.contains(&card.tag.to_string()), "{} stands in {}", card.tag, card.file);
         for parameter in card.parameters {
             documented(card.tag, parameter);
