@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Bond, Joint};
 use crate::geometry::{Vec2, turned};
-use crate::interface::{FacetMode, Formulation, InterfaceLaw};
+use crate::interface::{FacetMode, InterfaceLaw};
 use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
 
@@ -199,7 +199,8 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
 }
 
 fn contact_rays(law: &dyn InterfaceLaw) -> Vec<[f64; 2]> {
-    let Formulation::Facets(facets) = law.formulation();
+    // A law without facets never gets here: limit analysis refuses it.
+    let facets = law.formulation().facets().unwrap_or_default();
     let uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
     let mut rays = YieldPolygon::of(&uncrushed).rays;
     let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;

@@ -102,6 +102,10 @@ fn shape(of: &Shape) -> Json {
             }
             schema
         }
+        Shape::Tuple(shapes) => {
+            let entries: Vec<_> = shapes.iter().map(|of| shape(of)).collect();
+            json!({ "type": "array", "prefixItems": entries, "items": false, "minItems": shapes.len() })
+        }
         Shape::Table(parameters) => table(parameters, None),
         Shape::Tagged { key, variants } => {
             let choices: Vec<_> = variants
