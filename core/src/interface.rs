@@ -2,6 +2,8 @@
 //!
 //! A law is parameters plus a pure function; state belongs to the solver. A law knows no solver.
 
+pub mod facet_response;
+
 use crate::material::{BatchFailure, UpdateFailure};
 use serde::Serialize;
 use std::fmt::Debug;

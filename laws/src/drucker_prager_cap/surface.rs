@@ -279,6 +279,9 @@ impl Surface {
         if start.gauge.factor >= 1.0 {
             return Ok(None);
         }
+        // Dilatancy may weaken the surface faster than stress falls at first: then Newton has no step and
+        // the search begins where the shear stress is about halved.
+        let unit = self.roundness * self.roundness / (3.0 * self.elastic.shear);
         let (mut eta, mut low, mut high, mut way) = (0.0, 0.0, f64::INFINITY, start);
         for _ in 0..ITERATIONS {
             let psi = way.gauge.factor - 1.0;
@@ -288,7 +291,7 @@ impl Surface {
             if psi < 0.0 { low = eta } else { high = eta }
             let mut next = eta - psi / way.rates[2];
             if !(next > low && next < high) {
-                next = if high.is_finite() { 0.5 * (low + high) } else { 2.0 * eta };
+                next = if high.is_finite() { 0.5 * (low + high) } else { 4.0 * eta + unit };
             }
             if next <= low || next >= high || next == eta {
                 // Nothing left between two neighbouring numbers.
