@@ -155,6 +155,7 @@ impl InterfaceResponse for CohesiveResponse {
         let pressure_by_n = if g_n < 0.0 { -k_n } else { 0.0 };
         // Force of the broken share, k_t (D g_t − z), within D μ p.
         let (mut slip, mut slip_by) = (slip_old, [0.0; 2]);
+        let mut shear = k_t * (g_t - slip_old);
         let carried = k_t * (damage * g_t - slip_old);
         let limit = damage * self.friction * pressure;
         let slides = damage > 0.0 && carried.abs() > limit;
@@ -162,13 +163,15 @@ impl InterfaceResponse for CohesiveResponse {
             let sense = carried.signum();
             let per_damage = g_t - sense * self.friction * pressure / k_t;
             slip = damage * per_damage;
+            // The same as k_t (g_t − z), without its cancellation.
+            shear = (1.0 - damage) * k_t * g_t + sense * limit;
             slip_by = [
                 damage_by[0] * per_damage - damage * sense * self.friction * pressure_by_n / k_t,
                 damage_by[1] * per_damage + damage,
             ];
         }
         (new[0], new[1]) = (damage, slip);
-        let traction = [-(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n * g_n, -k_t * (g_t - slip)];
+        let traction = [-(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n * g_n, -shear];
         let tangent = [
             [-(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n + k_n * opening * damage_by[0], k_n * opening * damage_by[1]],
             [k_t * slip_by[0], -k_t * (1.0 - slip_by[1])],
@@ -179,7 +182,8 @@ impl InterfaceResponse for CohesiveResponse {
             + 0.5 * (k_n * (-g_n).max(0.0).powi(2) + damage * k_t * broken * broken);
         // Energy released per damage, averaged over the growth: with r(D) = 1/(1 − η D) its mean over
         // (D_old, D) is that at r² → r(D_old) r(D), exact on proportional paths.
-        let mut dissipated = k_t * broken * (slip - slip_old);
+        let mut dissipated =
+            if slides { (carried.signum() * (slip - slip_old)).max(0.0) * limit / damage } else { 0.0 };
         if grows {
             let at = |d: f64| 1.0 / (1.0 - trial.brittleness * d);
             let mean = at(damage_old) * at(damage) / (trial.reach * trial.reach);

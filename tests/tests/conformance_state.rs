@@ -28,6 +28,9 @@ fn sample(card: &Card) -> serde_json::Value {
     table.insert("law".into(), card.tag.into());
     for parameter in card.parameters {
         let optional = matches!(parameter.need, Need::Optional(_)) && !chosen.contains(&parameter.name);
+        if let Shape::Choice(words) = &parameter.shape {
+            table.insert(parameter.name.into(), serde_json::json!(words[words.len() - 1]));
+        }
         if let (Shape::Number(_, range), false) = (&parameter.shape, optional) {
             // Poisson's ratio, transition and compaction are small.
             let small = ["transition", "initial_compaction", "residual_stress"].contains(&parameter.name);
@@ -90,7 +93,7 @@ fn every_material_with_state_conforms() {
         let size = update.state_size();
         let length = length(&*update);
         assert_eq!(update.state_names().len(), size, "{tag}");
-        for _ in 0..60 {
+        for _ in 0..150 {
             let mut old = vec![0.0; size];
             update.initial_state(&mut old);
             let mut strain = [0.0; 6];

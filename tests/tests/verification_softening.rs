@@ -72,7 +72,7 @@ fn crushing_takes_its_fracture_energy_at_any_length() {
         let length = share * largest;
         let mut point = DrivenPoint::new(PointLaw::Space(update.clone(), length)).unwrap();
         let end = 2.0 * energy / (length * 2.57 * MPA) * (1.0 - 0.33);
-        let (mut work, mut peak, steps) = (0.0, 0.0_f64, 400);
+        let (mut work, mut peak, steps) = (0.0, 0.0_f64, 2000);
         for step in 1..=steps {
             let now = -1.2 * end.max(crushing / law.young_modulus) * f64::from(step) / f64::from(steps);
             let before = (point.response.strain[0], point.response.stress[0]);
