@@ -75,7 +75,8 @@ pub fn strains(update: &dyn StressUpdate, region: &str, count: usize) -> Vec<[f6
             0.0,
         ];
         let found = update.update_point(&strain, 1.0, &old, &mut new);
-        let StressPoint { region: here, .. } = found.unwrap_or(StressPoint { region: Region::Elastic, ..StressPoint::ZERO });
+        let StressPoint { region: here, .. } =
+            found.unwrap_or(StressPoint { region: Region::Elastic, ..StressPoint::ZERO });
         if here.name() == region {
             out.push(strain);
             if out.len() == count {

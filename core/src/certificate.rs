@@ -81,9 +81,12 @@ struct Check<'a> {
 /// that field and motion prove where both exist.
 pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64) -> (Certificate, Option<[f64; 2]>) {
     let joined = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
-    let unread = assembly.catalogue.laws.iter().enumerate().find_map(|(index, (name, law))| {
-        (joined(index) && law.formulation().facets().is_none()).then_some(name)
-    });
+    let unread = assembly
+        .catalogue
+        .laws
+        .iter()
+        .enumerate()
+        .find_map(|(index, (name, law))| (joined(index) && law.formulation().facets().is_none()).then_some(name));
     if let Some(name) = unread {
         let failures = vec![format!("joint law \"{name}\" is not given by facets: its strength cannot be checked")];
         return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);

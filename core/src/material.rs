@@ -157,8 +157,13 @@ pub trait StressUpdate: Debug + Send + Sync {
 
     /// The update of one point. `length` is its characteristic length \[m\] (the width over which
     /// an element localises); only softening laws read it. `old` and `new` are as long as the state.
-    fn update_point(&self, strain: &Voigt, length: f64, old: &[f64], new: &mut [f64])
-    -> Result<StressPoint, UpdateFailure>;
+    fn update_point(
+        &self,
+        strain: &Voigt,
+        length: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<StressPoint, UpdateFailure>;
 
     /// The greatest characteristic length \[m\] this material can have: beyond it the softening
     /// branch of a point would snap back, and elements are an input error.

@@ -173,7 +173,10 @@ impl InterfaceResponse for CohesiveResponse {
         (new[0], new[1]) = (damage, slip);
         let traction = [-(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n * g_n, -shear];
         let tangent = [
-            [-(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n + k_n * opening * damage_by[0], k_n * opening * damage_by[1]],
+            [
+                -(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n + k_n * opening * damage_by[0],
+                k_n * opening * damage_by[1],
+            ],
             [k_t * slip_by[0], -k_t * (1.0 - slip_by[1])],
         ];
         let per_damage = if damage > 0.0 { slip / damage } else { 0.0 };

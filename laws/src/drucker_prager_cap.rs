@@ -129,7 +129,8 @@ impl DruckerPragerCap {
                 } else if table.iter().any(|entry| entry[1] <= 0.0) {
                     say("hardening", "p_b must be greater than 0".into());
                 } else if cosine > 0.0 && self.transition * sine * sine < cosine {
-                    let steepest = table.windows(2).map(|p| (p[1][1] - p[0][1]) / (p[1][0] - p[0][0])).fold(0.0, f64::max);
+                    let steepest =
+                        table.windows(2).map(|p| (p[1][1] - p[0][1]) / (p[1][0] - p[0][0])).fold(0.0, f64::max);
                     let most = self.steepest_hardening();
                     if steepest >= most {
                         say(

@@ -67,7 +67,8 @@ impl DruckerPragerSoftening {
             }
             (Some(ultimate), None) if self.drop() / ultimate >= self.steepest_softening() => {
                 let least = self.drop() / self.steepest_softening();
-                let message = format!("{ultimate} is too brittle: a point would snap back; it must be above {least:.4e}");
+                let message =
+                    format!("{ultimate} is too brittle: a point would snap back; it must be above {least:.4e}");
                 wrong.push(("ultimate_plastic_strain".into(), message));
             }
             _ => {}
@@ -90,9 +91,9 @@ impl BulkMaterial for DruckerPragerSoftening {
         Some(Arc::new(SofteningUpdate {
             elastic: Isotropic::new(self.young_modulus, self.poisson_ratio),
             law: self.clone(),
-            largest_length: self.crushing_fracture_energy.map_or(f64::INFINITY, |energy| {
-                2.0 * energy * self.steepest_softening() / self.drop().powi(2)
-            }),
+            largest_length: self
+                .crushing_fracture_energy
+                .map_or(f64::INFINITY, |energy| 2.0 * energy * self.steepest_softening() / self.drop().powi(2)),
         }))
     }
 }

@@ -273,8 +273,7 @@ impl DrivenPoint {
                 *entry = *target;
             }
         }
-        let free: Vec<usize> =
-            (0..controls.len()).filter(|&i| matches!(controls[i], Control::Stress(_))).collect();
+        let free: Vec<usize> = (0..controls.len()).filter(|&i| matches!(controls[i], Control::Stress(_))).collect();
         // Predictor: the old tangent carries the change of the given strains to the free ones.
         let change: [f64; COMPONENTS] = std::array::from_fn(|i| strain[i] - self.response.strain[i]);
         let mut right = residual(controls, &self.response);

@@ -267,7 +267,8 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
     let mut mistakes = apply(&mut root, sets);
     if root.table().and_then(|table| table.get("kind")?.text()) == Some("point") {
         let message = "\"point\" has no scene to solve";
-        mistakes.push(Mistake::new(&root.place("kind"), "kind", message).help("drive it by `voussoir point STUDY.toml`"));
+        mistakes
+            .push(Mistake::new(&root.place("kind"), "kind", message).help("drive it by `voussoir point STUDY.toml`"));
         return Err(mistakes);
     }
     check_variants(&root, &mut mistakes);
@@ -601,10 +602,8 @@ fn choose_solver(
             let Some(card) = card(kind, law) else {
                 continue;
             };
-            let missing: Vec<_> = asked
-                .iter()
-                .filter(|need| concerns(**need) == kind && !card.provides.contains(need))
-                .collect();
+            let missing: Vec<_> =
+                asked.iter().filter(|need| concerns(**need) == kind && !card.provides.contains(need)).collect();
             for need in missing {
                 let able = solvers_that(|solver| !solver.requires.contains(need));
                 let message = format!(

@@ -35,7 +35,10 @@ fn sample(card: &Card) -> serde_json::Value {
             // Poisson's ratio, transition and compaction are small.
             let small = ["transition", "initial_compaction", "residual_stress"].contains(&parameter.name);
             let value = if small { 0.02 } else { 0.25 };
-            table.insert(parameter.name.into(), serde_json::json!(if range.contains(value) { value } else { range.min + 1.0 }));
+            table.insert(
+                parameter.name.into(),
+                serde_json::json!(if range.contains(value) { value } else { range.min + 1.0 }),
+            );
         }
     }
     serde_json::Value::Object(table)
@@ -50,8 +53,7 @@ fn materials() -> Vec<(&'static str, Arc<dyn StressUpdate>, Arc<dyn StressUpdate
         own.as_object_mut().unwrap().remove("law");
         assert_eq!((card.check)(&own), vec![], "{}", card.tag);
         let material: Box<dyn BulkMaterial> = serde_json::from_value(table).unwrap();
-        let again: Box<dyn BulkMaterial> =
-            serde_json::from_value(serde_json::to_value(&material).unwrap()).unwrap();
+        let again: Box<dyn BulkMaterial> = serde_json::from_value(serde_json::to_value(&material).unwrap()).unwrap();
         assert_eq!(material.stress_update().is_some(), offers, "{}", card.tag);
         out.extend(material.stress_update().zip(again.stress_update()).map(|(one, two)| (card.tag, one, two)));
     }
@@ -101,7 +103,8 @@ fn every_material_with_state_conforms() {
                 let step = 10f64.powf(uniform(&mut rng, -1.5, 0.5));
                 strain.iter_mut().for_each(|e| *e += step * uniform(&mut rng, -1.0, 1.0));
                 let (mut new, mut other) = (vec![0.0; size], vec![9.0; size]);
-                let here = update.update_point(&strain, length, &old, &mut new).unwrap_or_else(|f| panic!("{tag}: {f}"));
+                let here =
+                    update.update_point(&strain, length, &old, &mut new).unwrap_or_else(|f| panic!("{tag}: {f}"));
                 assert_eq!(here, again.update_point(&strain, length, &old, &mut other).unwrap(), "{tag} is not pure");
                 assert_eq!(new, other, "{tag} is not pure");
                 let mut batch = [StressPoint::ZERO];
@@ -121,9 +124,8 @@ fn every_material_with_state_conforms() {
                 let worst = |f: &dyn Fn(usize) -> f64| (0..6).fold(0.0_f64, |m, i| m.max(f(i).abs()));
                 let spread = worst(&|i| (a[i] - b[i]) / (2.0 * h) - (c[i] - d[i]) / h);
                 if same && spread < 1e-6 {
-                    let error = worst(&|i| {
-                        (0..6).map(|j| here.tangent[i][j] * direction[j]).sum::<f64>() - (c[i] - d[i]) / h
-                    });
+                    let error =
+                        worst(&|i| (0..6).map(|j| here.tangent[i][j] * direction[j]).sum::<f64>() - (c[i] - d[i]) / h);
                     assert!(error < 1e-6, "{tag}: tangent off by {error:e} in {:?}", here.region);
                     *compared.entry((tag, here.region.name())).or_default() += 1;
                 }

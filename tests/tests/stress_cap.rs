@@ -1,8 +1,8 @@
 //! The return to the cap model on random trial states at any distance, against a solver that shares
 //! nothing with it, and its tangent against finite differences.
 
-use proptest::test_runner::{RngAlgorithm, TestRng};
 use proptest::prelude::Rng;
+use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::collections::BTreeMap;
 use voussoir::core::assembly::Plane;
 use voussoir::core::material::plane::PlanarUpdate;
@@ -155,7 +155,8 @@ fn trial(rng: &mut TestRng, law: &DruckerPragerCap, size: f64) -> ([f64; 6], f64
     let scale = if uniform(rng, 0.0, 1.0) < 0.02 { 0.0 } else { q / von_mises(&deviator) };
     let mut strain = [0.0; 6];
     for i in 0..6 {
-        strain[i] = scale * deviator[i] / if i < 3 { 2.0 * shear } else { shear } - if i < 3 { p / (3.0 * bulk) } else { 0.0 };
+        strain[i] =
+            scale * deviator[i] / if i < 3 { 2.0 * shear } else { shear } - if i < 3 { p / (3.0 * bulk) } else { 0.0 };
     }
     (strain, uniform(rng, -0.01, 0.06))
 }
@@ -312,7 +313,10 @@ fn plane_stress_has_no_stress_across_and_its_own_tangent() {
                 panic!("{name}: no answer for {strain:?}");
             };
             let largest = here.stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            assert!(here.stress_across.abs() <= 1e-9 * largest + 1e-14 * law.young_modulus * (size + new[7].abs()), "{name}: {here:?}");
+            assert!(
+                here.stress_across.abs() <= 1e-9 * largest + 1e-14 * law.young_modulus * (size + new[7].abs()),
+                "{name}: {here:?}"
+            );
             let direction: [f64; 3] = std::array::from_fn(|_| normal(&mut rng));
             let h = 1e-4 * size;
             let mut same = true;
@@ -331,7 +335,11 @@ fn plane_stress_has_no_stress_across_and_its_own_tangent() {
             }
             let rate: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| here.tangent[i][j] * direction[j]).sum());
             let error = (0..3).fold(0.0_f64, |m, i| m.max((rate[i] - (4.0 * fine[i] - wide[i]) / 3.0).abs()));
-            assert!(error <= 1e-5 * law.young_modulus + spread, "{name}: {error:e} in {:?}, spread {spread:e}", here.region);
+            assert!(
+                error <= 1e-5 * law.young_modulus + spread,
+                "{name}: {error:e} in {:?}, spread {spread:e}",
+                here.region
+            );
             *compared.entry(here.region).or_default() += 1;
         }
     }

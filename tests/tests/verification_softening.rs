@@ -1,11 +1,11 @@
 //! Softening laws: a published test of a finite-element program, fracture energies, dry friction.
 
+use std::sync::Arc;
 use voussoir::core::interface::{Formulation, InterfaceLaw, InterfaceResponse};
 use voussoir::core::material::{BulkMaterial, UpdateFailure};
 use voussoir::laws::cohesive::Cohesive;
 use voussoir::laws::drucker_prager_softening::DruckerPragerSoftening;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
-use std::sync::Arc;
 
 const MPA: f64 = 1e6;
 const FREE: Control = Control::Stress(0.0);

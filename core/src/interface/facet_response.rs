@@ -63,8 +63,7 @@ impl FacetResponse {
         if determinant == 0.0 {
             return None;
         }
-        let steps =
-            [(away[0] * b[1] - away[1] * b[0]) / determinant, (a[0] * away[1] - a[1] * away[0]) / determinant];
+        let steps = [(away[0] * b[1] - away[1] * b[0]) / determinant, (a[0] * away[1] - a[1] * away[0]) / determinant];
         (steps[0] >= 0.0 && steps[1] >= 0.0).then(|| Active {
             facets: [Some(one), Some(two)],
             steps,
@@ -81,7 +80,8 @@ impl FacetResponse {
                 let pull = self.pull(facet.flow);
                 let across = dot(facet.normal, pull);
                 let row = [facet.normal[0] * k_n, facet.normal[1] * k_t];
-                let entry = |i: usize, j: usize| pull[i] * row[j] / across - if i == j { self.stiffness[i] } else { 0.0 };
+                let entry =
+                    |i: usize, j: usize| pull[i] * row[j] / across - if i == j { self.stiffness[i] } else { 0.0 };
                 [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
             }
             _ => [[-k_n, 0.0], [0.0, -k_t]],
@@ -119,9 +119,11 @@ impl InterfaceResponse for FacetResponse {
             Active { facets: [None; 2], steps: [0.0; 2], traction: trial, excess: self.excess(trial).max(0.0) };
         if found.excess > 0.0 {
             let alone = self.facets.iter().filter_map(|facet| self.alone(trial, facet));
-            let pairs = self.facets.iter().enumerate().flat_map(|(i, one)| {
-                self.facets[i + 1..].iter().filter_map(move |two| self.pair(trial, one, two))
-            });
+            let pairs = self
+                .facets
+                .iter()
+                .enumerate()
+                .flat_map(|(i, one)| self.facets[i + 1..].iter().filter_map(move |two| self.pair(trial, one, two)));
             for candidate in alone.chain(pairs) {
                 if candidate.excess < found.excess {
                     found = candidate;

@@ -139,13 +139,7 @@ impl PlanarUpdate {
             }
             let place = start * size..end * size;
             self.law
-                .update(
-                    &space[..here],
-                    &lengths[start..end],
-                    &old[place.clone()],
-                    &mut new[place],
-                    &mut found[..here],
-                )
+                .update(&space[..here], &lengths[start..end], &old[place.clone()], &mut new[place], &mut found[..here])
                 .map_err(|wrong| BatchFailure { point: start + wrong.point, ..wrong })?;
             for (point, found) in points[start..end].iter_mut().zip(&found) {
                 *point = planar(found, 0.0, None);
@@ -177,7 +171,8 @@ impl PlanarUpdate {
             let stress = point.stress[ACROSS];
             let largest = IN_PLANE.iter().fold(0.0_f64, |a, &i| a.max(point.stress[i].abs()));
             let noise = 4.0 * f64::EPSILON * self.stiffness * size.max(z.abs());
-            let closed = matches!((low, high), (Some(l), Some(h)) if !(l < z && z < h) || h - l <= 4.0 * f64::EPSILON * z.abs());
+            let closed =
+                matches!((low, high), (Some(l), Some(h)) if !(l < z && z < h) || h - l <= 4.0 * f64::EPSILON * z.abs());
             if stress.abs() <= 1e-13 * largest + noise || (closed && stress.abs() <= 1e-9 * largest + noise) {
                 new[own] = z;
                 return Ok(planar(&point, z, Some(self.stiffness)));
@@ -185,7 +180,11 @@ impl PlanarUpdate {
             if closed {
                 return Err(UpdateFailure::NoConvergence);
             }
-            if stress > 0.0 { high = Some(z) } else { low = Some(z) }
+            if stress > 0.0 {
+                high = Some(z)
+            } else {
+                low = Some(z)
+            }
             let slope = point.tangent[ACROSS][ACROSS];
             let newton = z - stress / slope;
             z = match (low, high) {

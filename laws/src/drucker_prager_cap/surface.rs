@@ -288,7 +288,11 @@ impl Surface {
             if psi.abs() <= 4.0 * f64::EPSILON {
                 return Ok(Some(self.finished(side, eta, &way)));
             }
-            if psi < 0.0 { low = eta } else { high = eta }
+            if psi < 0.0 {
+                low = eta
+            } else {
+                high = eta
+            }
             let mut next = eta - psi / way.rates[2];
             if !(next > low && next < high) {
                 next = if high.is_finite() { 0.5 * (low + high) } else { 4.0 * eta + unit };
@@ -296,11 +300,7 @@ impl Surface {
             if next <= low || next >= high || next == eta {
                 // Nothing left between two neighbouring numbers.
                 let met = psi.abs() <= 1e-12;
-                return if met {
-                    Ok(Some(self.finished(side, eta, &way)))
-                } else {
-                    Err(UpdateFailure::NoConvergence)
-                };
+                return if met { Ok(Some(self.finished(side, eta, &way))) } else { Err(UpdateFailure::NoConvergence) };
             }
             eta = next;
             way = at(eta);

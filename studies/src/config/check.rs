@@ -212,7 +212,8 @@ impl<'a> Checker<'a> {
             }
             (Shape::Tuple(shapes), Value::Array(nodes)) => {
                 if nodes.len() != shapes.len() {
-                    let message = format!("the list has {} entries; it needs {}", nodes.len(), shapes.len());
+                    let entries = if nodes.len() == 1 { "entry" } else { "entries" };
+                    let message = format!("the list has {} {entries}; it needs {}", nodes.len(), shapes.len());
                     let help = format!("write {}", describe(shape));
                     return self.wrong_with_help(&node.origin, key, message, help);
                 }

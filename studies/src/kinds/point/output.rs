@@ -107,7 +107,13 @@ pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
     let mut header = vec!["id".to_string(), "case".into(), "law".into(), "status".into(), "rows".into()];
     let plotted = study.cases.first().map_or(String::new(), |case| case.plot[1].clone());
     let label = results.first().and_then(|r| Some(r.columns[column(r, &plotted)?].clone())).unwrap_or(plotted);
-    header.extend([format!("least {label}"), "greatest".into(), "last".into(), "last region".into(), "dissipated".into()]);
+    header.extend([
+        format!("least {label}"),
+        "greatest".into(),
+        "last".into(),
+        "last region".into(),
+        "dissipated".into(),
+    ]);
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
     for (case, result) in study.cases.iter().zip(results) {
         let values: Vec<f64> = column(result, &case.plot[1])

@@ -50,20 +50,45 @@ static TRACTION: Shape = Shape::Table(&[component("n", Quantity::Stress), compon
 
 static SEGMENT: Shape = Shape::Table(&[
     key("steps", Shape::Integer { min: 1, max: 100_000 }, Need::Default("20"), "equal steps of the segment"),
-    key("strain", STRAIN, Need::Default("{}"), "strains at the end of the segment, tension positive, engineering shears"),
+    key(
+        "strain",
+        STRAIN,
+        Need::Default("{}"),
+        "strains at the end of the segment, tension positive, engineering shears",
+    ),
     key("stress", STRESS, Need::Default("{}"), "stresses at the end of the segment, tension positive"),
     key("gap", GAP, Need::Default("{}"), "gaps of a joint at the end of the segment, n > 0 open"),
-    key("traction", TRACTION, Need::Default("{}"), "tractions of a joint at the end of the segment, n > 0 in compression"),
+    key(
+        "traction",
+        TRACTION,
+        Need::Default("{}"),
+        "tractions of a joint at the end of the segment, n > 0 in compression",
+    ),
 ]);
 
 /// Keys of `[point]`.
 pub static POINT: &[Parameter] = &[
     key("material", Shape::Reference("materials"), Need::Optional("joint is given"), "the material that is driven"),
     key("joint", Shape::Reference("joints"), Need::Optional("material is given"), "the joint law that is driven"),
-    key("plane", Shape::Choice(&["strain", "stress"]), Need::Optional("a material is driven in space"), "plane strain or plane stress"),
-    Parameter::number("length", Quantity::Length, Range::POSITIVE, "characteristic length over which the material localises")
-        .optional("1 m; only softening materials read it"),
-    key("path", Shape::List { of: &SEGMENT, min: 1, max: 1000 }, Need::Required, "segments of the path, [[point.path]], in order"),
+    key(
+        "plane",
+        Shape::Choice(&["strain", "stress"]),
+        Need::Optional("a material is driven in space"),
+        "plane strain or plane stress",
+    ),
+    Parameter::number(
+        "length",
+        Quantity::Length,
+        Range::POSITIVE,
+        "characteristic length over which the material localises",
+    )
+    .optional("1 m; only softening materials read it"),
+    key(
+        "path",
+        Shape::List { of: &SEGMENT, min: 1, max: 1000 },
+        Need::Required,
+        "segments of the path, [[point.path]], in order",
+    ),
     key(
         "plot",
         Shape::List { of: &Shape::Text, min: 2, max: 2 },
@@ -203,7 +228,7 @@ fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<Mistake
     let mut builder = Builder { root: &root, mistakes };
     let point = &resolved["point"];
     let law = read_law(&mut builder, &resolved, point);
-    let (Some((tag, law)), true) = (law, builder.mistakes.is_empty()) else {
+    let Some((tag, law)) = law else {
         return Err(builder.mistakes);
     };
     let path: Vec<Segment> = (0..point["path"].as_array().map_or(0, Vec::len))
@@ -242,7 +267,11 @@ fn read_law(builder: &mut Builder<'_>, resolved: &Json, point: &Json) -> Option<
                     "{length} m is too large for the fracture energy: a point would snap back; it must be at most {:.6} m",
                     update.largest_length()
                 );
-                builder.wrong("point.length", message, "give a shorter length (smaller elements) or more fracture energy");
+                builder.wrong(
+                    "point.length",
+                    message,
+                    "give a shorter length (smaller elements) or more fracture energy",
+                );
                 return None;
             }
             let plane = match point["plane"].as_str() {
