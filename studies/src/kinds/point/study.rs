@@ -162,7 +162,7 @@ pub fn is_point(text: &str, sets: &[(String, String)]) -> bool {
     root.table().and_then(|table| table.get("kind")?.text()) == Some("point")
 }
 
-/// The schema of such a study as a JSON Schema object.
+/// The keys of such a study, for its JSON Schema.
 pub fn schema() -> &'static [Parameter] {
     STUDY
 }
