@@ -346,17 +346,17 @@ fn solve_free(
     for k in 0..n {
         let places = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
         let (i, j) = places.max_by(|a, b| matrix[a.0][a.1].abs().total_cmp(&matrix[b.0][b.1].abs()))?;
-        if !(matrix[i][j].abs() > 1e-14 * scale) {
+        let pivot = matrix[i][j].abs();
+        if pivot.is_nan() || pivot <= 1e-14 * scale {
             return None;
         }
         matrix.swap(k, i);
         matrix.iter_mut().for_each(|row| row.swap(k, j));
         order.swap(k, j);
-        for i in k + 1..n {
-            let factor = matrix[i][k] / matrix[k][k];
-            for j in k..=n {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
+        let (above, below) = matrix.split_at_mut(k + 1);
+        for row in below {
+            let factor = row[k] / above[k][k];
+            row.iter_mut().zip(&above[k]).skip(k).for_each(|(entry, pivot)| *entry -= factor * pivot);
         }
     }
     let mut out = [0.0; COMPONENTS];

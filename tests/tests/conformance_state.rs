@@ -44,7 +44,10 @@ fn sample(card: &Card) -> serde_json::Value {
     serde_json::Value::Object(table)
 }
 
-fn materials() -> Vec<(&'static str, Arc<dyn StressUpdate>, Arc<dyn StressUpdate>)> {
+/// Tag, law, and the law after a round trip.
+type Twice = (&'static str, Arc<dyn StressUpdate>, Arc<dyn StressUpdate>);
+
+fn materials() -> Vec<Twice> {
     let mut out = Vec::new();
     for card in cards().into_iter().filter(|card| card.kind == PluginKind::BulkMaterial) {
         let offers = card.provides.contains(&Capability::StressUpdate);
