@@ -1,5 +1,7 @@
 //! Scenes that benches share, made from study files, so that a user can repeat a bench with `voussoir run`.
 
+pub mod point;
+
 use voussoir::study::{Case, load};
 
 /// A jointed segmental ring of `voussoirs` (span 9.42 m, rise 2.99 m, thickness 0.6 m, 1 m wide,

@@ -239,22 +239,6 @@ impl PathProblem {
             if !matching {
                 crowded.insert(index);
             }
-            // A rigid joint without compliance: its two ends span every resultant.
-            let order = match (any_elastic, stiffness) {
-                (true, _) => assembly.mesh.order,
-                (false, Some(_)) => assembly.mesh.order.max(2),
-                (false, None) => 1,
-            };
-            let (positions, weights) = joint_points(&breaks, order);
-            let (normal, tangent) = joint.frame();
-            let height = joint.height();
-            // Where two meshes do not match, more points than nodes meet and the flexibility is
-            // singular: a bedding far stiffer than the blocks shares the forces. It is part of the
-            // model, proportional to area (a uniform pressure stays uniform), and moves no limit load.
-            let matching = meshes.windows(2).all(|pair| pair[0].len() == breaks.len() && pair[1].len() == breaks.len());
-            let softest = sides.iter().filter_map(|side| modulus(assembly, *side)).fold(f64::INFINITY, f64::min);
-            let bedding = (!matching).then(|| [BEDDING * softest / height; 2]);
-            let stiffness = stiffness.or(bedding);
             for (position, weight) in positions.into_iter().zip(weights) {
                 let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
                 let area = weight * height * assembly.width;
