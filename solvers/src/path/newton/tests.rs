@@ -286,19 +286,32 @@ fn load_control_stops_at_the_limit_point() {
     assert!(answer.counters["cutbacks"] > 0);
 }
 
-/// Total loads f = (1.2, −1), applied together: the solutions of the benchmark for each μ.
+/// Total loads f = (1.2, −1), applied together. μ = 0.5, 0.9: separation, u = K⁻¹ f = (1.4, 0.2), the only
+/// solution. μ = 1.25, 1.5, 2: sticking, where |f_t| ≤ μ |f_n|; the other solutions of the
+/// benchmark (slip, separation) are not sought by a path that starts stuck.
 #[test]
-fn solutions_of_the_two_degree_example() {
-    for (friction, slips) in [(1.5, 0.6), (2.0, 0.8)] {
-        // K u = f + r with r_t = −μ r_n: closed solution by hand: u_t.
+fn one_solution_of_the_two_degree_example() {
+    for (friction, tangential, normal) in
+        [(0.5, 1.4, 0.2), (0.9, 1.4, 0.2), (1.25, 0.0, 0.0), (1.5, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    {
         let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
         let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
-        assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-        let _ = slips;
+        assert_eq!(answer.status, Status::Stands, "μ {friction}: {:?}", answer.notes);
         let [n, t] = answer.state.gap[0];
-        // At these frictions sticking is a solution too (|f_t| ≤ μ |f_n|), and it is where loading leads.
-        assert!(n.abs() < 1e-12 && t.abs() < 1e-12);
+        assert!((n - normal).abs() < 1e-12 && (t - tangential).abs() < 1e-12, "μ {friction}: {n} {t}");
     }
+}
+
+/// The same with μ = 1.1, where separation is the only solution too: NOT solved. The whole step cycles, and
+/// the steps from the unloaded state report a limit point that does not exist.
+#[test]
+#[ignore = "known to fail: a false limit point from the unloaded state"]
+fn separation_at_a_friction_close_to_the_load() {
+    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
+    let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
+    assert_eq!(answer.status, Status::Stands, "{:?} {:?} {:?}", answer.factor, answer.state.gap, answer.notes);
+    let [n, t] = answer.state.gap[0];
+    assert!((n - 0.2).abs() < 1e-12 && (t - 1.4).abs() < 1e-12, "{n} {t}");
 }
 
 /// A block on a spring, pressed with 1 N, μ = 0.5: slips at 0.5, unloads elastically, slips back after
