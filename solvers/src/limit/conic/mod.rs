@@ -2,7 +2,7 @@
 
 mod interior_point;
 mod polish;
-mod sparse;
+pub(super) mod sparse;
 mod system;
 
 use super::{Engine, Greatest, Verdict, answer, driven, force_scale, force_unit};
@@ -47,6 +47,11 @@ voussoir_core::inventory::submit! {
         page: include_str!("limit_conic.md"),
         check: no_further_check,
     }
+}
+
+/// The conic programs of a problem.
+pub(super) fn engine(problem: &LimitProblem) -> impl Engine + '_ {
+    ConicEngine { problem, work: Counters::new() }
 }
 
 struct ConicEngine<'a> {
