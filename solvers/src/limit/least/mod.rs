@@ -131,13 +131,12 @@ impl Least<'_> {
         let at_vertex: Vec<usize> = (0..pairs).filter(|&i| statics.at_zero(i)).collect();
         let start = vec![0.0; self.systems.forces + 1];
         let fields = [at_vertex, moving.clone()];
-        let (z, _) = fields
-            .into_iter()
-            .filter_map(|yielding| self.systems.field(&yielding, start.clone()))
-            .find(|(z, violation)| {
+        let (z, _) = fields.into_iter().filter_map(|yielding| self.systems.field(&yielding, start.clone())).find(
+            |(z, violation)| {
                 let idle = moving.iter().map(|&i| self.systems.slack(i, z).abs()).fold(0.0, f64::max);
                 violation.max(idle) <= ADMISSIBLE && z[self.systems.forces] >= -ADMISSIBLE
-            })?;
+            },
+        )?;
         let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
         let (motion, wrong) = self.systems.motion(self.problem, &moves)?;
         if wrong > ADMISSIBLE {
@@ -208,29 +207,28 @@ impl LimitSolver for LimitLeast {
         let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
         let most = associated_theta.unwrap_or((max - start) / unit);
         let mut best = least.first(&answer, start);
-        let mut gamma = best.as_ref().map(|b| least.systems.multipliers(problem, &b.1.motion));
-        let searchable = least.searchable();
-        if searchable.is_err() || best.is_none() {
-            let from = answer.field.clone().unwrap_or_default();
-            match sequence(problem, &base, &from, &mut answer.counters) {
-                Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
-                    gamma = Some(least.systems.multipliers(problem, &state.motion));
-                    best = Some((state.factor / unit, state));
-                }
-                Sequence::Converged(_) => {}
-                Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
-            }
-        }
         let mut lower = 0.0;
-        match searchable {
+        match least.searchable() {
             Err(why) => answer.notes.push(why),
             Ok(()) => {
                 let most = best.as_ref().map_or(most, |b| b.0.min(most));
                 if most > 0.0 {
-                    let found = least.local(most, gamma);
+                    let from = answer.motion.as_ref().map(|motion| least.systems.multipliers(problem, motion));
+                    let found = least.local(most, from);
                     least.take(found.map(|state| state.moving), &mut best);
                 }
                 lower = least.prove(self.search_limit, most, &mut best);
+            }
+        }
+        // Where something lower is not excluded, the sequence may know it.
+        if best.as_ref().is_none_or(|b| lower < b.0 * (1.0 - 2.0 * GAP)) {
+            let from = answer.field.clone().unwrap_or_default();
+            match sequence(problem, &base, &from, &mut answer.counters) {
+                Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
+                    best = Some((state.factor / unit, state));
+                }
+                Sequence::Converged(_) => {}
+                Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
             }
         }
         for (name, count) in [

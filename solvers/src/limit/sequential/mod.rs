@@ -14,7 +14,7 @@ use voussoir_core::schema::PluginKind;
 
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
-pub const TOLERANCE: f64 = 1e-7;
+pub const TOLERANCE: f64 = 1e-6;
 /// Greatest number of programs.
 const PROGRAMS: usize = 120;
 /// A field moved onto the yield surface is admissible to this.
@@ -75,12 +75,7 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
 }
 
 /// Runs the sequence from a field, that of associated flow by default.
-pub fn sequence(
-    problem: &LimitProblem,
-    base: &Wrenches,
-    from: &[JointForce],
-    counters: &mut Counters,
-) -> Sequence {
+pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
     let systems = Systems::new(problem, base);
     let mut reference = from.to_vec();
     let mut last = f64::NAN;
@@ -104,12 +99,18 @@ pub fn sequence(
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
         if worst.max(idle) <= TOLERANCE
-            && let Some(state) = settled(&systems, problem, (z, factor), &gamma, &moving)
+            && let Some(state) = settled(&systems, (z, factor), motion, &moving)
         {
             return Sequence::Converged(state);
         }
         // Half way where full steps have not settled, then a quarter.
-        let share = if step < 12 { 1.0 } else if step < 40 { 0.5 } else { 0.25 };
+        let share = if step < 12 {
+            1.0
+        } else if step < 40 {
+            0.5
+        } else {
+            0.25
+        };
         for (old, new) in reference.iter_mut().zip(&field) {
             (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
             old.shear += share * (new.shear - old.shear);
@@ -129,9 +130,8 @@ pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
 /// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
 fn settled(
     systems: &Systems,
-    problem: &LimitProblem,
     (mut z, factor): (Vec<f64>, f64),
-    gamma: &[f64],
+    motion: Vec<Velocity>,
     moving: &[usize],
 ) -> Option<FlowState> {
     z.push(factor / systems.unit);
@@ -144,8 +144,6 @@ fn settled(
         .into_iter()
         .filter_map(|yielding| systems.field(&yielding, z.clone()))
         .find(|(_, violation)| *violation <= ADMISSIBLE)?;
-    let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
-    let (motion, _) = systems.motion(problem, &moves)?;
     Some(FlowState { factor: z[systems.forces] * systems.unit, field: systems.joint_forces(&z), motion })
 }
 
