@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Bond, Joint};
 use crate::geometry::{Vec2, turned};
-use crate::interface::{FacetMode, InterfaceLaw};
+use crate::interface::{FacetMode, FlowReading, InterfaceLaw};
 use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
 
@@ -143,15 +143,19 @@ fn clearance(rays: &[[f64; 2]], open: f64, slip: f64) -> f64 {
     rays.iter().map(along).fold(f64::INFINITY, f64::min)
 }
 
-/// Reads a mechanism off a motion. `None` where nothing moves.
-pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Option<bool>) -> Option<Mechanism> {
+/// Reads a mechanism off a motion in which joints flow as `flow` says. `None` where nothing moves.
+pub fn mechanism(
+    assembly: &Assembly,
+    motion: &[CentroidVelocity],
+    unique: Option<bool>,
+    flow: FlowReading,
+) -> Option<Mechanism> {
     let jumps = jumps(assembly, motion);
     let tolerance = TOLERANCE * jumps.iter().map(Jump::size).fold(0.0, f64::max);
     if tolerance == 0.0 {
         return None;
     }
-    let all_rays = |own| assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law, own)).collect();
-    let (rays, own_rays): (Vec<Vec<[f64; 2]>>, Vec<Vec<[f64; 2]>>) = (all_rays(false), all_rays(true));
+    let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law, flow)).collect();
     let mut found = Mechanism {
         kind: MechanismKind::Rocking,
         hinge_count: 0,
@@ -164,12 +168,8 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
         let Bond::Law(law) = joint.bond else { continue };
         let height = joint.height();
         let between = || [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
-        // A solver may have read the law with associated flow: then slip dilates by the friction
-        // angle and touching means no clearance in that sense.
-        let dilated = jump.open.map(|open| clearance(&rays[law], open, jump.slip));
-        let clear = jump.open.map(|open| clearance(&own_rays[law], open, jump.slip));
-        let touches_dilated = dilated.iter().any(|c| c.abs() <= tolerance);
-        if clear[0] > tolerance && clear[1] > tolerance && !touches_dilated {
+        let clear = jump.open.map(|open| clearance(&rays[law], open, jump.slip));
+        if clear[0] > tolerance && clear[1] > tolerance {
             continue; // apart all along
         }
         if jump.slip.abs() > tolerance {
@@ -203,18 +203,16 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
     Some(found)
 }
 
-/// Directions whose work on a jump tells how far a point is from touching: those of the forces that
-/// do no work on the flow of the facets that do not crush. `own`: the law's own flow, else associated.
-fn contact_rays(law: &dyn InterfaceLaw, own: bool) -> Vec<[f64; 2]> {
+fn contact_rays(law: &dyn InterfaceLaw, flow: FlowReading) -> Vec<[f64; 2]> {
     let facets = law.formulation().facets().unwrap_or_default();
     let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
-    if own {
+    if flow == FlowReading::Own {
         uncrushed.iter_mut().for_each(|f| f.normal = f.flow);
     }
     let mut rays = YieldPolygon::of(&uncrushed).rays;
     let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;
     if rays.len() < 2 || rays.iter().any(|a| rays.iter().any(|b| opposite(a, b))) {
-        // Stuck along the joint, or slip that does not dilate: only opening parts the blocks.
+        // Stuck along the joint: only opening parts the blocks.
         rays = vec![[1.0, 0.0]];
     }
     rays
