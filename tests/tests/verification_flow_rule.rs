@@ -185,6 +185,7 @@ fn results_are_verified_and_changes_found() {
         let again = load(&resolved, "resolved.toml", &[]).expect("and read");
         let cases = original.cases.iter().map(answer_case).collect();
         let results = StudyResults { study: original.name, version: "test".into(), cases };
+        assert_eq!(results.cases[0].status, Status::Collapse, "{solver}: {:?}", results.cases[0].notes);
         assert_eq!(verify(&again, &results), vec![]);
         let changes: [fn(&mut CaseResult); 6] = [
             |r| r.load_factor = r.load_factor.map(|f| f * 0.999),

@@ -1,7 +1,8 @@
 //! `limit_sequential`: a non-associated load by sequential linear programming.
 #![doc = include_str!("limit_sequential.md")]
 
-use super::systems::Systems;
+use super::least::dictionary::Feasibility;
+use super::systems::{LARGEST, Systems};
 use super::{Greatest, associated, combined, conic};
 use crate::limit::Engine;
 use serde::{Deserialize, Serialize};
@@ -74,6 +75,33 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
     replaced
 }
 
+/// The program by the simplex method, which ends at a vertex of the fields; `None` in scenes too
+/// large for it, with joints that crush, or where rounding spoils it.
+fn at_vertex(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Option<Greatest> {
+    let systems = Systems::new(problem, base);
+    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return None;
+    }
+    let mut statics = systems.statics(None)?;
+    if statics.feasible() != Feasibility::Point {
+        return None;
+    }
+    let optimum = statics.minimise(&[(systems.theta(), -1.0)], 20_000);
+    *counters.entry("pivots".into()).or_default() += statics.pivots;
+    let (_, true) = optimum? else { return None };
+    let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
+    let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
+    let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
+    let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
+    let (motion, wrong) = systems.motion(problem, &moving)?;
+    (violation <= ADMISSIBLE && wrong <= 1e-11).then(|| Greatest::Collapse {
+        factor: z[systems.forces] * systems.unit,
+        field: systems.joint_forces(&z),
+        motion,
+        unique: false,
+    })
+}
+
 /// Runs the sequence from a field, that of associated flow by default.
 pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
     let systems = Systems::new(problem, base);
@@ -81,12 +109,15 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
     let mut last = f64::NAN;
     for step in 0..PROGRAMS {
         let replaced = fictitious(problem, &reference);
-        let mut engine = conic::engine(&replaced);
-        let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
         *counters.entry("linear_programs".into()).or_default() += 1;
-        for (name, count) in engine.counters() {
-            *counters.entry(name).or_default() += count;
-        }
+        let greatest = at_vertex(&replaced, base, counters).unwrap_or_else(|| {
+            let mut engine = conic::engine(&replaced);
+            let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+            for (name, count) in engine.counters() {
+                *counters.entry(name).or_default() += count;
+            }
+            greatest
+        });
         let (factor, field, motion) = match greatest {
             Greatest::Collapse { factor, field, motion, .. } => (factor, field, motion),
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
