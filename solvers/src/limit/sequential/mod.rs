@@ -123,6 +123,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
+        let steady = (factor - last).abs() <= TOLERANCE * factor.abs().max(TOLERANCE * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);
         let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
@@ -130,9 +131,13 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
         if worst.max(idle) <= TOLERANCE
-            && let Some(state) = settled(&systems, (z, factor), motion, &moving)
+            && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
             return Sequence::Converged(state);
+        }
+        // Where fields are many the programs may wander among them at one factor.
+        if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
+            return Sequence::Converged(FlowState { factor, field, motion });
         }
         // Half way where full steps have not settled, then a quarter.
         let share = if step < 12 {
@@ -156,6 +161,33 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
 pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
     let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
     (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
+}
+
+/// A field at this factor, to the tolerance, in which all moving pairs yield.
+fn field_at(
+    systems: &Systems,
+    problem: &LimitProblem,
+    factor: f64,
+    moving: &[usize],
+) -> Option<(Vec<JointForce>, f64)> {
+    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return None;
+    }
+    let theta = factor / systems.unit;
+    let mut statics = systems.statics(Some(theta))?;
+    moving.iter().for_each(|&i| statics.fix(i, true));
+    if statics.feasible() != Feasibility::Point {
+        return None;
+    }
+    let (_, true) = statics.minimise(&[(systems.theta(), -1.0)], 20_000)? else { return None };
+    if statics.value(systems.theta()) < theta - TOLERANCE * theta.abs() {
+        return None;
+    }
+    let slacks: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.value(i).max(0.0)).collect();
+    let (z, violation) = systems.field_with(&slacks)?;
+    let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
+    let near = violation.max(idle) <= ADMISSIBLE && (z[systems.forces] - theta).abs() <= 2.0 * TOLERANCE * theta.abs();
+    near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
 /// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
