@@ -7,7 +7,7 @@ pub(super) mod dictionary;
 mod search;
 
 use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
-use super::systems::Systems;
+use super::systems::{LARGEST, Systems};
 use super::{associated, combined};
 use bracket::{GAP, Work, bracket, dissipations};
 use descent::{Descent, State};
@@ -21,8 +21,6 @@ use voussoir_core::units::Quantity;
 
 /// Work of the search where it is not given.
 const SEARCH_LIMIT: f64 = 4.0;
-/// Entries of the equations beyond which neither local search nor proof is tried.
-const LARGEST: usize = 1_500_000;
 /// Starts of the local search.
 const STARTS: usize = 24;
 /// A state counts when its field and multipliers are right to this.
@@ -102,7 +100,7 @@ impl Least<'_> {
         if s.pairs.iter().any(|p| p.non_associated() && (p.openings.len() != 2 || p.relief < 0.0)) {
             return Err("a joint whose flow is read by its law has no opening rows: no lower bound is proved".into());
         }
-        let entries = (s.equilibrium.len() + s.pairs.len()) * (s.forces + s.pairs.len());
+        let entries = s.entries();
         if entries > LARGEST {
             return Err(format!(
                 "the scene is too large for the search ({entries} entries of {LARGEST}): no lower bound is proved"
