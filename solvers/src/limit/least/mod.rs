@@ -60,7 +60,7 @@ voussoir_core::inventory::submit! {
             .default("4.0"),
         ],
         provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &[
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",

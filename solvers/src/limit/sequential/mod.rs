@@ -33,7 +33,7 @@ voussoir_core::inventory::submit! {
         summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
         parameters: &[],
         provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
         page: include_str!("limit_sequential.md"),
