@@ -70,8 +70,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     for (name, value) in &watch.worst {
         certificate.residuals.insert((*name).into(), *value);
         let bound = TOLERANCES.iter().find(|(n, _)| n == name).map(|(_, t)| *t);
-        // Written so that NaN fails.
-        if bound.is_some_and(|bound| !(*value <= bound)) {
+        if bound.is_some_and(|bound| value.is_nan() || *value > bound) {
             certificate.passed = false;
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
@@ -94,7 +93,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     if let (Some(motion), false) = (&solved.motion, question.settings.finite) {
         let flow = flow_residual(problem, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
-        if !(flow <= 1e-6) {
+        if flow.is_nan() || flow > 1e-6 {
             certificate.passed = false;
             certificate.failures.push(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
         }

@@ -486,7 +486,7 @@ impl RateProblem<'_> {
 
     /// Associated flow makes the problem monotone: from its solution the flow is turned step by step
     /// into the law's own.
-    fn from_associated(&self, counters: &mut u64) -> Option<Rate> {
+    fn turned_from_associated(&self, counters: &mut u64) -> Option<Rate> {
         let Some(Pivoted::Guess(mut pieces)) = self.pivoted(true, counters) else { return None };
         for own in [0.0, 0.25, 0.5, 0.7, 0.85, 0.95, 1.0] {
             let turned =
@@ -524,7 +524,7 @@ impl RateProblem<'_> {
                 Some(Pivoted::Ray(rate)) => return Verdict::Found(rate, None),
                 None => {}
             }
-            if let Some(rate) = self.from_associated(counters) {
+            if let Some(rate) = self.turned_from_associated(counters) {
                 return Verdict::Found(rate, None);
             }
             return Verdict::Undecided(combinations);

@@ -605,14 +605,14 @@ impl<'a> Tracer<'a> {
         self.applied[self.drive] += sense * step * direction.factor;
         let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut events = Vec::new();
-        for c in 0..self.points.len() {
+        for (c, opening_rate) in openings.into_iter().enumerate() {
             let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
             let Some(facets) = &self.system.facets[c] else { continue };
             let was_open = self.points[c].open();
             let was_hit = std::mem::take(&mut self.points[c].hit);
             let point = &mut self.points[c];
             point.opening = if was_open || matches!(point.piece, Piece::Free | Piece::Facet(_) | Piece::Corner(..)) {
-                (point.opening + step * openings[c]).max(0.0)
+                (point.opening + step * opening_rate).max(0.0)
             } else {
                 0.0
             };
@@ -674,7 +674,7 @@ impl<'a> Tracer<'a> {
                 }
                 let force = [self.x[2 * c], self.x[2 * c + 1]];
                 // At the apex all facets meet.
-                if point.apex && facets[f].mode == FacetMode::Opening || (point.apex && force[0].abs() <= SAME) {
+                if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SAME) {
                     point.active = (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
                     point.piece = Piece::Free;
                 } else {
