@@ -2,11 +2,14 @@
 //!
 //! Nothing here is shared with solvers: equilibrium is summed body by body from forces at points,
 //! strengths are checked as the rectangular stress block, dissipation is the integral of the support
-//! function of the law's own polygon along each joint. Laws are read with associated flow.
+//! function of the law's own polygon along each joint. Laws are read with associated flow, unless
+//! the claim is that a field and a mechanism obey the laws' own flow: then the jumps must be
+//! combinations of the facets' flow directions and their power with the field's distance from the
+//! yield surface must vanish, joint by joint.
 
 use crate::assembly::{Assembly, Bond, StageLoads, add_force};
 use crate::geometry::{Vec2, cross};
-use crate::interface::{Facet, Formulation};
+use crate::interface::{Facet, FacetMode, Formulation};
 use crate::limit::Status;
 use crate::mechanism::{CentroidVelocity, Jump, jumps};
 use crate::strength::YieldPolygon;
@@ -54,6 +57,19 @@ pub struct Claim<'a> {
     pub ray: Option<&'a [ContactForce]>,
     /// Whether some factor is feasible where the start is not, and the interval.
     pub feasible_interval: Option<[f64; 2]>,
+    /// Set where field and motion are claimed to obey the laws' own flow.
+    pub own_flow: Option<OwnFlowClaim<'a>>,
+}
+
+/// What is claimed besides where joints flow as their laws say.
+#[derive(Debug, Clone, Copy)]
+pub struct OwnFlowClaim<'a> {
+    /// No such factor is less. An exhaustive search is no certificate: only its order is checked.
+    pub proved_lower: Option<f64>,
+    /// The greatest factor of associated flow.
+    pub associated_factor: Option<f64>,
+    /// The motion that proves it.
+    pub associated_motion: Option<&'a [CentroidVelocity]>,
 }
 
 /// Tolerance of residuals that should be rounding.
@@ -103,6 +119,7 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         Status::Stands => {
             check.field(claim);
         }
+        Status::Collapse if claim.own_flow.is_some() => bounds = check.own_flow(claim, gap),
         Status::Collapse => {
             let lower = check.field(claim).then_some(claim.field_factor);
             let upper = check.upper_bound(claim);
@@ -295,6 +312,96 @@ impl Check<'_> {
             uncertain += 8.0 * f64::EPSILON * strongest * area * jump.size();
         }
         Powers { fixed, varying, dissipated, uncertain, impossible: impossible / largest }
+    }
+
+    /// Field and mechanism with the laws' own flow: both exist at one factor, each joint moves only
+    /// where it yields, and no associated bound is exceeded. The bounds \[claimed lower, factor\].
+    fn own_flow(&mut self, claim: &Claim, gap: f64) -> Option<[f64; 2]> {
+        let own = claim.own_flow?;
+        let (Some(factor), Some(motion), Some(field)) = (claim.factor, claim.motion, claim.field) else {
+            self.fail("a collapse needs a factor, an admissible field and a mechanism");
+            return None;
+        };
+        if factor != claim.field_factor {
+            self.fail("the field is not at the collapse factor");
+        }
+        let admissible = self.field(claim);
+        self.held(motion);
+        let varying = self.powers(motion).varying;
+        let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
+        let jumps = jumps(self.assembly, motion);
+        let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
+        let (impossible, idle) = self.idle_power(field, &jumps);
+        let flows = self.residual("flow", impossible / largest, ROUNDING);
+        let scale = self.residual_scale(factor) * largest;
+        let complementary = self.residual("complementarity", idle / scale, ROUNDING);
+        let unit = factor.abs().max(self.factor_scale());
+        if let Some(greatest) = own.associated_factor {
+            let unit = unit.max(greatest.abs());
+            self.residual("above_associated", ((factor - greatest) / unit).max(0.0), gap);
+            let Some(motion) = own.associated_motion else {
+                self.fail("no motion proves the associated factor");
+                return None;
+            };
+            self.held(motion);
+            let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
+            self.residual("associated_flow", impossible, ROUNDING);
+            self.residual("associated_motion_scale", (varying - 1.0).abs(), 1e-9);
+            let spread = ((dissipated - fixed) / varying - greatest).abs() / unit;
+            self.residual("associated_gap", spread, gap.max(uncertain / varying.abs() / unit));
+        }
+        let lower = own.proved_lower.unwrap_or(claim.start);
+        if !(claim.start <= lower && lower <= factor) {
+            self.fail(format!("the lower bound {lower} does not lie between the start and the factor"));
+        }
+        (admissible && scaled && flows && complementary).then_some([lower, factor])
+    }
+
+    /// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
+    /// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
+    /// multiplier of its sliding facet; what is left of the opening is associated.
+    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump]) -> (f64, f64) {
+        let mut resultants = vec![[0.0f64; 3]; jumps.len()];
+        for contact in field {
+            let joint = &self.assembly.joints[contact.joint];
+            let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
+            let sum = &mut resultants[contact.joint];
+            sum[0] += contact.force[0];
+            sum[1] += contact.force[1];
+            sum[2] += contact.force[0] * lever;
+        }
+        let (mut impossible, mut idle) = (0.0f64, 0.0);
+        for ((joint, jump), [n, t, m]) in self.assembly.joints.iter().zip(jumps).zip(resultants) {
+            let Bond::Law(law) = joint.bond else {
+                impossible = impossible.max(jump.size());
+                continue;
+            };
+            let (height, area) = (joint.height(), joint.height() * self.assembly.width);
+            let mut open = jump.open;
+            let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
+            let sliding = self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * jump.slip < 0.0);
+            match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
+                Some(facet) => {
+                    let gamma = -jump.slip / facet.flow[1];
+                    open.iter_mut().for_each(|o| *o += gamma * facet.flow[0]);
+                    idle += gamma * slack(facet).abs();
+                }
+                None => impossible = impossible.max(jump.slip.abs()),
+            }
+            let polygon = &self.polygons[law];
+            let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
+            let mut corners = vec![[least, 0.0]];
+            if greatest.is_finite() {
+                corners.push([greatest, 0.0]);
+            } else {
+                impossible = open.iter().fold(impossible, |worst, o| worst.max(-o));
+            }
+            let opening = Jump { open, slip: 0.0 };
+            let ends = [n / 2.0 - m / height, n / 2.0 + m / height];
+            let power = support_integral(&corners, &opening) * area + ends[0] * open[0] + ends[1] * open[1];
+            idle += power.abs();
+        }
+        (impossible, idle)
     }
 
     /// The factor that the motion proves, and by how much rounding of its jumps can change it where

@@ -89,6 +89,15 @@ impl Formulation {
     }
 }
 
+/// How the flow of laws is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FlowReading {
+    /// As the normal of each facet, whatever the law says: the bound theorems hold.
+    Associated,
+    /// As each facet's own direction.
+    Own,
+}
+
 /// Whether every facet's flow is its normal, so that the bound theorems hold as they stand.
 pub fn is_associated(facets: &[Facet]) -> bool {
     facets.iter().all(|facet| facet.flow == facet.normal)

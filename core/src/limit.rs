@@ -3,7 +3,8 @@
 //! Rigid bodies b with wrenches `fixed + λ varying`, joints with strengths over (N_0, N_1, T).
 //! Static form: the greatest λ with equilibrium and strengths. Kinematic form (its dual): the least
 //! λ = D(q̇) − fixed·q̇ over motions with varying·q̇ = 1, D the power dissipated in the joints.
-//! Joints are read with associated flow. Solvers that read flow otherwise say so on their card.
+//! Rows carry the flow of their facets too ([`crate::strength::ForceRow::flow`]). Solvers that read
+//! it answer with [`OwnFlow`]; all others read joints with associated flow.
 
 use crate::assembly::{Assembly, StageLoads, Wrenches};
 use crate::geometry::{Vec2, cross};
@@ -70,7 +71,7 @@ pub struct LimitProblem {
     /// Length scale \[m\].
     pub length: f64,
     /// Whether some law's own flow is not associated.
-    pub flow_read_as_associated: bool,
+    pub non_associated: bool,
 }
 
 impl LimitProblem {
@@ -82,7 +83,7 @@ impl LimitProblem {
         let (low, high) = crate::geometry::bounding_box(points);
         let pole = if assembly.joints.is_empty() { Vec2::zeros() } else { (low + high) / 2.0 };
         let mut read: BTreeMap<usize, Vec<crate::interface::Facet>> = BTreeMap::new();
-        let mut flow_read_as_associated = false;
+        let mut non_associated = false;
         let mut joints = Vec::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
             let (minus, plus) = (group_of[joint.minus], group_of[joint.plus]);
@@ -95,7 +96,7 @@ impl LimitProblem {
             let (name, interface) = &assembly.catalogue.laws[law];
             let facets = read.entry(law).or_insert_with(|| {
                 let Formulation::Facets(facets) = interface.formulation();
-                flow_read_as_associated |= !is_associated(&facets);
+                non_associated |= !is_associated(&facets);
                 facets
             });
             let strength = integrate(facets, joint.height() * assembly.width)
@@ -123,7 +124,7 @@ impl LimitProblem {
             joints,
             pole,
             length: if low.x.is_finite() { (high - low).norm() } else { 1.0 },
-            flow_read_as_associated,
+            non_associated,
         })
     }
 
@@ -188,10 +189,25 @@ pub struct LimitAnswer {
     pub ray: Option<Vec<JointForce>>,
     /// All factors with an admissible field, where that interval leaves out the start.
     pub feasible_interval: Option<[f64; 2]>,
+    /// Set where joints were read with their laws' own flow.
+    pub own_flow: Option<OwnFlow>,
     /// Work done.
     pub counters: Counters,
     /// What a user should know.
     pub notes: Vec<String>,
+}
+
+/// What comes with an answer that reads each joint with its law's own flow. With non-associated
+/// flow the factor is not unique: `factor` of the answer is one at which the law's own mechanism
+/// and field exist together.
+#[derive(Debug, Clone, Default)]
+pub struct OwnFlow {
+    /// No such factor is less than this, by an exhaustive search.
+    pub proved_lower: Option<f64>,
+    /// The greatest factor of associated flow, above which nothing can be.
+    pub associated_factor: Option<f64>,
+    /// Its mechanism, scaled as `motion`, which proves it.
+    pub associated_motion: Option<Vec<Velocity>>,
 }
 
 /// A way to do limit analysis, chosen by `[solver] solver = …`.

@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Bond, Joint};
 use crate::geometry::{Vec2, turned};
-use crate::interface::{FacetMode, Formulation, InterfaceLaw};
+use crate::interface::{FacetMode, FlowReading, Formulation, InterfaceLaw};
 use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
 
@@ -143,14 +143,19 @@ fn clearance(rays: &[[f64; 2]], open: f64, slip: f64) -> f64 {
     rays.iter().map(along).fold(f64::INFINITY, f64::min)
 }
 
-/// Reads a mechanism off a motion. `None` where nothing moves.
-pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Option<bool>) -> Option<Mechanism> {
+/// Reads a mechanism off a motion in which joints flow as `flow` says. `None` where nothing moves.
+pub fn mechanism(
+    assembly: &Assembly,
+    motion: &[CentroidVelocity],
+    unique: Option<bool>,
+    flow: FlowReading,
+) -> Option<Mechanism> {
     let jumps = jumps(assembly, motion);
     let tolerance = TOLERANCE * jumps.iter().map(Jump::size).fold(0.0, f64::max);
     if tolerance == 0.0 {
         return None;
     }
-    let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law)).collect();
+    let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law, flow)).collect();
     let mut found = Mechanism {
         kind: MechanismKind::Rocking,
         hinge_count: 0,
@@ -198,9 +203,12 @@ pub fn mechanism(assembly: &Assembly, motion: &[CentroidVelocity], unique: Optio
     Some(found)
 }
 
-fn contact_rays(law: &dyn InterfaceLaw) -> Vec<[f64; 2]> {
+fn contact_rays(law: &dyn InterfaceLaw, flow: FlowReading) -> Vec<[f64; 2]> {
     let Formulation::Facets(facets) = law.formulation();
-    let uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
+    let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
+    if flow == FlowReading::Own {
+        uncrushed.iter_mut().for_each(|f| f.normal = f.flow);
+    }
     let mut rays = YieldPolygon::of(&uncrushed).rays;
     let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;
     if rays.len() < 2 || rays.iter().any(|a| rays.iter().any(|b| opposite(a, b))) {

@@ -10,6 +10,10 @@
 //! These are exact: with b = 0 the two ends span every distribution; with b > 0 the admissible T of
 //! a distribution of t_n depends on N only as long as each sense of sliding has one facet.
 //! Source of the stress block: Livesley (1978), rectangular block; the cone form is ours.
+//!
+//! Flow over the jumps dual to (N_0, N_1, T), which are the openings of the two ends and the slip:
+//! (ġ_0, ġ_1, ġ_t) = −Σ γ_i d_i, γ ≥ 0. A row's d is its facet's own; opening and crushing are
+//! associated.
 
 use crate::interface::{Facet, FacetMode};
 
@@ -22,6 +26,16 @@ pub struct ForceRow {
     pub bound: f64,
     /// What happens when it yields.
     pub mode: FacetMode,
+    /// Flow d over the openings of both ends and the slip when it yields; its normal where
+    /// associated.
+    pub flow: [f64; 3],
+}
+
+impl ForceRow {
+    /// A row with associated flow.
+    pub fn associated(mode: FacetMode, normal: [f64; 3], bound: f64) -> Self {
+        ForceRow { normal, bound, mode, flow: normal }
+    }
 }
 
 /// The stress block of a joint that crushes.
@@ -160,8 +174,8 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
     let tension = -least * area;
     let mut rows = Vec::new();
     if greatest.is_infinite() {
-        rows.push(ForceRow { normal: [-1.0, 0.0, 0.0], bound: tension / 2.0, mode: FacetMode::Opening });
-        rows.push(ForceRow { normal: [0.0, -1.0, 0.0], bound: tension / 2.0, mode: FacetMode::Opening });
+        rows.push(ForceRow::associated(FacetMode::Opening, [-1.0, 0.0, 0.0], tension / 2.0));
+        rows.push(ForceRow::associated(FacetMode::Opening, [0.0, -1.0, 0.0], tension / 2.0));
     }
     for sense in [1.0, -1.0] {
         let on_side: Vec<&Facet> = facets.iter().filter(|f| f.normal[1] * sense > 0.0).collect();
@@ -185,6 +199,7 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
                     normal: [f.normal[0], f.normal[0], f.normal[1]],
                     bound: f.bound * area,
                     mode: FacetMode::Sliding,
+                    flow: [f.flow[0], f.flow[0], f.flow[1]],
                 });
             }
             _ => {
@@ -216,6 +231,18 @@ mod tests {
         assert_eq!(strength.rows.len(), 4);
         assert_eq!(strength.tangential(), Tangential::Friction);
         assert!(strength.rows.iter().all(|row| row.bound == 0.0));
+    }
+
+    #[test]
+    fn rows_carry_the_flow_of_their_facets() {
+        let [left, right] = Facet::friction(0.6, 3.0, 0.25);
+        let strength = integrate(&[Facet::opening(0.0), left, right], 2.0).unwrap();
+        for row in &strength.rows {
+            match row.mode {
+                FacetMode::Sliding => assert_eq!(row.flow, [-0.25, -0.25, row.normal[2]]),
+                _ => assert_eq!(row.flow, row.normal),
+            }
+        }
     }
 
     #[test]

@@ -3,8 +3,9 @@
 use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
 use std::sync::Arc;
 use voussoir_core::assembly::{Assembly, Stage, StageLoads, Target, stage_loads};
-use voussoir_core::certificate::{Certificate, Claim, ContactForce, certify, largest_jump};
+use voussoir_core::certificate::{Certificate, Claim, ContactForce, OwnFlowClaim, certify, largest_jump};
 use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::interface::FlowReading;
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
 };
@@ -153,6 +154,7 @@ pub(crate) fn stalled(why: String) -> CaseResult {
         load_factor: None,
         bounds: None,
         associated_load_factor: None,
+        associated_motion: None,
         feasible_interval: None,
         flow_read_as: None,
         solver: String::new(),
@@ -178,15 +180,18 @@ fn candidates(choice: &Choice, problem: &LimitProblem) -> Vec<(String, Arc<dyn L
     match choice {
         Choice::Named(tag, solver) => vec![(tag.clone(), solver.clone())],
         Choice::Auto | Choice::Path(..) => {
-            use voussoir_solvers::limit::{chain::LimitChain, conic::LimitConic};
+            use voussoir_solvers::limit::{chain::LimitChain, conic::LimitConic, least::LimitLeast};
             let chain: Arc<dyn LimitSolver> = Arc::new(LimitChain {});
             let conic: Arc<dyn LimitSolver> = Arc::new(LimitConic {});
             let general = ("limit_conic".to_string(), conic);
+            let mut all = vec![general];
             if chain.refuses(problem).is_none() {
-                vec![("limit_chain".to_string(), chain), general]
-            } else {
-                vec![general]
+                all.insert(0, ("limit_chain".to_string(), chain));
             }
+            if problem.non_associated {
+                all.insert(0, ("limit_least".to_string(), Arc::new(LimitLeast::default())));
+            }
+            all
         }
     }
 }
@@ -224,8 +229,7 @@ fn solve_stage(question: &Question, stage: &Stage, problem: &LimitProblem, loads
         result.bounds = None;
         result.notes = notes;
     }
-    if problem.flow_read_as_associated {
-        result.flow_read_as = Some("associated".into());
+    if result.flow_read_as.is_some() {
         result.notes.push(
             "a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its \
              friction angle): every load factor is an upper bound"
@@ -262,6 +266,11 @@ fn proven(
         LimitQuestion::Stand(factor) => factor,
         LimitQuestion::Collapse { start, .. } => start,
     };
+    let own = solved.own_flow.as_ref();
+    let associated_motion = own
+        .and_then(|own| own.associated_motion.as_ref())
+        .map(|motion| body_velocities(assembly, problem, motion));
+    let reading = if own.is_some() { FlowReading::Own } else { FlowReading::Associated };
     let claim = Claim {
         status: solved.status,
         factor: solved.factor,
@@ -271,6 +280,11 @@ fn proven(
         motion: motion.as_deref(),
         ray: ray.as_deref(),
         feasible_interval: solved.feasible_interval,
+        own_flow: own.map(|own| OwnFlowClaim {
+            proved_lower: own.proved_lower,
+            associated_factor: own.associated_factor,
+            associated_motion: associated_motion.as_deref(),
+        }),
     };
     let (certificate, bounds) = certify(assembly, loads, &claim, question.tolerance);
     let finite = |x: f64| x.is_finite().then_some(x);
@@ -282,16 +296,16 @@ fn proven(
         status: solved.status,
         load_factor: solved.factor,
         bounds,
+        associated_load_factor: own.and_then(|own| own.associated_factor),
+        flow_read_as: (problem.non_associated && own.is_none()).then(|| "associated".into()),
         feasible_interval: solved.feasible_interval.map(|ends| ends.map(finite)),
-        mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique)),
+        mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, reading)),
         field_factor: field.is_some().then_some(solved.field_factor),
         thrust_line: field.as_ref().and_then(|field| thrust_line(assembly, field)),
         field: field.as_deref().map(field_entries),
         ray: ray.as_deref().map(field_entries),
-        motion: motion.map(|motion| {
-            let name = |body: usize| assembly.bodies[body].name.clone();
-            motion.into_iter().enumerate().map(|(body, velocity)| MotionEntry { body: name(body), velocity }).collect()
-        }),
+        motion: motion.map(|motion| motion_entries(assembly, motion)),
+        associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
         certificate,
         counters: solved.counters,
         ..stalled_without(notes)
@@ -300,6 +314,11 @@ fn proven(
 
 fn stalled_without(notes: Vec<String>) -> CaseResult {
     CaseResult { notes, ..stalled(String::new()) }
+}
+
+fn motion_entries(assembly: &Assembly, motion: Vec<CentroidVelocity>) -> Vec<MotionEntry> {
+    let name = |body: usize| assembly.bodies[body].name.clone();
+    motion.into_iter().enumerate().map(|(body, velocity)| MotionEntry { body: name(body), velocity }).collect()
 }
 
 pub(crate) fn field_entries(forces: &[ContactForce]) -> Vec<FieldEntry> {

@@ -94,6 +94,9 @@ pub struct CaseResult {
     pub bounds: Option<[f64; 2]>,
     /// The factor with associated flow, where the solver answers another question.
     pub associated_load_factor: Option<f64>,
+    /// Velocities of the mechanism that proves `associated_load_factor`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub associated_motion: Option<Vec<MotionEntry>>,
     /// All factors with an admissible field, where dead load alone has none; `null` ends are infinite.
     pub feasible_interval: Option<[Option<f64>; 2]>,
     /// `"associated"` where a non-associated law was read so.

@@ -4,13 +4,13 @@
 //! is recomputed: certificate, bounds, mechanism, thrust line, stages.
 
 use crate::answer::{start_of, thrust_line};
-use crate::results::{CaseResult, FieldEntry, StudyResults};
+use crate::results::{CaseResult, FieldEntry, MotionEntry, StudyResults};
 use crate::study::{Case, Study};
 use voussoir_core::assembly::{Assembly, Bond, Target, stage_loads};
 use voussoir_core::card::card;
-use voussoir_core::certificate::{Claim, ContactForce, certify};
+use voussoir_core::certificate::{Claim, ContactForce, OwnFlowClaim, certify};
 use voussoir_core::geometry::{Vec2, distance_to_segment};
-use voussoir_core::interface::is_associated;
+use voussoir_core::interface::{FlowReading, is_associated};
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{CentroidVelocity, Mechanism, mechanism};
 use voussoir_core::schema::PluginKind;
@@ -106,9 +106,19 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     }
     let field = result.field.as_deref().map(|f| contacts(assembly, f)).transpose()?;
     let ray = result.ray.as_deref().map(|f| contacts(assembly, f)).transpose()?;
-    let motion = result.motion.as_ref().map(|_| velocities(assembly, result)).transpose()?;
+    let motion = result.motion.as_deref().map(|motion| velocities(assembly, motion)).transpose()?;
     let infinite = [f64::NEG_INFINITY, f64::INFINITY];
     let interval = result.feasible_interval.map(|ends| [0, 1].map(|i| ends[i].unwrap_or(infinite[i])));
+    let non_associated = assembly.joints.iter().any(|joint| match joint.bond {
+        Bond::Bonded => false,
+        Bond::Law(law) => {
+            let facets = assembly.catalogue.laws[law].1.formulation().facets();
+            facets.is_some_and(|facets| !is_associated(&facets))
+        }
+    });
+    let own = (non_associated && result.flow_read_as.is_none()) || result.associated_load_factor.is_some();
+    let associated_motion =
+        result.associated_motion.as_deref().map(|motion| velocities(assembly, motion)).transpose()?;
     let claim = Claim {
         status: result.status,
         factor: result.load_factor,
@@ -118,6 +128,11 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         motion: motion.as_deref(),
         ray: ray.as_deref(),
         feasible_interval: interval,
+        own_flow: own.then_some(OwnFlowClaim {
+            proved_lower: result.bounds.map(|b| b[0]),
+            associated_factor: result.associated_load_factor,
+            associated_motion: associated_motion.as_deref(),
+        }),
     };
     let loads = stage_loads(assembly, &case.stages);
     let (certificate, bounds) = certify(assembly, &loads[last], &claim, case.solver.tolerance);
@@ -151,8 +166,9 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         let idle = loads[last].varying.iter().all(|w| *w == [0.0; 3]);
         expect(idle || close(claim.field_factor, reached), "the field is not at the factor the stage goes to");
     }
+    let reading = if own { FlowReading::Own } else { FlowReading::Associated };
     let unique = result.mechanism.as_ref().and_then(|m| m.unique);
-    let recomputed = motion.as_ref().and_then(|motion| mechanism(assembly, motion, unique));
+    let recomputed = motion.as_ref().and_then(|motion| mechanism(assembly, motion, unique, reading));
     match (&result.mechanism, &recomputed) {
         (Some(stored), Some(recomputed)) => wrong.extend(differences(stored, recomputed)),
         (None, None) => {}
@@ -166,14 +182,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     if !same_line(&line, &result.thrust_line) {
         wrong.push("the thrust line is not that of the field".into());
     }
-    let non_associated = assembly.joints.iter().any(|joint| match joint.bond {
-        Bond::Bonded => false,
-        Bond::Law(law) => {
-            let facets = assembly.catalogue.laws[law].1.formulation().facets();
-            facets.is_some_and(|facets| !is_associated(&facets))
-        }
-    });
-    if result.flow_read_as.as_deref() != non_associated.then_some("associated") {
+    if result.flow_read_as.as_deref().is_some_and(|word| word != "associated" || !non_associated) {
         wrong.push("flow_read_as does not fit the laws".into());
     }
     if !certificate.passed {
@@ -182,8 +191,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     Ok(wrong)
 }
 
-pub(crate) fn velocities(assembly: &Assembly, result: &CaseResult) -> Result<Vec<CentroidVelocity>, String> {
-    let motion = result.motion.as_deref().unwrap_or_default();
+pub(crate) fn velocities(assembly: &Assembly, motion: &[MotionEntry]) -> Result<Vec<CentroidVelocity>, String> {
     if motion.len() != assembly.bodies.len() {
         return Err("motion: not one velocity for each body".into());
     }

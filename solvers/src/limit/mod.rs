@@ -1,13 +1,18 @@
 //! Limit analysis: the greatest factor at which rigid blocks can be in admissible equilibrium.
 //!
 //! [`answer`] is the sequence of questions behind every status; an [`Engine`] answers the three
-//! kinds of single optimisation in it. Two engines: [`chain`] and [`conic`].
+//! kinds of single optimisation in it. Two engines: [`chain`] and [`conic`]. [`sequential`] and
+//! [`least`] read joints with their laws' own flow instead of the associated one.
 
 pub mod chain;
 pub mod conic;
+pub mod least;
+mod recovery;
+pub mod sequential;
+mod systems;
 
 use voussoir_core::assembly::Wrenches;
-use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity};
+use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity};
 
 /// Whether a fixed load can be carried.
 #[derive(Debug, Clone)]
@@ -58,6 +63,16 @@ pub trait Engine {
     fn counters(&self) -> Counters;
 }
 
+/// The answer with associated flow, by the cheapest engine.
+fn associated(problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+    let chain = chain::LimitChain {};
+    let answered = (chain.refuses(problem).is_none()).then(|| chain.solve(problem, question));
+    match answered {
+        Some(answer) if answer.status != Status::Stalled => answer,
+        _ => conic::LimitConic {}.solve(problem, question),
+    }
+}
+
 /// Force that makes wrenches of size one; 1 N where they are none.
 fn force_unit(problem: &LimitProblem, wrenches: &Wrenches) -> f64 {
     match problem.magnitude(wrenches) {
@@ -98,6 +113,7 @@ pub fn answer(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn 
         unique: None,
         ray: None,
         feasible_interval: None,
+        own_flow: None,
         counters: Counters::new(),
         notes: Vec::new(),
     };

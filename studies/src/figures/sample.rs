@@ -95,6 +95,7 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
         load_factor: None,
         bounds: None,
         associated_load_factor: None,
+        associated_motion: None,
         feasible_interval: None,
         flow_read_as: None,
         solver: "limit_chain".into(),

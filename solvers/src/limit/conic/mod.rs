@@ -48,6 +48,11 @@ voussoir_core::inventory::submit! {
     }
 }
 
+/// The conic programs of a problem.
+pub(super) fn engine(problem: &LimitProblem) -> impl Engine + '_ {
+    ConicEngine { problem, work: Counters::new() }
+}
+
 struct ConicEngine<'a> {
     problem: &'a LimitProblem,
     work: Counters,

@@ -1,0 +1,141 @@
+//! Proof that no limit state has θ in a range, range by range from below.
+//!
+//! In a range a ≤ θ ≤ t each normal force has bounds by linear programs. They exclude pairs that
+//! cannot yield, and bound the dissipation on the others, by which kinematics refuses mechanisms
+//! that are too cheap or too dear for the range. What is left is searched.
+
+use super::dictionary::{Dictionary, Feasibility};
+use super::search::{Ending, Search};
+use crate::limit::systems::Systems;
+
+/// A range ends this far below a known state, relative to it.
+pub const GAP: f64 = 1e-8;
+/// Ends of the ranges as shares of the known factor; they close at about equal cost.
+const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
+
+/// What the search found in a range.
+pub enum Range {
+    /// No state: proved.
+    Closed,
+    /// A state at this θ, with the pairs that move.
+    State(f64, Vec<usize>),
+    /// Neither, with the work allowed.
+    Open,
+}
+
+/// Work done, in counts.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Work {
+    /// Pivots.
+    pub pivots: u64,
+    /// Linear feasibility questions.
+    pub programs: u64,
+    /// Refusals by statics or kinematics.
+    pub refusals: u64,
+    /// Matrix entries swept.
+    pub entries: u64,
+}
+
+/// The bounds of the dissipation d_i·r on each pair where it yields, and the pairs that cannot.
+pub fn dissipations(systems: &Systems, statics: &mut Dictionary) -> (Vec<[f64; 2]>, Vec<bool>) {
+    let mut excluded = vec![false; systems.pairs.len()];
+    let mut bounds: Vec<[f64; 2]> = systems.pairs.iter().map(|pair| [pair.bound; 2]).collect();
+    for (i, pair) in systems.pairs.iter().enumerate() {
+        statics.fix(i, true);
+        match statics.feasible() {
+            Feasibility::Reason(_) => excluded[i] = true,
+            Feasibility::Undecided if pair.non_associated() => bounds[i] = [0.0, f64::INFINITY],
+            Feasibility::Undecided => {}
+            Feasibility::Point if pair.non_associated() => {
+                // (d − a)·r = relief Σ N_k, and s_k = b_k + N_k at the ends that open.
+                let base: f64 = pair.openings.iter().map(|&k| systems.pairs[k].bound).sum();
+                for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                    let weights: Vec<(usize, f64)> = pair.openings.iter().map(|&k| (k, sign * pair.relief)).collect();
+                    let extreme = match statics.minimise(&weights, 5000) {
+                        Some((value, true)) => sign * value,
+                        _ if side == 0 => 0.0,
+                        _ => f64::INFINITY,
+                    };
+                    // Rounding must not make the bounds too narrow.
+                    let slack = -sign * 1e-9 * (1.0 + extreme.abs());
+                    let power = pair.bound + extreme + slack - pair.relief * base;
+                    bounds[i][side] = if side == 0 { power.max(0.0) } else { power };
+                }
+            }
+            Feasibility::Point => {}
+        }
+        statics.fix(i, false);
+    }
+    (bounds, excluded)
+}
+
+/// Searches a ≤ θ ≤ t with at most so much work.
+fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Range {
+    let [a, t] = range;
+    let Some(mut statics) = systems.statics(Some(t)) else { return Range::Closed };
+    if a > 0.0 {
+        statics.shift(systems.theta(), -a);
+    }
+    let first = statics.feasible();
+    work.programs += 1;
+    let (bounds, excluded) = match first {
+        Feasibility::Reason(_) => return Range::Closed,
+        _ => dissipations(systems, &mut statics),
+    };
+    let mut kinematics = systems.kinematics(range, &bounds, &excluded);
+    let Some(kinematics) = kinematics.take() else { return Range::Closed };
+    let mut search = Search::new(statics, kinematics, &excluded);
+    for (i, pair) in systems.pairs.iter().enumerate().filter(|(_, pair)| pair.slides()) {
+        let other = (0..systems.pairs.len()).find(|&k| k > i && systems.pairs[k].slides() && systems.pairs[k].openings == pair.openings);
+        if let Some(k) = other.filter(|&k| !excluded[i] && !excluded[k] && !pair.openings.is_empty()) {
+            search.not_both(i, k);
+        }
+    }
+    let ending = search.run(most);
+    let found = match ending {
+        Ending::Exhausted => Range::Closed,
+        Ending::Limit => Range::Open,
+        Ending::Found(moving) => {
+            (0..systems.pairs.len()).for_each(|i| search.statics.fix(i, false));
+            moving.iter().for_each(|&i| search.statics.fix(i, true));
+            match search.statics.feasible() {
+                Feasibility::Point => match search.statics.minimise(&[(systems.theta(), 1.0)], 5000) {
+                    Some((least, _)) => Range::State(a + least, moving),
+                    None => Range::Open,
+                },
+                _ => Range::Open,
+            }
+        }
+    };
+    work.pivots += search.statics.pivots + search.kinematics.pivots;
+    work.entries += search.work();
+    work.programs += search.programs;
+    work.refusals += search.conflicts;
+    found
+}
+
+/// The greatest θ below which no state is, given a state at `known`; a lesser state where one
+/// appears. At most `most` matrix entries are swept.
+pub fn bracket(systems: &Systems, known: f64, most: u64, work: &mut Work) -> (f64, Option<(f64, Vec<usize>)>) {
+    let top = known * (1.0 - GAP);
+    if known <= 0.0 {
+        return (known, None);
+    }
+    // All at once where that is cheap.
+    let trial = (most / 50).min(200_000_000);
+    match search(systems, [0.0, top], trial, work) {
+        Range::Closed => return (top, None),
+        Range::State(theta, moving) => return (0.0, Some((theta, moving))),
+        Range::Open => {}
+    }
+    let mut proved = 0.0;
+    for share in SHARES {
+        let end = if share == 1.0 { top } else { share * known };
+        match search(systems, [proved, end], most.saturating_sub(work.entries), work) {
+            Range::Closed => proved = end,
+            Range::State(theta, moving) => return (proved, Some((theta, moving))),
+            Range::Open => break,
+        }
+    }
+    (proved, None)
+}

@@ -1,0 +1,333 @@
+//! `limit_least`: the least load with the laws' own flow, with a proved lower bound.
+#![doc = include_str!("limit_least.md")]
+
+mod bracket;
+mod descent;
+pub(super) mod dictionary;
+mod search;
+
+use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
+use super::systems::Systems;
+use super::{associated, combined};
+use bracket::{GAP, Work, bracket, dissipations};
+use descent::{Descent, State};
+use dictionary::Feasibility;
+use serde::{Deserialize, Serialize};
+use voussoir_core::assembly::Wrenches;
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir_core::schema::{Parameter, PluginKind, Range};
+use voussoir_core::units::Quantity;
+
+/// Work of the search where it is not given.
+const SEARCH_LIMIT: f64 = 4.0;
+/// Entries of the equations beyond which neither local search nor proof is tried.
+const LARGEST: usize = 1_500_000;
+/// Starts of the local search.
+const STARTS: usize = 24;
+/// A state counts when its field and multipliers are right to this.
+const ADMISSIBLE: f64 = 1e-10;
+
+/// The least load with the laws' own flow.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitLeast {
+    /// Work that the proof may take, in 10⁹ matrix entries swept.
+    #[serde(default = "search_limit")]
+    pub search_limit: f64,
+}
+
+fn search_limit() -> f64 {
+    SEARCH_LIMIT
+}
+
+impl Default for LimitLeast {
+    fn default() -> Self {
+        LimitLeast { search_limit: SEARCH_LIMIT }
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "limit_least",
+        summary: "the least load factor with the laws' own flow, with a proved lower bound",
+        parameters: &[
+            Parameter::number(
+                "search_limit",
+                Quantity::Ratio,
+                Range::NON_NEGATIVE,
+                "work that the proof of the lower bound may take, in 10⁹ matrix entries swept (about a second each)",
+            )
+            .default("4.0"),
+        ],
+        provides: &[Capability::RigidLimit],
+        requires: &[Capability::Facets],
+        sources: &[
+            "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
+            "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
+        ],
+        file: file!(),
+        page: include_str!("limit_least.md"),
+        check: no_further_check,
+    }
+}
+
+/// A reproducible sequence of numbers in [0, 1) (xorshift, Marsaglia 2003).
+struct Irregular(u64);
+
+impl Irregular {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Local search and proof over one problem.
+struct Least<'a> {
+    problem: &'a LimitProblem,
+    systems: Systems,
+    work: Work,
+}
+
+impl Least<'_> {
+    /// Whether the dense systems can be built: not too large, and every joint in linear rows.
+    fn searchable(&self) -> Result<(), String> {
+        let s = &self.systems;
+        if self.problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+            return Err("joints that crush are not linear: no lower bound is proved".into());
+        }
+        if s.pairs.iter().any(|p| p.non_associated() && (p.openings.len() != 2 || p.relief < 0.0)) {
+            return Err("a joint whose flow is read by its law has no opening rows: no lower bound is proved".into());
+        }
+        let entries = (s.equilibrium.len() + s.pairs.len()) * (s.forces + s.pairs.len());
+        if entries > LARGEST {
+            return Err(format!(
+                "the scene is too large for the search ({entries} entries of {LARGEST}): no lower bound is proved"
+            ));
+        }
+        Ok(())
+    }
+
+    /// The state in which these pairs move, to rounding, at the least factor.
+    fn state(&self, moving: &[usize]) -> Option<(f64, FlowState)> {
+        let pairs = self.systems.pairs.len();
+        let excluded: Vec<bool> = (0..pairs).map(|i| !moving.contains(&i)).collect();
+        let open = vec![[0.0, f64::INFINITY]; pairs];
+        let mut kinematics = self.systems.kinematics([f64::NEG_INFINITY, f64::INFINITY], &open, &excluded)?;
+        if kinematics.feasible() != Feasibility::Point {
+            return None;
+        }
+        let gamma: Vec<f64> = (0..pairs).map(|i| kinematics.value(i).max(0.0)).collect();
+        let moving = greatest_shares(&gamma);
+        let mut statics = self.systems.statics(None)?;
+        moving.iter().for_each(|&i| statics.fix(i, true));
+        if statics.feasible() != Feasibility::Point {
+            return None;
+        }
+        statics.minimise(&[(self.systems.theta(), 1.0)], 5000)?;
+        let at_vertex: Vec<usize> = (0..pairs).filter(|&i| statics.at_zero(i)).collect();
+        let start = vec![0.0; self.systems.forces + 1];
+        let fields = [at_vertex, moving.clone()];
+        let (z, _) = fields
+            .into_iter()
+            .filter_map(|yielding| self.systems.field(&yielding, start.clone()))
+            .find(|(z, violation)| {
+                let idle = moving.iter().map(|&i| self.systems.slack(i, z).abs()).fold(0.0, f64::max);
+                violation.max(idle) <= ADMISSIBLE && z[self.systems.forces] >= -ADMISSIBLE
+            })?;
+        let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
+        let (motion, wrong) = self.systems.motion(self.problem, &moves)?;
+        if wrong > ADMISSIBLE {
+            return None;
+        }
+        let theta = z[self.systems.forces];
+        // Rounding of a zero factor is not a factor.
+        let theta = if theta.abs() < 1e-15 { 0.0 } else { theta };
+        let field = self.systems.joint_forces(&z);
+        Some((theta, FlowState { factor: theta * self.systems.unit, field, motion }))
+    }
+
+    /// The least state of many local searches below `most` (∞: no bound is known).
+    fn local(&mut self, most: f64, first: Option<Vec<f64>>) -> Option<State> {
+        let bound = most.is_finite().then_some(most);
+        let mut statics = self.systems.statics(bound)?;
+        if statics.feasible() != Feasibility::Point {
+            return None;
+        }
+        let (bounds, excluded) = dissipations(&self.systems, &mut statics);
+        let mut kinematics = self.systems.kinematics([0.0, most], &bounds, &excluded)?;
+        let (pairs, theta) = (self.systems.pairs.len(), self.systems.theta());
+        let mut best: Option<State> = None;
+        let mut irregular = Irregular(0x9e37_79b9_7f4a_7c15);
+        let mut present = most;
+        let starts = first.into_iter().map(Some).chain((0..STARTS).map(|_| None));
+        for start in starts {
+            let start = start.unwrap_or_else(|| (0..pairs).map(|_| irregular.next().powi(4)).collect());
+            let mut descent =
+                Descent { statics: &mut statics, kinematics: &mut kinematics, pairs, theta, excluded: &excluded };
+            let found = descent.alternate(&start).map(|state| descent.improve(state));
+            descent.release();
+            if let Some(state) = found
+                && best.as_ref().is_none_or(|b| state.theta < b.theta)
+            {
+                if present.is_finite() && state.theta < present {
+                    let next = state.theta * (1.0 - 1e-7);
+                    statics.shift(self.systems.room(), next - present);
+                    kinematics.shift(self.systems.room(), next - present);
+                    present = next;
+                }
+                best = Some(state);
+            }
+        }
+        self.work.pivots += statics.pivots + kinematics.pivots;
+        best
+    }
+}
+
+#[typetag::serde(name = "limit_least")]
+impl LimitSolver for LimitLeast {
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+        let mut answer = associated(problem, question);
+        let mut own = associated_bound(&answer);
+        let LimitQuestion::Collapse { start, max } = question else {
+            answer.own_flow = Some(own);
+            return answer;
+        };
+        if settled_by_association(problem, question, &answer) {
+            own.proved_lower = own.associated_factor;
+            answer.own_flow = Some(own);
+            return answer;
+        }
+        let base: Wrenches = combined(&problem.fixed, &problem.varying, start);
+        let mut least = Least { problem, systems: Systems::new(problem, &base), work: Work::default() };
+        let unit = least.systems.unit;
+        // The greatest θ of interest: that of associated flow, or of the search.
+        let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
+        let most = associated_theta.unwrap_or((max - start) / unit);
+        let mut best = least.first(&answer, start);
+        let mut gamma = best.as_ref().map(|b| least.systems.multipliers(problem, &b.1.motion));
+        let searchable = least.searchable();
+        if searchable.is_err() || best.is_none() {
+            let from = answer.field.clone().unwrap_or_default();
+            match sequence(problem, &base, &from, &mut answer.counters) {
+                Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
+                    gamma = Some(least.systems.multipliers(problem, &state.motion));
+                    best = Some((state.factor / unit, state));
+                }
+                Sequence::Converged(_) => {}
+                Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
+            }
+        }
+        let mut lower = 0.0;
+        match searchable {
+            Err(why) => answer.notes.push(why),
+            Ok(()) => {
+                let most = best.as_ref().map_or(most, |b| b.0.min(most));
+                if most > 0.0 {
+                    let found = least.local(most, gamma);
+                    least.take(found.map(|state| state.moving), &mut best);
+                }
+                lower = least.prove(self.search_limit, most, &mut best);
+            }
+        }
+        for (name, count) in [
+            ("pivots", least.work.pivots),
+            ("search_programs", least.work.programs),
+            ("search_refusals", least.work.refusals),
+        ] {
+            *answer.counters.entry(name.into()).or_default() += count;
+        }
+        finish(answer, own, best, lower, (start, max, unit))
+    }
+
+    fn refuses(&self, _: &LimitProblem) -> Option<String> {
+        None
+    }
+}
+
+impl Least<'_> {
+    /// The associated answer itself, where its mechanism does not slide: then it obeys any flow.
+    fn first(&self, answer: &LimitAnswer, start: f64) -> Option<(f64, FlowState)> {
+        let (factor, field, motion) = (answer.factor?, answer.field.clone()?, answer.motion.clone()?);
+        let gamma = self.systems.multipliers(self.problem, &motion);
+        let slides = greatest_shares(&gamma).into_iter().any(|i| self.systems.pairs[i].non_associated());
+        let state = FlowState { factor: factor - start, field, motion };
+        (!slides && answer.status == Status::Collapse).then_some(((factor - start) / self.systems.unit, state))
+    }
+
+    /// Keeps a state where it is less than the best one.
+    fn take(&self, moving: Option<Vec<usize>>, best: &mut Option<(f64, FlowState)>) -> bool {
+        let Some(found) = moving.and_then(|moving| self.state(&moving)) else { return false };
+        let better = best.as_ref().is_none_or(|b| found.0 < b.0 - GAP / 2.0 * b.0.abs());
+        if better {
+            *best = Some(found);
+        }
+        better
+    }
+
+    /// Raises the lower bound as far as the work allows, taking lesser states on the way.
+    fn prove(&mut self, limit: f64, most: f64, best: &mut Option<(f64, FlowState)>) -> f64 {
+        let entries = (limit * 1e9).min(1e18) as u64;
+        let mut lower = 0.0f64;
+        loop {
+            let known = best.as_ref().map_or(most, |b| b.0);
+            if !known.is_finite() {
+                return 0.0;
+            }
+            let left = entries.saturating_sub(self.work.entries);
+            let (proved, found) = bracket(&self.systems, known, left, &mut self.work);
+            lower = lower.max(proved);
+            match found {
+                Some((_, moving)) if self.take(Some(moving.clone()), best) => {}
+                _ => return lower,
+            }
+        }
+    }
+}
+
+/// The answer with the best state and the proved bound.
+fn finish(
+    mut answer: LimitAnswer,
+    mut own: voussoir_core::limit::OwnFlow,
+    best: Option<(f64, FlowState)>,
+    lower: f64,
+    (start, max, unit): (f64, f64, f64),
+) -> LimitAnswer {
+    let proved = start + lower * unit;
+    match best {
+        Some((_, state)) if start + state.factor <= max => {
+            let factor = start + state.factor;
+            own.proved_lower = Some(proved.min(factor));
+            if lower * unit < state.factor * (1.0 - 2.0 * GAP) {
+                answer.notes.push(format!(
+                    "the least load factor of the laws' own flow lies between {proved:.9} (proved) and {factor:.9} (found): the search ended at its limit"
+                ));
+            }
+            answer.status = Status::Collapse;
+            answer.factor = Some(factor);
+            answer.field_factor = factor;
+            answer.field = Some(state.field);
+            answer.motion = Some(state.motion);
+            answer.unique = None;
+            answer.ray = None;
+            answer.own_flow = Some(own);
+        }
+        _ if answer.status == Status::Collapse => {
+            // Nothing but the associated answer: an upper bound, and flagged as such.
+            answer.notes.push(format!(
+                "no limit state with the laws' own flow was found; none lies below {proved:.9} (proved)"
+            ));
+        }
+        _ => {
+            own.proved_lower = Some(proved);
+            answer.notes.push(format!(
+                "no limit state with the laws' own flow was found; none lies below {proved:.9} (proved)"
+            ));
+            answer.own_flow = Some(own);
+        }
+    }
+    answer
+}

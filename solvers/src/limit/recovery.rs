@@ -1,0 +1,135 @@
+//! Fields and mechanisms to rounding from the rows that are known to yield and to move.
+
+use voussoir_core::sparse::{Entries, Factorised};
+use super::driven;
+use super::systems::Systems;
+use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+
+type Row = Vec<(usize, f64)>;
+
+/// Regularisation of the least-norm steps, which are repeated until they no longer gain.
+const DELTA: f64 = 1e-8;
+
+/// The solution of J z = h nearest to `start`, and its greatest residual.
+fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
+    let (n, m) = (start.len(), rows.len());
+    let mut entries: Entries = (0..n).map(|j| (j, j, 1.0)).collect();
+    for (i, row) in rows.iter().enumerate() {
+        entries.push((n + i, n + i, -DELTA));
+        for &(j, v) in row {
+            entries.push((n + i, j, v));
+            entries.push((j, n + i, v));
+        }
+    }
+    let factorised = Factorised::new(n + m, n, &entries)?;
+    let mut z = start;
+    let mut best: Option<(Vec<f64>, f64)> = None;
+    for _ in 0..12 {
+        let residual: Vec<f64> =
+            rows.iter().zip(right).map(|(row, h)| row.iter().map(|&(j, v)| v * z[j]).sum::<f64>() - h).collect();
+        let worst = residual.iter().fold(0.0f64, |w, r| w.max(r.abs()));
+        if best.as_ref().is_none_or(|b| worst < b.1) {
+            best = Some((z.clone(), worst));
+        }
+        if worst < 1e-16 {
+            break;
+        }
+        let mut load = vec![0.0; n];
+        load.extend(&residual);
+        let step = factorised.solve(&load)?;
+        (0..n).for_each(|j| z[j] -= step[j]);
+    }
+    best
+}
+
+impl Systems {
+    /// Force variables and θ in equilibrium with these pairs on their yield surface, nearest to
+    /// `start`; with the greatest residual and violation of any pair.
+    pub fn field(&self, yielding: &[usize], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
+        let theta = self.forces;
+        let mut rows: Vec<Row> = self.equilibrium.clone();
+        rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((theta, p)));
+        let mut right: Vec<f64> = self.fixed.iter().map(|w| -w).collect();
+        for &i in yielding {
+            rows.push(self.pairs[i].normal.clone());
+            right.push(self.pairs[i].bound);
+        }
+        let (z, error) = nearest(&rows, &right, start)?;
+        let violation = (0..self.pairs.len()).map(|i| -self.slack(i, &z)).fold(error, f64::max);
+        Some((z, violation))
+    }
+
+    /// s_i at force variables.
+    pub fn slack(&self, pair: usize, z: &[f64]) -> f64 {
+        let pair = &self.pairs[pair];
+        pair.bound - pair.normal.iter().map(|&(j, v)| v * z[j]).sum::<f64>()
+    }
+
+    /// The motion with multipliers nearest to γ_i of the pairs `moving`, scaled to p·q̇ = 1; with
+    /// the greatest residual and violation of γ ≥ 0, relative to the greatest multiplier.
+    pub fn motion(&self, problem: &LimitProblem, moving: &[(usize, f64)]) -> Option<(Vec<Velocity>, f64)> {
+        let bodies = self.equilibrium.len();
+        let mut rows: Vec<Row> = vec![Vec::new(); self.forces + 1];
+        for (i, entries) in self.equilibrium.iter().enumerate() {
+            entries.iter().for_each(|&(j, v)| rows[j].push((i, v)));
+            if self.varying[i] != 0.0 {
+                rows[self.forces].push((i, self.varying[i]));
+            }
+        }
+        for (k, &(i, _)) in moving.iter().enumerate() {
+            self.pairs[i].flow.iter().for_each(|&(j, v)| rows[j].push((bodies + k, v)));
+        }
+        let mut right = vec![0.0; self.forces + 1];
+        right[self.forces] = 1.0;
+        let mut start = vec![0.0; bodies];
+        start.extend(moving.iter().map(|m| m.1));
+        let greatest = start.iter().fold(f64::MIN_POSITIVE, |m, g| m.max(g.abs()));
+        let (z, error) = nearest(&rows, &right, start)?;
+        let violation = z[bodies..].iter().map(|g| -g).fold(error, f64::max);
+        let motion = z[..bodies].chunks(3).map(|q| [q[0], q[1], q[2] / self.length]).collect();
+        Some((driven(&problem.varying, motion), violation / greatest))
+    }
+
+    /// Joint forces \[N\] of force variables.
+    pub fn joint_forces(&self, z: &[f64]) -> Vec<JointForce> {
+        let force = |&(first, shear): &(usize, bool)| JointForce {
+            normal: [z[first] * self.force, z[first + 1] * self.force],
+            shear: if shear { z[first + 2] * self.force } else { 0.0 },
+        };
+        self.joints.iter().map(force).collect()
+    }
+
+    /// Force variables of joint forces \[N\].
+    pub fn force_variables(&self, forces: &[JointForce]) -> Vec<f64> {
+        let mut z = Vec::with_capacity(self.forces + 1);
+        for (force, &(_, shear)) in forces.iter().zip(&self.joints) {
+            z.extend(force.normal.map(|n| n / self.force));
+            if shear {
+                z.push(force.shear / self.force);
+            }
+        }
+        z
+    }
+
+    /// Multipliers of a motion read with the pairs' own flow: slip gives those of sliding, the rest
+    /// of the opening those of opening.
+    pub fn multipliers(&self, problem: &LimitProblem, motion: &[Velocity]) -> Vec<f64> {
+        let mut jumps = vec![0.0; self.forces];
+        for (group, q) in motion.iter().enumerate().take(problem.groups) {
+            for (i, q) in [q[0], q[1], q[2] * self.length].into_iter().enumerate() {
+                self.equilibrium[3 * group + i].iter().for_each(|&(j, v)| jumps[j] += v * q);
+            }
+        }
+        let mut gamma = vec![0.0; self.pairs.len()];
+        for slides in [true, false] {
+            for (i, pair) in self.pairs.iter().enumerate().filter(|(_, pair)| pair.slides() == slides) {
+                let Some(&(j, v)) = pair.flow.last() else { continue };
+                gamma[i] = (-jumps[j] / v).max(0.0);
+                if slides {
+                    pair.flow.iter().for_each(|&(j, v)| jumps[j] += v * gamma[i]);
+                }
+            }
+        }
+        gamma
+    }
+}

@@ -1,0 +1,205 @@
+//! `limit_sequential`: a non-associated load by sequential linear programming.
+#![doc = include_str!("limit_sequential.md")]
+
+use super::systems::Systems;
+use super::{Greatest, associated, combined, conic};
+use crate::limit::Engine;
+use serde::{Deserialize, Serialize};
+use voussoir_core::assembly::Wrenches;
+use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::limit::{
+    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, OwnFlow, Status, Velocity,
+};
+use voussoir_core::schema::PluginKind;
+
+/// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
+/// the field is then moved onto the yield surface.
+pub const TOLERANCE: f64 = 1e-7;
+/// Greatest number of programs.
+const PROGRAMS: usize = 120;
+/// A field moved onto the yield surface is admissible to this.
+const ADMISSIBLE: f64 = 1e-12;
+
+/// Sequential linear programming.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitSequential {}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "limit_sequential",
+        summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
+        parameters: &[],
+        provides: &[Capability::RigidLimit],
+        requires: &[Capability::Facets],
+        sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
+        file: file!(),
+        page: include_str!("limit_sequential.md"),
+        check: no_further_check,
+    }
+}
+
+/// A state that obeys the laws' own flow.
+#[derive(Debug, Clone)]
+pub struct FlowState {
+    /// Factor above the base loads.
+    pub factor: f64,
+    /// Field.
+    pub field: Vec<JointForce>,
+    /// Mechanism.
+    pub motion: Vec<Velocity>,
+}
+
+/// How a sequence ended.
+pub enum Sequence {
+    /// At a state.
+    Converged(FlowState),
+    /// Not, and why.
+    Open(String),
+}
+
+/// The problem with each row that flows otherwise replaced by its flow as an associated row through
+/// the yield point at the normal forces of `reference`: d·r ≤ b + (d − a)·r̄.
+fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem {
+    let mut replaced = problem.clone();
+    for (joint, force) in replaced.joints.iter_mut().zip(reference) {
+        let at = [force.normal[0], force.normal[1], force.shear];
+        for row in joint.strength.rows.iter_mut().filter(|row| row.flow != row.normal) {
+            let relief: f64 = (0..3).map(|k| (row.flow[k] - row.normal[k]) * at[k]).sum();
+            row.bound += relief.max(0.0);
+            row.normal = row.flow;
+        }
+    }
+    replaced
+}
+
+/// Runs the sequence from a field, that of associated flow by default.
+pub fn sequence(
+    problem: &LimitProblem,
+    base: &Wrenches,
+    from: &[JointForce],
+    counters: &mut Counters,
+) -> Sequence {
+    let systems = Systems::new(problem, base);
+    let mut reference = from.to_vec();
+    let mut last = f64::NAN;
+    for step in 0..PROGRAMS {
+        let replaced = fictitious(problem, &reference);
+        let mut engine = conic::engine(&replaced);
+        let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+        *counters.entry("linear_programs".into()).or_default() += 1;
+        for (name, count) in engine.counters() {
+            *counters.entry(name).or_default() += count;
+        }
+        let (factor, field, motion) = match greatest {
+            Greatest::Collapse { factor, field, motion, .. } => (factor, field, motion),
+            Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
+            _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
+        };
+        last = factor;
+        let z = systems.force_variables(&field);
+        let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
+        let gamma = systems.multipliers(problem, &motion);
+        let moving = greatest_shares(&gamma);
+        let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
+        if worst.max(idle) <= TOLERANCE
+            && let Some(state) = settled(&systems, problem, (z, factor), &gamma, &moving)
+        {
+            return Sequence::Converged(state);
+        }
+        // Half way where full steps have not settled, then a quarter.
+        let share = if step < 12 { 1.0 } else if step < 40 { 0.5 } else { 0.25 };
+        for (old, new) in reference.iter_mut().zip(&field) {
+            (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
+            old.shear += share * (new.shear - old.shear);
+        }
+    }
+    Sequence::Open(format!(
+        "the sequence of {PROGRAMS} linear programs did not converge; the last factor above the start is {last:.9}"
+    ))
+}
+
+/// The pairs whose multiplier is more than rounding.
+pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
+    let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
+    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
+}
+
+/// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
+fn settled(
+    systems: &Systems,
+    problem: &LimitProblem,
+    (mut z, factor): (Vec<f64>, f64),
+    gamma: &[f64],
+    moving: &[usize],
+) -> Option<FlowState> {
+    z.push(factor / systems.unit);
+    let near: Vec<usize> = (0..systems.pairs.len())
+        .filter(|&i| systems.slack(i, &z).abs() <= 10.0 * TOLERANCE || moving.contains(&i))
+        .collect();
+    let some: Vec<usize> =
+        (0..systems.pairs.len()).filter(|&i| systems.slack(i, &z) <= 0.0 || moving.contains(&i)).collect();
+    let (z, _) = [near, some, moving.to_vec()]
+        .into_iter()
+        .filter_map(|yielding| systems.field(&yielding, z.clone()))
+        .find(|(_, violation)| *violation <= ADMISSIBLE)?;
+    let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
+    let (motion, _) = systems.motion(problem, &moves)?;
+    Some(FlowState { factor: z[systems.forces] * systems.unit, field: systems.joint_forces(&z), motion })
+}
+
+/// Whether the question is answered by associated flow already: nothing to collapse, nothing that
+/// flows otherwise.
+pub fn settled_by_association(problem: &LimitProblem, question: LimitQuestion, answer: &LimitAnswer) -> bool {
+    let searched = matches!(question, LimitQuestion::Collapse { .. })
+        && matches!(answer.status, Status::Collapse | Status::Stands | Status::Unbounded);
+    !searched || !problem.non_associated || problem.magnitude(&problem.varying) == 0.0
+}
+
+/// What an associated answer says of flow by the laws themselves.
+pub fn associated_bound(answer: &LimitAnswer) -> OwnFlow {
+    let collapse = answer.status == Status::Collapse;
+    OwnFlow {
+        proved_lower: None,
+        associated_factor: answer.factor.filter(|_| collapse),
+        associated_motion: answer.motion.clone().filter(|_| collapse),
+    }
+}
+
+#[typetag::serde(name = "limit_sequential")]
+impl LimitSolver for LimitSequential {
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+        let mut answer = associated(problem, question);
+        let own = associated_bound(&answer);
+        answer.own_flow = Some(own);
+        if settled_by_association(problem, question, &answer) {
+            return answer;
+        }
+        let LimitQuestion::Collapse { start, max } = question else { return answer };
+        let base = combined(&problem.fixed, &problem.varying, start);
+        let from = answer.field.clone().unwrap_or_default();
+        match sequence(problem, &base, &from, &mut answer.counters) {
+            Sequence::Converged(state) if start + state.factor <= max => {
+                answer.status = Status::Collapse;
+                answer.factor = Some(start + state.factor);
+                answer.field_factor = start + state.factor;
+                answer.field = Some(state.field);
+                answer.motion = Some(state.motion);
+                answer.unique = None;
+                answer.ray = None;
+            }
+            Sequence::Converged(_) => {}
+            Sequence::Open(why) => {
+                answer.status = Status::Stalled;
+                answer.factor = None;
+                answer.notes.push(why);
+            }
+        }
+        answer
+    }
+
+    fn refuses(&self, _: &LimitProblem) -> Option<String> {
+        None
+    }
+}
