@@ -1,10 +1,26 @@
 //! Scenes that benches share, made from study files, so that a user can repeat a bench with `voussoir run`.
 
+pub mod point;
+
 use voussoir::study::{Case, load};
 
 /// A jointed segmental ring of `voussoirs` (span 9.42 m, rise 2.99 m, thickness 0.6 m, 1 m wide,
 /// μ 0.6) with a load above quarter span: the scene all peers were measured on. `solver` is a tag.
 pub fn ring(voussoirs: usize, solver: &str) -> Case {
+    ring_of(voussoirs, solver, "law = \"rigid\"", "")
+}
+
+/// The same ring with compliant joints.
+pub fn compliant_ring(voussoirs: usize) -> Case {
+    ring_of(voussoirs, "auto", "law = \"rigid\"", "normal_stiffness = 1e10\nshear_stiffness = 4e9")
+}
+
+/// The same ring of elastic voussoirs, E 5 GPa.
+pub fn elastic_ring(voussoirs: usize) -> Case {
+    ring_of(voussoirs, "auto", "law = \"elastic\"\nyoung_modulus = \"5 GPa\"\npoisson_ratio = 0.3", "")
+}
+
+fn ring_of(voussoirs: usize, solver: &str, material: &str, stiffness: &str) -> Case {
     case(&format!(
         r#"
 name = "ring"
@@ -18,11 +34,12 @@ ends = "jointed"
 material = "stone"
 joint = "dry"
 [materials.stone]
-law = "rigid"
+{material}
 density = 2200.0
 [joints.dry]
 law = "coulomb_associated"
 friction = 0.6
+{stiffness}
 [[stages]]
 gravity = 9.81
 name = "dead"

@@ -11,6 +11,10 @@ use crate::schema::{Parameter, PluginKind};
 pub enum Capability {
     /// The interface law is given by facets a·t ≤ b.
     Facets,
+    /// The interface law is given by tractions from gaps, with state.
+    Response,
+    /// The bulk material gives stresses from strains at a point, with state.
+    StressUpdate,
     /// Bodies may be read as rigid without changing the answer.
     RigidLimit,
     /// Equilibrium in displaced positions.
@@ -24,6 +28,8 @@ impl Capability {
     pub fn describe(self) -> &'static str {
         match self {
             Capability::Facets => "facets",
+            Capability::Response => "tractions from gaps",
+            Capability::StressUpdate => "stresses from strains at a point",
             Capability::RigidLimit => "a rigid limit",
             Capability::FiniteDisplacements => "finite displacements",
             Capability::Settlement => "settlements",

@@ -9,7 +9,7 @@
 
 use crate::assembly::{Assembly, Bond, StageLoads, add_force};
 use crate::geometry::{Vec2, cross};
-use crate::interface::{Facet, FacetMode, Formulation};
+use crate::interface::{Facet, FacetMode};
 use crate::limit::Status;
 use crate::mechanism::{CentroidVelocity, Jump, jumps};
 use crate::strength::YieldPolygon;
@@ -96,15 +96,19 @@ struct Check<'a> {
 /// Checks a claim about the stage with these loads: the certificate, and the bounds \[lower, upper\]
 /// that field and motion prove where both exist.
 pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64) -> (Certificate, Option<[f64; 2]>) {
-    let facets: Vec<Vec<Facet>> = assembly
+    let joined = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
+    let unread = assembly
         .catalogue
         .laws
         .iter()
-        .map(|(_, law)| {
-            let Formulation::Facets(facets) = law.formulation();
-            facets
-        })
-        .collect();
+        .enumerate()
+        .find_map(|(index, (name, law))| (joined(index) && law.formulation().facets().is_none()).then_some(name));
+    if let Some(name) = unread {
+        let failures = vec![format!("joint law \"{name}\" is not given by facets: its strength cannot be checked")];
+        return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
+    }
+    let facets: Vec<Vec<Facet>> =
+        assembly.catalogue.laws.iter().map(|(_, law)| law.formulation().facets().unwrap_or_default()).collect();
     let mut check = Check {
         groups: assembly.rigid_groups().0,
         polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),

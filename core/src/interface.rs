@@ -2,8 +2,12 @@
 //!
 //! A law is parameters plus a pure function; state belongs to the solver. A law knows no solver.
 
+pub mod facet_response;
+
+use crate::material::{BatchFailure, UpdateFailure};
 use serde::Serialize;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// What happens to a joint that yields on a facet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -59,13 +63,106 @@ impl Facet {
     }
 }
 
-/// How a law states itself. The other forms of the design (response, complementarity) come with
-/// the solvers that read them.
-#[derive(Debug, Clone, PartialEq)]
+/// How a law states itself. The third form of the design, complementarity, comes with the first law
+/// that is neither of these.
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Formulation {
     /// Facets in tractions: usable by every solver.
     Facets(Vec<Facet>),
+    /// Tractions from gaps: for solvers that follow a path.
+    Response(Arc<dyn InterfaceResponse>),
+}
+
+/// What a joint does at the end of an update.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Regime {
+    /// Nothing irreversible in this step.
+    Elastic,
+    /// The bond softens.
+    Softening,
+    /// It slides.
+    Sliding,
+    /// The bond softens while it slides.
+    SofteningSliding,
+}
+
+impl Regime {
+    /// Its name in result files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Regime::Elastic => "elastic",
+            Regime::Softening => "softening",
+            Regime::Sliding => "sliding",
+            Regime::SofteningSliding => "softening_sliding",
+        }
+    }
+}
+
+/// What an update gives for one point of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TractionPoint {
+    /// (t_n, t_t) on the plus side \[Pa\], t_n ≥ 0 in compression.
+    pub traction: [f64; 2],
+    /// ∂t/∂g of the update itself \[Pa/m\], row by row.
+    pub tangent: [[f64; 2]; 2],
+    /// What happened.
+    pub regime: Regime,
+    /// Energy stored at the end of the step \[J/m²\].
+    pub stored: f64,
+    /// Energy dissipated in the step \[J/m²\].
+    pub dissipated: f64,
+}
+
+impl TractionPoint {
+    /// No traction and no stiffness: something to be overwritten.
+    pub const ZERO: TractionPoint = TractionPoint {
+        traction: [0.0; 2],
+        tangent: [[0.0; 2]; 2],
+        regime: Regime::Elastic,
+        stored: 0.0,
+        dissipated: 0.0,
+    };
+}
+
+/// Traction from gap: a pure function of the gap g = (g_n, g_t) \[m\] (g_n > 0 open) and the state at
+/// the start of the step. −t·ġ is the power the joint takes up per area. Nothing is allocated; call
+/// [`respond`](InterfaceResponse::respond) once per group of points.
+pub trait InterfaceResponse: Debug + Send + Sync {
+    /// Numbers in the state of a point.
+    fn state_size(&self) -> usize;
+
+    /// Writes the state of the untouched joint into a slice of [`state_size`](Self::state_size).
+    fn initial_state(&self, state: &mut [f64]);
+
+    /// What each number of the state is, with its unit, such as `"damage [-]"`.
+    fn state_names(&self) -> &'static [&'static str];
+
+    /// The update of one point. `old` and `new` are as long as the state.
+    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure>;
+
+    /// Updates a group of points; one gap and result each, states one after the other.
+    fn respond(
+        &self,
+        gaps: &[[f64; 2]],
+        old: &[f64],
+        new: &mut [f64],
+        points: &mut [TractionPoint],
+    ) -> Result<(), BatchFailure> {
+        let (size, count) = (self.state_size(), gaps.len());
+        if points.len() != count || old.len() != count * size || new.len() != count * size {
+            return Err(BatchFailure { point: 0, failure: UpdateFailure::WrongSize });
+        }
+        for (index, (gap, point)) in gaps.iter().zip(points).enumerate() {
+            let place = index * size..(index + 1) * size;
+            *point = self
+                .respond_point(*gap, &old[place.clone()], &mut new[place])
+                .map_err(|failure| BatchFailure { point: index, failure })?;
+        }
+        Ok(())
+    }
 }
 
 /// A law of a joint. Implementors also register with `#[typetag::serde]` and submit a
@@ -85,6 +182,7 @@ impl Formulation {
     pub fn facets(self) -> Option<Vec<Facet>> {
         match self {
             Formulation::Facets(facets) => Some(facets),
+            Formulation::Response(_) => None,
         }
     }
 }

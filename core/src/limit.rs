@@ -8,7 +8,8 @@
 
 use crate::assembly::{Assembly, StageLoads, Wrenches};
 use crate::geometry::{Vec2, cross};
-use crate::interface::{Formulation, is_associated};
+use crate::interface::is_associated;
+use crate::material::Deformability;
 use crate::strength::{JointStrength, integrate};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -78,6 +79,12 @@ impl LimitProblem {
     /// Reduces an assembly: bonded bodies become one, held ones the ground, joints inside a group
     /// vanish. An error names the law that limit analysis cannot read.
     pub fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
+        for body in &assembly.bodies {
+            let (name, material) = &assembly.catalogue.materials[body.material];
+            if matches!(material.deformability(), Deformability::Inelastic { .. }) {
+                return Err(format!("material \"{name}\" yields: limit analysis of rigid blocks cannot read it"));
+            }
+        }
         let (group_of, groups) = assembly.rigid_groups();
         let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
         let (low, high) = crate::geometry::bounding_box(points);
@@ -94,11 +101,14 @@ impl LimitProblem {
                 continue;
             }
             let (name, interface) = &assembly.catalogue.laws[law];
-            let facets = read.entry(law).or_insert_with(|| {
-                let Formulation::Facets(facets) = interface.formulation();
+            if let std::collections::btree_map::Entry::Vacant(place) = read.entry(law) {
+                let facets = interface.formulation().facets().ok_or_else(|| {
+                    format!("joint law \"{name}\" is not given by facets: limit analysis cannot read it")
+                })?;
                 non_associated |= !is_associated(&facets);
-                facets
-            });
+                place.insert(facets);
+            }
+            let facets = &read[&law];
             let strength = integrate(facets, joint.height() * assembly.width)
                 .map_err(|why| format!("joint law \"{name}\": {why}"))?;
             let (normal, tangent) = joint.frame();

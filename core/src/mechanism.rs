@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Bond, Joint};
 use crate::geometry::{Vec2, turned};
-use crate::interface::{FacetMode, FlowReading, Formulation, InterfaceLaw};
+use crate::interface::{FacetMode, FlowReading, InterfaceLaw};
 use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
 
@@ -204,7 +204,7 @@ pub fn mechanism(
 }
 
 fn contact_rays(law: &dyn InterfaceLaw, flow: FlowReading) -> Vec<[f64; 2]> {
-    let Formulation::Facets(facets) = law.formulation();
+    let facets = law.formulation().facets().unwrap_or_default();
     let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
     if flow == FlowReading::Own {
         uncrushed.iter_mut().for_each(|f| f.normal = f.flow);

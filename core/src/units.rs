@@ -22,6 +22,8 @@ pub enum Quantity {
     Density,
     /// m/s².
     Acceleration,
+    /// J/m².
+    EnergyPerArea,
 }
 
 const POUND_FORCE: f64 = 4.448_221_615_260_5; // exact: 0.45359237 kg × 9.80665 m/s²
@@ -44,6 +46,7 @@ const STRESSES: &[(&str, f64)] = &[
     ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)),
 ];
 const STIFFNESSES: &[(&str, f64)] = &[("Pa/m", 1.0), ("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9), ("N/mm3", 1e9)];
+const ENERGIES_PER_AREA: &[(&str, f64)] = &[("J/m2", 1.0), ("N/m", 1.0), ("kJ/m2", 1e3), ("N/mm", 1e3)];
 const DENSITIES: &[(&str, f64)] = &[("kg/m3", 1.0), ("t/m3", 1e3), ("lb/ft3", 0.453_592_37 / (FOOT * FOOT * FOOT))];
 const SPECIFIC_WEIGHTS: &[(&str, f64)] =
     &[("N/m3", 1.0), ("kN/m3", 1e3), ("lbf/ft3", POUND_FORCE / (FOOT * FOOT * FOOT))];
@@ -62,6 +65,7 @@ impl Quantity {
             Quantity::Stiffness => "Pa/m",
             Quantity::Density => "kg/m3",
             Quantity::Acceleration => "m/s2",
+            Quantity::EnergyPerArea => "J/m2",
         }
     }
 
@@ -81,6 +85,7 @@ impl Quantity {
                 DENSITIES.iter().copied().chain(weights).collect()
             }
             Quantity::Acceleration => ACCELERATIONS.to_vec(),
+            Quantity::EnergyPerArea => ENERGIES_PER_AREA.to_vec(),
         }
     }
 

@@ -4,10 +4,14 @@
 //! G = E / (2(1 + ν)), λ_L = E ν / ((1 + ν)(1 − 2ν)). **State.** None. **Validity.** Small strains.
 //! Limit loads do not depend on E and ν: limit analysis reads such blocks as rigid.
 
+use crate::meridian::Trial;
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::material::{BulkMaterial, Deformability};
+use voussoir_core::material::{
+    BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt,
+};
 use voussoir_core::schema::{Parameter, PluginKind, Range};
 use voussoir_core::units::Quantity;
 
@@ -32,7 +36,39 @@ impl BulkMaterial for Elastic {
     fn deformability(&self) -> Deformability {
         Deformability::LinearElastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
     }
+
+    fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
+        Some(Arc::new(ElasticUpdate(Isotropic::new(self.young_modulus, self.poisson_ratio))))
+    }
 }
+
+/// Hooke's law at a point; no state.
+#[derive(Debug, Clone)]
+pub struct ElasticUpdate(pub Isotropic);
+
+impl StressUpdate for ElasticUpdate {
+    fn state_size(&self) -> usize {
+        0
+    }
+
+    fn initial_state(&self, _: &mut [f64]) {}
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn update_point(&self, strain: &Voigt, _: f64, old: &[f64], _: &mut [f64]) -> Result<StressPoint, UpdateFailure> {
+        Ok(Trial::new(&self.0, strain, old)?.elastic(&self.0))
+    }
+}
+
+/// E, which every material that deforms has.
+pub(crate) const YOUNG_MODULUS: Parameter =
+    Parameter::number("young_modulus", Quantity::Stress, Range::POSITIVE, "Young's modulus E");
+
+/// ν, which every material that deforms has.
+pub(crate) const POISSON_RATIO: Parameter =
+    Parameter::number("poisson_ratio", Quantity::Ratio, Range::new(-1.0, true, 0.5, true), "Poisson's ratio ν");
 
 voussoir_core::inventory::submit! {
     Card {
@@ -40,11 +76,11 @@ voussoir_core::inventory::submit! {
         tag: "elastic",
         summary: "linear isotropic elasticity",
         parameters: &[
-            Parameter::number("young_modulus", Quantity::Stress, Range::POSITIVE, "Young's modulus E"),
-            Parameter::number("poisson_ratio", Quantity::Ratio, Range::new(-1.0, true, 0.5, true), "Poisson's ratio ν"),
+            YOUNG_MODULUS,
+            POISSON_RATIO,
             DENSITY,
         ],
-        provides: &[Capability::RigidLimit],
+        provides: &[Capability::RigidLimit, Capability::StressUpdate],
         requires: &[],
         sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
         file: file!(),

@@ -6,3 +6,4 @@
 pub mod limit;
 pub use voussoir_core::lu;
 pub mod path;
+pub mod point;

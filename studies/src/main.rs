@@ -49,6 +49,21 @@ enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
     },
+    /// Drive one law at one point through a path of strains and stresses
+    Point {
+        /// Study files (TOML) with kind = "point"
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+        /// Where results go; with several studies, a folder each inside \[default: results/NAME\]
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Override a key of the study, e.g. --set point.length=0.1
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Print nothing but errors
+        #[arg(long)]
+        quiet: bool,
+    },
     /// Explain a plug-in, or how a study will be solved
     Explain {
         /// Tag of a plug-in, or a study file
@@ -80,6 +95,7 @@ fn main() -> ExitCode {
             commands::run::run(&studies, &options)
         }
         Command::Check { studies, set } => commands::check::check(&studies, &set),
+        Command::Point { studies, out, set, quiet } => commands::point::point(&studies, out.as_deref(), &set, quiet),
         Command::Explain { what } => commands::explain::explain(&what),
         Command::List { kind } => commands::explain::list(kind.as_deref()),
         Command::Schema => commands::explain::schema(),

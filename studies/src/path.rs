@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use voussoir_core::assembly::{Assembly, Target};
 use voussoir_core::certificate::{Certificate, ContactForce, largest_jump};
 use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::interface::FlowReading;
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
 use voussoir_core::path::certificate::{Watch, flow_residual};
@@ -115,7 +116,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         _ => None,
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
-    let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique));
+    let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, FlowReading::Own));
     let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
     let mut stages: Vec<StageResult> = question.stages[..stage]
         .iter()
@@ -275,7 +276,8 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
             let power: f64 = p.iter().flatten().zip(rates.iter().flatten()).map(|(p, v)| p * v).sum();
             expect((power - 1.0).abs() <= 1e-6, "the mechanism is not scaled to p·q̇ = 1");
         }
-        let found = mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique));
+        let unique = result.mechanism.as_ref().and_then(|m| m.unique);
+        let found = mechanism(assembly, &velocities, unique, FlowReading::Own);
         let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }

@@ -129,7 +129,8 @@ static VARIANT: Shape = Shape::Table(&[
     key("set", Shape::Map(&FREE), Need::Default("{}"), "dotted keys in quotes, with the values they take"),
 ]);
 
-static OUTPUT: Shape = Shape::Table(&[
+/// Keys of `[output]`.
+pub(crate) static OUTPUT: Shape = Shape::Table(&[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
     key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView"),
@@ -251,10 +252,8 @@ pub struct Study {
 /// Greatest number of different mistakes reported.
 const MAX_MISTAKES: usize = 100;
 
-/// Reads a study. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
-/// a value that is no TOML is taken as text.
-pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, Vec<Mistake>> {
-    let mut root = parse(text, file)?;
+/// Sets the `--set KEY=VALUE` of the command line; a value that is no TOML is taken as text.
+pub(crate) fn apply(root: &mut Node, sets: &[(String, String)]) -> Vec<Mistake> {
     let mut mistakes = Vec::new();
     for (path, value) in sets {
         let origin = Origin::Set(path.as_str().into());
@@ -264,7 +263,21 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
                 origin: origin.clone(),
             })
         });
-        mistakes.extend(set(&mut root, path, value, &origin).err().map(|mistake| *mistake));
+        mistakes.extend(set(root, path, value, &origin).err().map(|mistake| *mistake));
+    }
+    mistakes
+}
+
+/// Reads a study. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
+/// a value that is no TOML is taken as text.
+pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, Vec<Mistake>> {
+    let mut root = parse(text, file)?;
+    let mut mistakes = apply(&mut root, sets);
+    if root.table().and_then(|table| table.get("kind")?.text()) == Some("point") {
+        let message = "\"point\" has no scene to solve";
+        mistakes
+            .push(Mistake::new(&root.place("kind"), "kind", message).help("drive it by `voussoir point STUDY.toml`"));
+        return Err(mistakes);
     }
     check_variants(&root, &mut mistakes);
     let plan = match Plan::new(&root) {
@@ -623,7 +636,15 @@ fn choose_solver(
         };
         builder.wrong("solver.kinematics", message, "set kinematics = \"small\"");
     }
-    if let (Some(assembly), Some(chosen)) = (assembly, chosen) {
+    // `auto` needs at least what every solver needs.
+    let everyone: Vec<Capability> = cards_of(PluginKind::LimitSolver)
+        .iter()
+        .flat_map(|card| card.requires)
+        .filter(|need| solvers_that(|solver| !solver.requires.contains(need)).is_empty())
+        .copied()
+        .collect();
+    let asked = chosen.map_or(everyone.as_slice(), |chosen| chosen.requires);
+    if let Some(assembly) = assembly {
         let used = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
         let laws = assembly.catalogue.laws.iter().enumerate().filter(|(law, _)| used(*law));
         let laws = laws.map(|(_, (name, _))| ("joints", name, PluginKind::InterfaceLaw));
@@ -634,11 +655,8 @@ fn choose_solver(
             let Some(card) = card(kind, law) else {
                 continue;
             };
-            let missing: Vec<_> = chosen
-                .requires
-                .iter()
-                .filter(|need| concerns(**need) == kind && !card.provides.contains(need))
-                .collect();
+            let missing: Vec<_> =
+                asked.iter().filter(|need| concerns(**need) == kind && !card.provides.contains(need)).collect();
             for need in missing {
                 let able = solvers_that(|solver| !solver.requires.contains(need));
                 let message = format!(
@@ -669,7 +687,7 @@ fn choose_solver(
 /// Which kind of law a capability is asked of.
 fn concerns(capability: Capability) -> PluginKind {
     match capability {
-        Capability::RigidLimit => PluginKind::BulkMaterial,
+        Capability::RigidLimit | Capability::StressUpdate => PluginKind::BulkMaterial,
         _ => PluginKind::InterfaceLaw,
     }
 }

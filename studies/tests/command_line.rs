@@ -108,3 +108,34 @@ fn the_program_explains_itself() {
     assert!(serde_json::from_slice::<serde_json::Value>(&schema.stdout).expect("JSON").is_object());
     assert_eq!(code(&voussoir(&["check", study().to_str().expect("a path")])), 0);
 }
+
+/// `point` drives every point study there is, writes a row per step, and says where a stress cannot be
+/// reached; `run` sends such a study on to `point`.
+#[test]
+fn points_are_driven() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let out_text = out.to_str().expect("a path");
+    let case = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name).display().to_string();
+    let names = ["cap_uniaxial", "cap_triaxial", "cap_compaction"].map(|name| format!("point_{name}.toml"));
+    for name in names.iter().map(String::as_str).chain(["point_softening.toml", "point_cohesive.toml"]) {
+        let output = voussoir(&["point", &case(name), "--out", out_text, "--quiet"]);
+        assert_eq!(code(&output), 0, "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(code(&voussoir(&["check", &case(name)])), 0, "{name}");
+        let results: serde_json::Value = serde_json::from_str(&text(&out.join("results.json"))).expect("JSON");
+        let rows: usize =
+            results["cases"].as_array().expect("cases").iter().map(|c| c["rows"].as_array().expect("rows").len()).sum();
+        assert_eq!(text(&out.join("results.csv")).lines().count(), rows + 1, "{name}");
+        assert!(out.join("figures/path.svg").is_file() && out.join("resolved.toml").is_file());
+    }
+    let uniaxial = case("point_cap_uniaxial.toml");
+    let output = voussoir(&["run", &uniaxial, "--out", out_text]);
+    assert_eq!(code(&output), 2);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("voussoir point"));
+    // 40 MPa of uniaxial stress are beyond the strength.
+    let set = "point.path.0={ steps = 4, stress = { xx = \"-40 MPa\", yy = 0.0, zz = 0.0 } }";
+    let output = voussoir(&["point", &uniaxial, "--out", out_text, "--set", set]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(code(&output), 1, "{said}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("cannot be reached"), "{said}");
+}

@@ -7,6 +7,7 @@ use crate::interface::Facet;
 use crate::limit::Counters;
 use crate::material::Deformability;
 use nalgebra::DMatrix;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// A body of the path problem: one block, or several rigid ones bonded together.
@@ -134,6 +135,18 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
+/// Stiffness of the bedding between meshes that do not match, relative to that of a block as high as
+/// the joint.
+const BEDDING: f64 = 1e5;
+
+/// Young's modulus of a deformable block.
+fn modulus(assembly: &Assembly, block: usize) -> Option<f64> {
+    match assembly.catalogue.materials[assembly.bodies[block].material].1.deformability() {
+        Deformability::LinearElastic { young_modulus, .. } if !assembly.bodies[block].fixed => Some(young_modulus),
+        _ => None,
+    }
+}
+
 impl PathProblem {
     /// Builds the problem. An error says what cannot be followed.
     pub fn new(assembly: &Assembly, stages: &[Stage]) -> Result<Self, String> {
@@ -193,6 +206,7 @@ impl PathProblem {
     }
 
     fn contact_points(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+        let mut crowded = BTreeSet::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
             let sides = [joint.minus, joint.plus];
             if self.body_of[joint.minus] == self.body_of[joint.plus] {
@@ -200,9 +214,12 @@ impl PathProblem {
             }
             let stiffness = assembly.law(joint).and_then(|law| law.stiffness());
             let mut breaks = vec![0.0, 1.0];
+            let mut meshes: Vec<Vec<f64>> = Vec::new();
             for &side in sides.iter().filter(|side| elastic(**side)) {
                 let vertices = &assembly.bodies[side].vertices;
-                breaks = union_breaks(&breaks, &breaks_on_joint(vertices, &assembly.mesh, joint.ends)?);
+                let own = breaks_on_joint(vertices, &assembly.mesh, joint.ends)?;
+                breaks = union_breaks(&breaks, &own);
+                meshes.push(own);
             }
             let any_elastic = sides.iter().any(|side| elastic(*side));
             if !any_elastic && stiffness.is_some() {
@@ -218,6 +235,10 @@ impl PathProblem {
             let (positions, weights) = joint_points(&breaks, order);
             let (normal, tangent) = joint.frame();
             let height = joint.height();
+            let matching = meshes.windows(2).all(|pair| pair[0].len() == breaks.len() && pair[1].len() == breaks.len());
+            if !matching {
+                crowded.insert(index);
+            }
             for (position, weight) in positions.into_iter().zip(weights) {
                 let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
                 let area = weight * height * assembly.width;
@@ -246,7 +267,31 @@ impl PathProblem {
                 });
             }
         }
+        self.bed(assembly, crowded);
         Ok(())
+    }
+
+    /// Where two meshes do not match, or joints meet at a corner, more points than nodes meet and the
+    /// flexibility is singular: a bedding far stiffer than the blocks shares the forces. It is part of
+    /// the model, proportional to area (a uniform pressure stays uniform), and moves no limit load.
+    fn bed(&mut self, assembly: &Assembly, mut crowded: BTreeSet<usize>) {
+        let grid = 1e-7 * self.length;
+        let mut met: HashMap<[i64; 2], usize> = HashMap::new();
+        for contact in &self.contacts {
+            let key = [contact.position.x, contact.position.y].map(|x| (x / grid).round() as i64);
+            match met.get(&key) {
+                Some(&other) if other != contact.joint => crowded.extend([other, contact.joint]),
+                _ => _ = met.insert(key, contact.joint),
+            }
+        }
+        for contact in self.contacts.iter_mut().filter(|c| crowded.contains(&c.joint) && c.compliance == [0.0; 2]) {
+            let joint = &assembly.joints[contact.joint];
+            let sides = [joint.minus, joint.plus].into_iter();
+            let softest = sides.filter_map(|side| modulus(assembly, side)).fold(f64::INFINITY, f64::min);
+            if softest.is_finite() {
+                contact.compliance = [joint.height() / (BEDDING * softest * contact.area); 2];
+            }
+        }
     }
 
     fn drives(&mut self, assembly: &Assembly, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {

@@ -11,6 +11,13 @@ pub fn check(paths: &[PathBuf], sets: &[String]) -> u8 {
     };
     let mut code = FINE;
     for path in paths {
+        if files::is_point(path, &sets) {
+            match files::point_study(path, &sets) {
+                Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.cases.len())),
+                Err(wrong) => code = code.max(wrong),
+            }
+            continue;
+        }
         match files::study(path, &sets) {
             Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.cases.len())),
             Err(wrong) => code = code.max(wrong),

@@ -2,6 +2,8 @@
 
 use super::{NO_ACCESS, WRONG_INPUT};
 use std::path::Path;
+use voussoir::config::report::Mistake;
+use voussoir::kinds::point::{self, PointStudy};
 use voussoir::study::{Study, load};
 
 /// Reads a file, or says why not.
@@ -44,10 +46,23 @@ pub fn overrides(sets: &[String]) -> Result<Vec<(String, String)>, u8> {
 /// Reads a study, printing every mistake in it.
 pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Study, u8> {
     let text = read(path)?;
-    load(&text, &path.display().to_string(), sets).map_err(|mistakes| {
-        mistakes.iter().for_each(|mistake| eprintln!("{mistake}"));
-        let count = mistakes.len();
-        eprintln!("{}: {count} mistake{}; nothing was computed", path.display(), if count == 1 { "" } else { "s" });
-        WRONG_INPUT
-    })
+    load(&text, &path.display().to_string(), sets).map_err(|mistakes| report(path, &mistakes))
+}
+
+fn report(path: &Path, mistakes: &[Mistake]) -> u8 {
+    mistakes.iter().for_each(|mistake| eprintln!("{mistake}"));
+    let count = mistakes.len();
+    eprintln!("{}: {count} mistake{}; nothing was computed", path.display(), if count == 1 { "" } else { "s" });
+    WRONG_INPUT
+}
+
+/// Whether a file holds a study of a driven point.
+pub fn is_point(path: &Path, sets: &[(String, String)]) -> bool {
+    std::fs::read_to_string(path).is_ok_and(|text| point::is_point(&text, sets))
+}
+
+/// Reads a study of a driven point, printing every mistake in it.
+pub fn point_study(path: &Path, sets: &[(String, String)]) -> Result<PointStudy, u8> {
+    let text = read(path)?;
+    point::load(&text, &path.display().to_string(), sets).map_err(|mistakes| report(path, &mistakes))
 }

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod explain;
 pub mod files;
+pub mod point;
 pub mod run;
 pub mod verify;
 

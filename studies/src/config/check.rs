@@ -83,6 +83,9 @@ pub fn describe(shape: &Shape) -> String {
             }
             _ => format!("a list, each entry {}", describe(of)),
         },
+        Shape::Tuple(shapes) => {
+            format!("a list [{}]", shapes.iter().map(|shape| describe(shape)).collect::<Vec<_>>().join(", "))
+        }
         Shape::Table(_) | Shape::Map(_) => "a table".into(),
         Shape::Tagged { key, .. } => format!("a table with the key {key}"),
         Shape::Plugin(kind) => format!("a table with the key {}", kind.tag_key()),
@@ -106,7 +109,7 @@ fn fits(node: &Node, shape: &Shape) -> bool {
         }
         (Shape::Boolean, Value::Boolean(_)) => true,
         (Shape::Text | Shape::Choice(_) | Shape::Reference(_), Value::String(_)) => true,
-        (Shape::List { .. }, Value::Array(_)) => true,
+        (Shape::List { .. } | Shape::Tuple(_), Value::Array(_)) => true,
         (Shape::Table(_) | Shape::Map(_) | Shape::Tagged { .. } | Shape::Plugin(_), Value::Table(_)) => true,
         _ => false,
     }
@@ -210,6 +213,18 @@ impl<'a> Checker<'a> {
                     .enumerate()
                     .map(|(i, node)| self.check(node, of, &join(key, &i.to_string())))
                     .collect();
+                entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
+            }
+            (Shape::Tuple(shapes), Value::Array(nodes)) => {
+                if nodes.len() != shapes.len() {
+                    let entries = if nodes.len() == 1 { "entry" } else { "entries" };
+                    let message = format!("the list has {} {entries}; it needs {}", nodes.len(), shapes.len());
+                    let help = format!("write {}", describe(shape));
+                    return self.wrong_with_help(&node.origin, key, message, help);
+                }
+                let entries = nodes.iter().zip(*shapes).enumerate();
+                let entries: Vec<_> =
+                    entries.map(|(i, (node, shape))| self.check(node, shape, &join(key, &i.to_string()))).collect();
                 entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
             }
             (Shape::Table(parameters), Value::Table(table)) => self.table(node, table, parameters, &[], &[], key),

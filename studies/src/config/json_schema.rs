@@ -26,11 +26,16 @@ pub fn json_schema() -> Json {
         }
         definitions.insert(name_of(kind), json!({ "oneOf": choices }));
     }
-    let mut root = table(crate::study::STUDY, None);
-    root["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
-    root["title"] = "Voussoir study".into();
-    root["$defs"] = Json::Object(definitions);
-    root
+    definitions.insert("study".into(), table(crate::study::STUDY, None));
+    definitions.insert("point_study".into(), table(crate::kinds::point::schema(), None));
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Voussoir study",
+        "if": { "properties": { "kind": { "const": "point" } }, "required": ["kind"] },
+        "then": { "$ref": "#/$defs/point_study" },
+        "else": { "$ref": "#/$defs/study" },
+        "$defs": definitions,
+    })
 }
 
 fn name_of(kind: PluginKind) -> String {
@@ -107,6 +112,10 @@ fn shape(of: &Shape) -> Json {
                 schema["maxItems"] = (*max).into();
             }
             schema
+        }
+        Shape::Tuple(shapes) => {
+            let entries: Vec<_> = shapes.iter().map(|of| shape(of)).collect();
+            json!({ "type": "array", "prefixItems": entries, "items": false, "minItems": shapes.len() })
         }
         Shape::Table(parameters) => table(parameters, None),
         Shape::Tagged { key, variants } => {

@@ -118,6 +118,9 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
         },
         counters: Default::default(),
         seconds: 1.2e-3,
+        events: Vec::new(),
+        curve: None,
+        displacements: None,
         stages: vec![StageResult { name: "live".into(), status, factor: None, hinges: vec![] }],
     }
 }

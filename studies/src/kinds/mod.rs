@@ -1,5 +1,6 @@
 //! Study kinds: what is done with the cases of a study.
 
+pub mod point;
 pub mod run;
 
 use crate::results::CaseResult;

@@ -50,7 +50,7 @@ voussoir_core::inventory::submit! {
         summary: "limit analysis of arches and other chains of blocks in three redundants and λ, by simplex, to rounding",
         parameters: &[],
         provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Dantzig 1963, Linear Programming and Extensions"],
         file: file!(),
         page: include_str!("limit_chain.md"),

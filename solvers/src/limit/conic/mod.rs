@@ -40,7 +40,7 @@ voussoir_core::inventory::submit! {
         summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
         parameters: &[],
         provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
         file: file!(),
         page: include_str!("limit_conic.md"),

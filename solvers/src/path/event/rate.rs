@@ -188,6 +188,14 @@ pub struct Rate {
     pub gaps: Vec<[f64; 2]>,
 }
 
+/// What pivoting found.
+enum Pivoted {
+    /// Pieces close to a solution.
+    Guess(Vec<Piece>),
+    /// A mechanism.
+    Ray(Rate),
+}
+
 /// What is known of the solutions.
 #[derive(Debug, Clone)]
 pub enum Verdict {
@@ -205,8 +213,12 @@ pub enum Verdict {
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
 const INEQUALITY: f64 = 1e-10;
+/// Relative tolerance of what pivoting finds.
+const PIVOTING: f64 = 1e-7;
+/// Unknowns above which linear algebra is that of large systems.
+const LARGE: usize = 30;
 /// Combinations that are tried.
-const COMBINATIONS: usize = 6000;
+const COMBINATIONS: usize = 40_000;
 
 /// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
 #[derive(Debug)]
@@ -238,15 +250,6 @@ impl RateProblem<'_> {
             rows.extend(point.rows(*piece).into_iter().map(|r| (k, r.map(|x| x / unit))));
         }
         let n = flows.len();
-        let size = 2 * self.points.len();
-        let spread = |coefficients: &[f64]| {
-            let mut gaps = DVector::zeros(size);
-            for ((k, f), c) in flows.iter().zip(coefficients) {
-                gaps[2 * k] += f[0] * c;
-                gaps[2 * k + 1] += f[1] * c;
-            }
-            gaps
-        };
         let mut singular = false;
         let scaled: Vec<f64> = if n == 0 {
             Vec::new()
@@ -256,15 +259,24 @@ impl RateProblem<'_> {
                     + a[1] * (self.s[(2 * i + 1, 2 * j)] * d[0] + self.s[(2 * i + 1, 2 * j + 1)] * d[1])
             };
             let matrix = DMatrix::from_fn(n, n, |i, j| entry(&rows[i], &flows[j]));
+            let right = DVector::from_fn(n, |i, _| {
+                let (k, a) = &rows[i];
+                -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) * factor
+            });
+            if n > LARGE {
+                let lu = matrix.lu();
+                let solved: Vec<f64> = lu.solve(&right)?.iter().copied().collect();
+                let pivots = lu.u().diagonal().abs();
+                if pivots.min() <= SINGULAR * 1e-3 * pivots.max() {
+                    return None;
+                }
+                return self.completed(&flows, &solved, factor, false);
+            }
             let svd = matrix.svd(true, true);
             let (u, v_t) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
             let null = svd.singular_values.iter().filter(|s| **s <= SINGULAR).count();
             match null {
                 0 => {
-                    let right = DVector::from_fn(n, |i, _| {
-                        let (k, a) = &rows[i];
-                        -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) * factor
-                    });
                     let projected = u.transpose() * right;
                     let weighted = DVector::from_fn(n, |i, _| projected[i] / svd.singular_values[i]);
                     (v_t.transpose() * weighted).iter().copied().collect()
@@ -277,9 +289,18 @@ impl RateProblem<'_> {
                 _ => return None,
             }
         };
-        let gaps = spread(&scaled);
+        self.completed(&flows, &scaled, factor, singular)
+    }
+
+    /// Gaps, forces and unknowns of an attempt from the scaled unknowns.
+    fn completed(&self, flows: &[(usize, [f64; 2])], scaled: &[f64], factor: f64, singular: bool) -> Option<Attempt> {
+        let mut gaps = DVector::zeros(2 * self.points.len());
+        for ((k, f), c) in flows.iter().zip(scaled) {
+            gaps[2 * k] += f[0] * c;
+            gaps[2 * k + 1] += f[1] * c;
+        }
         let forces = &self.s * &gaps + &self.drive * if singular { 0.0 } else { factor };
-        let unknowns = scaled.iter().zip(&flows).map(|(v, (k, _))| v / self.points[*k].stiffness.sqrt()).collect();
+        let unknowns = scaled.iter().zip(flows).map(|(v, (k, _))| v / self.points[*k].stiffness.sqrt()).collect();
         Some(Attempt { unknowns, gaps, forces, singular })
     }
 
@@ -316,10 +337,9 @@ impl RateProblem<'_> {
     }
 
     /// Guess and correction with λ̇ = 1.
-    fn corrected(&self, counters: &mut u64) -> Option<Rate> {
-        let mut pieces: Vec<Piece> = self.points.iter().map(|p| p.guess).collect();
+    fn corrected(&self, mut pieces: Vec<Piece>, counters: &mut u64) -> Option<Rate> {
         let mut seen = Vec::new();
-        for round in 0..60 + 4 * self.points.len() {
+        for round in 0..60 + self.points.len() {
             *counters += 1;
             let attempt = self.attempt(&pieces, 1.0)?;
             if attempt.singular {
@@ -387,77 +407,116 @@ impl RateProblem<'_> {
         }
     }
 
-    /// Lemke's pivoting over all active facets.
-    fn pivoted(&self, counters: &mut u64) -> Option<Rate> {
+    /// Lemke's pivoting over all active facets, with their own flow or an associated one: pieces to
+    /// correct, or the ray of a mechanism.
+    fn pivoted(&self, associated: bool, counters: &mut u64) -> Option<Pivoted> {
         let facets: Vec<(usize, usize)> =
             self.points.iter().enumerate().flat_map(|(k, p)| p.active.iter().map(move |f| (k, *f))).collect();
         if facets.len() > 900 || self.points.iter().any(|p| p.open.is_some()) {
             return None;
         }
         let n = facets.len();
-        let scaled = |(k, f): &(usize, usize)| {
-            let unit = self.points[*k].stiffness.sqrt();
-            let facet = &self.points[*k].facets[*f];
-            (*k, facet.normal.map(|a| a / unit), facet.flow.map(|d| d / unit), unit)
-        };
-        let rows: Vec<_> = facets.iter().map(scaled).collect();
+        let facet = |i: usize| &self.points[facets[i].0].facets[facets[i].1];
+        let flow = |i: usize| if associated { facet(i).normal } else { facet(i).flow };
         let m = DMatrix::from_fn(n, n, |i, j| {
-            let ((k, a, _, _), (l, _, d, _)) = (&rows[i], &rows[j]);
+            let (k, l, a, d) = (facets[i].0, facets[j].0, facet(i).normal, flow(j));
             a[0] * (self.s[(2 * k, 2 * l)] * d[0] + self.s[(2 * k, 2 * l + 1)] * d[1])
                 + a[1] * (self.s[(2 * k + 1, 2 * l)] * d[0] + self.s[(2 * k + 1, 2 * l + 1)] * d[1])
         });
+        // Each facet in its own scale.
+        let largest = m.diagonal().amax();
+        let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
+        let m = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
         let q = DVector::from_fn(n, |i, _| {
-            let (k, a, _, _) = &rows[i];
-            -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1])
+            let (k, a) = (facets[i].0, facet(i).normal);
+            -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) / unit[i]
         });
-        let (z, factor) = match lemke(&m, &q, counters) {
-            Lemke::Solution(z) => (z, 1.0),
-            Lemke::Ray(z) => (z, 0.0),
+        let (z, ray) = match lemke(&m, &q, counters) {
+            Lemke::Solution(z) => (z, false),
+            Lemke::Ray(z) => (z, true),
             Lemke::Unfinished => return None,
         };
         let mut gaps = vec![[0.0; 2]; self.points.len()];
+        for (i, (k, _)) in facets.iter().enumerate() {
+            let d = flow(i);
+            gaps[*k][0] -= z[i] / unit[i] * d[0];
+            gaps[*k][1] -= z[i] / unit[i] * d[1];
+        }
+        let z_size = z.iter().copied().fold(1e-300, f64::max);
+        if ray {
+            let w = &m * DVector::from_vec(z.clone());
+            let moves = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
+            let largest = unit.iter().copied().fold(0.0, f64::max);
+            let still = w.amax() <= PIVOTING * z_size && z.iter().all(|z| *z >= -PIVOTING * z_size);
+            if !still || moves * largest <= PIVOTING * z_size || (!associated && q.dot(&DVector::from_vec(z)) > 0.0) {
+                return None;
+            }
+            let pieces = gaps.iter().map(|g| if g[0].hypot(g[1]) > 0.0 { Piece::Free } else { Piece::Stick }).collect();
+            return Some(Pivoted::Ray(Rate { factor: 0.0, pieces, gaps }));
+        }
+        let w = &q + &m * DVector::from_vec(z.clone());
+        let w_size = w.amax().max(1e-300);
         let mut pieces = vec![Piece::Stick; self.points.len()];
-        for (((k, f), z), (_, _, d, _)) in facets.iter().zip(&z).zip(&rows) {
-            if *z > 0.0 {
-                gaps[*k][0] -= z * d[0];
-                gaps[*k][1] -= z * d[1];
-                pieces[*k] = match pieces[*k] {
-                    Piece::Stick if self.points[*k].apex && self.points[*k].facets[*f].mode == FacetMode::Opening => {
-                        Piece::Free
-                    }
-                    Piece::Stick => Piece::Facet(*f),
-                    _ if self.points[*k].apex => Piece::Free,
-                    Piece::Facet(other) => Piece::Corner(other, *f),
-                    kept => kept,
-                };
+        for (i, (k, f)) in facets.iter().enumerate() {
+            if z[i] / z_size <= (w[i] / w_size).max(1e-12) {
+                continue;
+            }
+            let opens = facet(i).mode == FacetMode::Opening;
+            pieces[*k] = match pieces[*k] {
+                Piece::Stick if self.points[*k].apex && opens => Piece::Free,
+                Piece::Stick => Piece::Facet(*f),
+                _ if self.points[*k].apex => Piece::Free,
+                Piece::Facet(other) => Piece::Corner(other, *f),
+                kept => kept,
+            };
+        }
+        Some(Pivoted::Guess(pieces))
+    }
+
+    /// Associated flow makes the problem monotone: from its solution the flow is turned step by step
+    /// into the law's own.
+    fn from_associated(&self, counters: &mut u64) -> Option<Rate> {
+        let Some(Pivoted::Guess(mut pieces)) = self.pivoted(true, counters) else { return None };
+        for own in [0.0, 0.25, 0.5, 0.7, 0.85, 0.95, 1.0] {
+            let turned =
+                |f: &PointFacet| PointFacet { flow: [0, 1].map(|i| (1.0 - own) * f.normal[i] + own * f.flow[i]), ..*f };
+            let facets: Vec<Vec<PointFacet>> =
+                self.points.iter().map(|p| p.facets.iter().map(turned).collect()).collect();
+            let points = self.points.iter().zip(&facets).map(|(p, facets)| Verge { facets, ..p.clone() }).collect();
+            let problem = RateProblem { points, s: self.s.clone(), drive: self.drive.clone() };
+            match problem.corrected(pieces.clone(), counters) {
+                Some(rate) if own == 1.0 => return Some(rate),
+                Some(rate) => pieces = rate.pieces,
+                None => {}
             }
         }
-        // Check what was found as any other candidate.
-        let attempt = self.attempt(&pieces, factor)?;
-        if attempt.singular != (factor == 0.0) {
-            return None;
-        }
-        [1.0, -1.0]
-            .into_iter()
-            .take(if factor == 0.0 { 2 } else { 1 })
-            .find(|sign| self.violations(&pieces, &attempt, *sign).is_empty())
-            .map(|sign| self.rate(&pieces, &attempt, sign, factor))
+        None
     }
 
     /// Solves the rate problem. `examine` asks for the number of other solutions where it is cheap.
     pub fn solve(&self, examine: bool, counters: &mut u64) -> Verdict {
         let combinations = self.combinations();
-        let corrected = self.corrected(counters);
+        let guess = self.points.iter().map(|p| p.guess).collect();
+        let corrected = self.corrected(guess, counters);
         if let Some(rate) = corrected {
             let others = (examine && combinations <= 64)
                 .then(|| self.enumerated(counters).iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1));
             return Verdict::Found(rate, others);
         }
         if combinations > COMBINATIONS {
-            return match self.pivoted(counters) {
-                Some(rate) => Verdict::Found(rate, None),
-                None => Verdict::Undecided(combinations),
-            };
+            match self.pivoted(false, counters) {
+                Some(Pivoted::Guess(pieces)) => {
+                    if let Some(rate) = self.corrected(pieces, counters) {
+                        return Verdict::Found(rate, None);
+                    }
+                }
+                Some(Pivoted::Ray(rate)) => return Verdict::Found(rate, None),
+                None => {}
+            }
+            if let Some(rate) = self.from_associated(counters) {
+                return Verdict::Found(rate, None);
+            }
+            return Verdict::Undecided(combinations);
         }
         let all = self.enumerated(counters);
         let rising = all.iter().filter(|r| r.factor >= 0.0).count();

@@ -90,10 +90,10 @@ impl<'a> Kinematics<'a> {
         let mut sides = vec![Vec::new(); problem.bodies.len()];
         for (contact, c) in problem.contacts.iter().enumerate() {
             for (attachment, sign) in [(c.minus, -1.0), (c.plus, 1.0)] {
-                if let Some(slot) = attachment.slot {
-                    if problem.bodies[attachment.body].flexibility.is_some() {
-                        sides[attachment.body].push(Side { contact, sign, slot });
-                    }
+                if let Some(slot) = attachment.slot
+                    && problem.bodies[attachment.body].flexibility.is_some()
+                {
+                    sides[attachment.body].push(Side { contact, sign, slot });
                 }
             }
         }
@@ -272,13 +272,13 @@ impl<'a> Kinematics<'a> {
         for (index, c) in problem.contacts.iter().enumerate() {
             let (arm_plus, arm_minus, jump, e, _) = self.frame(index, motion);
             let (plus, minus) = (base + 3 * c.plus.body, base + 3 * c.minus.body);
-            for i in 0..2 {
+            for (i, e) in e.iter().enumerate() {
                 let row = 2 * index + i;
-                let half = if self.finite { 0.5 * turned(e[i]).dot(&jump) } else { 0.0 };
+                let half = if self.finite { 0.5 * turned(*e).dot(&jump) } else { 0.0 };
                 for (at, sign, arm) in [(plus, 1.0, arm_plus), (minus, -1.0, arm_minus)] {
-                    both(&mut out.entries, row, at, sign * e[i].x);
-                    both(&mut out.entries, row, at + 1, sign * e[i].y);
-                    both(&mut out.entries, row, at + 2, sign * e[i].dot(&turned(arm)) + half);
+                    both(&mut out.entries, row, at, sign * e.x);
+                    both(&mut out.entries, row, at + 1, sign * e.y);
+                    both(&mut out.entries, row, at + 2, sign * e.dot(&turned(arm)) + half);
                 }
                 out.entries.push((row, row, c.compliance[i]));
             }

@@ -132,7 +132,7 @@ impl Polygon {
         let facets = (0..self.facets.len() as u8).map(Regime::Facet);
         let corners = (0..self.corners.len() as u8).map(Regime::Corner);
         let mut best = (Regime::Stuck, self.violation(Regime::Stuck, z, rho, area));
-        for regime in facets.chain(corners) {
+        for regime in corners.chain(facets) {
             let violation = self.violation(regime, z, rho, area);
             if violation < best.1 {
                 best = (regime, violation);

@@ -66,15 +66,17 @@ pub(super) fn events(model: &Model, drive: usize, start: &State, state: &State) 
 }
 
 impl Ledger {
-    /// Adds a step: work of loads and reactions of settled supports and dissipation, both by the
-    /// trapezoidal rule, exact where forces change linearly during the step.
+    /// Adds a step: work of loads and reactions of settled supports by the trapezoidal rule, exact
+    /// where they change linearly during the step, and dissipation.
     pub fn add(&mut self, model: &Model, start: &State, state: &State, slopes: [&Slopes; 2]) {
         for contact in 0..state.gap.len() {
             let Some(law) = model.law(contact) else { continue };
             let (kept, _) = law.irreversible(state.regime[contact], model.step_gap(start, state, contact));
-            for k in 0..2 {
-                self.dissipated -= 0.5 * (start.force[contact][k] + state.force[contact][k]) * kept[k];
-            }
+            // Where the point yielded before on the same facet, the trapezoidal rule; where it began
+            // to, its force when it began is not known: the force at the end.
+            let same = start.regime[contact] == state.regime[contact];
+            let (end, begun) = (state.force[contact], if same { start.force[contact] } else { state.force[contact] });
+            self.dissipated -= 0.5 * ((begun[0] + end[0]) * kept[0] + (begun[1] + end[1]) * kept[1]);
         }
         let problem = model.problem;
         let place = |state: &State, slopes: &Slopes, body: usize, slot: Option<usize>, point: Vec2| {

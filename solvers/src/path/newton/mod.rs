@@ -5,6 +5,8 @@ mod kinematics;
 mod law;
 mod ledger;
 mod model;
+mod step;
+mod system;
 mod trace;
 
 use super::continuation::arc_length::ArcLength;
@@ -64,3 +66,6 @@ voussoir_core::inventory::submit! {
         check: no_further_check,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,28 +1,13 @@
-//! The step problem: unknowns, units, residual by regimes, the linear system of Newton's method.
+//! The step problem: unknowns and their units, states, increments, rates.
 //!
 //! Unknowns (r of all contact points, q of the free bodies, λ), each in its unit: force F, the size
-//! of the loads; displacement U = F × mean compliance; rotation U / length; factor Λ. Rows by regime:
-//!
-//! ```text
-//! stuck     g − s = 0                     facet   a·r = b A,  Δg × d = 0
-//! corner    r = corner A                  body    ∂Π/∂q = 0          control  c(increment) = length
-//! ```
-//!
-//! The matrix that is factorised is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄
-//! in every body and in every yielding contact. That makes it quasi-definite (Vanderbei 1995, SIAM J.
-//! Optim. 5) where regimes repeat a condition or leave a motion free; iterative refinement against
-//! the true matrix removes the shift from the answer. Where refinement does not converge, the
-//! regimes have no solution, and the step is refused.
+//! of the loads; displacement U = F × mean compliance; rotation U / length; factor Λ.
 
 use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
 use super::law::{Polygon, Regime};
-use crate::lu::SparseLu;
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{Constraint, ContactLaw, Continuation, Increment, Loading, PathProblem};
-
-/// The shift of the factorised matrix.
-const SHIFT: f64 = 1e-9;
+use voussoir_core::path::{ContactLaw, Continuation, Increment, Loading, PathProblem};
 
 /// Units of the unknowns.
 #[derive(Debug, Clone, Copy)]
@@ -97,7 +82,7 @@ pub(super) struct Model<'a> {
     /// Own compliance of every contact point, normal and tangential \[m/N\].
     pub compliance: Vec<[f64; 2]>,
     /// Index among the free bodies.
-    free: Vec<Option<usize>>,
+    pub free: Vec<Option<usize>>,
     pub bodies_free: usize,
     pub counters: Counters,
     pub loaded: Loaded<'a>,
@@ -141,8 +126,7 @@ impl<'a> Model<'a> {
         mean /= f64::from(count);
         let mut free = vec![None; problem.bodies.len()];
         let mut bodies_free = 0;
-        for (body, b) in problem.bodies.iter().enumerate().filter(|(_, b)| !b.held) {
-            let _ = b;
+        for (body, _) in problem.bodies.iter().enumerate().filter(|(_, b)| !b.held) {
             free[body] = Some(bodies_free);
             bodies_free += 1;
         }
@@ -195,7 +179,7 @@ impl<'a> Model<'a> {
         *self.counters.entry(what.into()).or_default() += by;
     }
 
-    fn size(&self) -> usize {
+    pub fn size(&self) -> usize {
         2 * self.problem.contacts.len() + 3 * self.bodies_free + 1
     }
 
@@ -224,7 +208,7 @@ impl<'a> Model<'a> {
     }
 
     /// Motions with the held bodies where their settlements put them.
-    fn settle(&self, motion: &mut [[f64; 3]], factor: f64) {
+    pub fn settle(&self, motion: &mut [[f64; 3]], factor: f64) {
         let settled = self.loaded.at(factor).settled(motion.len());
         for (body, motion) in motion.iter_mut().enumerate() {
             if self.free[body].is_none() {
@@ -250,7 +234,7 @@ impl<'a> Model<'a> {
     }
 
     /// Column of a global index, and its unit; `None` for held bodies.
-    fn column(&self, index: usize) -> Option<(usize, f64)> {
+    pub fn column(&self, index: usize) -> Option<(usize, f64)> {
         let base = 2 * self.problem.contacts.len();
         if index < base {
             return Some((index, self.units.force));
@@ -352,380 +336,6 @@ impl<'a> Model<'a> {
     /// Δg of a step at a contact point.
     pub fn step_gap(&self, start: &State, state: &State, contact: usize) -> [f64; 2] {
         [state.gap[contact][0] - start.slip[contact][0], state.gap[contact][1] - start.slip[contact][1]]
-    }
-
-    /// Gradient of a constraint over the scaled unknowns.
-    fn gradient(&self, start: &State, state: &State, constraint: &Constraint, curvature: &Curvature) -> Vec<f64> {
-        let u = self.units;
-        let (points, size) = (state.gap.len(), self.size());
-        let last = size - 1;
-        let mut row = vec![0.0; size];
-        let by = constraint.derivative;
-        row[last] += by.factor;
-        let mut by_gap = vec![0.0; 2 * points];
-        if by.motion != 0.0 {
-            let value = self.increment(start, state).motion.max(1e-300);
-            for body in 0..self.free.len() {
-                let Some(free) = self.free[body] else { continue };
-                for k in 0..3 {
-                    let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-                    let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
-                    row[2 * points + 3 * free + k] += by.motion * delta / (value * self.bodies_free as f64);
-                }
-            }
-            for c in 0..points {
-                for k in 0..2 {
-                    let delta = (state.gap[c][k] - start.gap[c][k]) / u.displacement;
-                    by_gap[2 * c + k] += by.motion * delta / (value * points as f64 * u.displacement);
-                }
-            }
-        }
-        if by.dissipation != 0.0 {
-            let energy = u.force * u.displacement;
-            for c in 0..points {
-                let Some(law) = self.law(c) else { continue };
-                let (kept, _) = law.irreversible(state.regime[c], self.step_gap(start, state, c));
-                if kept != [0.0; 2] {
-                    for k in 0..2 {
-                        row[2 * c + k] -= by.dissipation * kept[k] * u.force / energy;
-                        by_gap[2 * c + k] -= by.dissipation * state.force[c][k] / energy;
-                    }
-                }
-            }
-        }
-        if by.displacement != 0.0 {
-            let loading = self.loaded.growing;
-            let scale = by.displacement / load_size(self.problem, loading).max(1e-300);
-            let mut wrench = vec![[0.0; 3]; self.free.len()];
-            for (body, _, point, f) in &loading.forces {
-                let arm = point - self.problem.bodies[*body].pole;
-                let theta = if self.finite() { state.motion[*body][2] } else { 0.0 };
-                let arm = nalgebra::Rotation2::new(theta) * arm;
-                wrench[*body][0] += f.x;
-                wrench[*body][1] += f.y;
-                wrench[*body][2] += f.dot(&turned(arm));
-            }
-            for (body, b) in self.problem.bodies.iter().enumerate() {
-                let Some(free) = self.free[body] else { continue };
-                wrench[body][0] += b.mass * loading.acceleration.x;
-                wrench[body][1] += b.mass * loading.acceleration.y;
-                for k in 0..3 {
-                    let unit = if k == 2 { 1.0 / u.length } else { 1.0 };
-                    row[2 * points + 3 * free + k] += scale * wrench[body][k] * unit;
-                }
-            }
-        }
-        if by_gap.iter().any(|w| *w != 0.0) {
-            for &(i, j, value) in &curvature.entries {
-                if i < 2 * points && by_gap[i] != 0.0 {
-                    if let Some((column, unit)) = self.column(j) {
-                        row[column] += by_gap[i] * value * unit;
-                    }
-                }
-            }
-            for (i, weight) in by_gap.iter().enumerate() {
-                row[last] += weight * curvature.factor[i] * u.factor;
-            }
-        }
-        row
-    }
-
-    fn constraint(&self, start: &State, state: &State, control: &Control) -> (f64, Constraint) {
-        match control {
-            Control::Factor(target) => {
-                let derivative = Increment { factor: 1.0, ..Increment::default() };
-                ((state.factor - target) / self.units.factor, Constraint { value: 0.0, derivative })
-            }
-            Control::Strategy { strategy, previous, length } => {
-                let c = strategy.constraint(&self.increment(start, state), previous.as_ref());
-                (c.value - length, c)
-            }
-        }
-    }
-
-    /// Residual of the regimes' equations in units.
-    fn residual(&self, start: &State, state: &State, slopes: &Slopes) -> Vec<f64> {
-        let u = self.units;
-        let points = state.gap.len();
-        let mut out = vec![0.0; self.size()];
-        for c in 0..points {
-            let gap = self.step_gap(start, state, c).map(|g| g / u.displacement);
-            let area = self.problem.contacts[c].area;
-            let r = state.force[c];
-            let rows = match (state.regime[c], self.law(c)) {
-                (Regime::Facet(i), Some(law)) => {
-                    let f = &law.facets[i as usize];
-                    let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
-                    [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
-                }
-                (Regime::Corner(k), Some(law)) => {
-                    let corner = law.corners[k as usize].0;
-                    [(r[0] - corner[0] * area) / u.force, (r[1] - corner[1] * area) / u.force]
-                }
-                _ => gap,
-            };
-            out[2 * c] = rows[0];
-            out[2 * c + 1] = rows[1];
-        }
-        for (body, balance) in slopes.balance.iter().enumerate() {
-            if let Some(free) = self.free[body] {
-                for k in 0..3 {
-                    let unit = if k == 2 { u.force * u.length } else { u.force };
-                    out[2 * points + 3 * free + k] = balance[k] / unit;
-                }
-            }
-        }
-        out
-    }
-
-    /// Solves the regimes' linear equations for one right-hand side in units. `None`: no solution.
-    fn solve(&mut self, regimes: &[Regime], curvature: &Curvature, row: &[f64], right: &[f64]) -> Option<Vec<f64>> {
-        let u = self.units;
-        let (points, size) = (regimes.len(), self.size());
-        let last = size - 1;
-        let mut entries: Vec<(usize, usize, f64)> = Vec::with_capacity(curvature.entries.len() + 4 * size);
-        let mut shifts: Vec<(usize, usize, f64)> = Vec::new();
-        let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
-        let mut place = |i: usize, column: usize, value: f64| {
-            // `value` in SI per scaled unknown.
-            if i >= 2 * points {
-                if let Some((free_row, _)) = self.column(i) {
-                    entries.push((free_row, column, value / row_unit(i)));
-                }
-                return;
-            }
-            let (c, k) = (i / 2, i % 2);
-            let value = value / u.displacement;
-            match (regimes[c], self.law(c)) {
-                (Regime::Facet(f), Some(law)) => {
-                    let d = law.facets[f as usize].flow;
-                    entries.push((2 * c + 1, column, value * if k == 0 { d[1] } else { -d[0] }));
-                    let weight = d[k] / (d[0] * d[0] + d[1] * d[1]);
-                    shifts.push((2 * c, column, SHIFT * weight * value));
-                }
-                (Regime::Corner(_), Some(_)) => shifts.push((i, column, SHIFT * value)),
-                _ => entries.push((i, column, value)),
-            }
-        };
-        for &(i, j, value) in &curvature.entries {
-            if let Some((column, unit)) = self.column(j) {
-                place(i, column, value * unit);
-            }
-        }
-        for (i, value) in curvature.factor.iter().enumerate() {
-            if *value != 0.0 {
-                place(i, last, value * u.factor);
-            }
-        }
-        for c in 0..points {
-            match (regimes[c], self.law(c)) {
-                (Regime::Facet(f), Some(law)) => {
-                    let a = law.facets[f as usize].normal;
-                    entries.push((2 * c, 2 * c, a[0]));
-                    entries.push((2 * c, 2 * c + 1, a[1]));
-                }
-                (Regime::Corner(_), Some(_)) => {
-                    entries.push((2 * c, 2 * c, 1.0));
-                    entries.push((2 * c + 1, 2 * c + 1, 1.0));
-                }
-                _ => {
-                    shifts.push((2 * c, 2 * c, SHIFT));
-                    shifts.push((2 * c + 1, 2 * c + 1, SHIFT));
-                }
-            }
-        }
-        for free in 2 * points..last {
-            shifts.push((free, free, -SHIFT));
-        }
-        for (j, value) in row.iter().enumerate() {
-            if *value != 0.0 {
-                entries.push((last, j, *value));
-            }
-        }
-        self.count("factorisations", 1);
-        let mut shifted = entries.clone();
-        shifted.extend(shifts);
-        let factors = SparseLu::new(size, &shifted)?;
-        let mut x = vec![0.0; size];
-        let mut rest = right.to_vec();
-        let mut before = f64::INFINITY;
-        let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
-        let aim = norm(right);
-        if aim == 0.0 {
-            return Some(x);
-        }
-        let mut best = x.clone();
-        for _ in 0..30 {
-            let step = factors.solve(&[rest], 0)?.swap_remove(0);
-            x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-            rest = right.to_vec();
-            for &(i, j, value) in &entries {
-                rest[i] -= value * x[j];
-            }
-            let now = norm(&rest);
-            if now < before {
-                best.copy_from_slice(&x);
-            }
-            if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim {
-                before = before.min(now);
-                break;
-            }
-            before = now;
-        }
-        // What is left over is rounding of the solution's own size, or the system has no solution.
-        let size = norm(&best).max(aim);
-        (before <= 1e-9 * size).then_some(best)
-    }
-
-    fn apply(&self, state: &mut State, step: &[f64], share: f64) {
-        let u = self.units;
-        let points = state.force.len();
-        for c in 0..points {
-            (0..2).for_each(|k| state.force[c][k] += share * step[2 * c + k] * u.force);
-        }
-        for body in 0..self.free.len() {
-            if let Some(free) = self.free[body] {
-                for k in 0..3 {
-                    let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-                    state.motion[body][k] += share * step[2 * points + 3 * free + k] * unit;
-                }
-            }
-        }
-        state.factor += share * step[step.len() - 1] * u.factor;
-        self.settle(&mut state.motion, state.factor);
-    }
-
-    /// Regimes that the present forces and gaps ask for.
-    fn wanted(&mut self, start: &State, state: &State) -> Vec<Regime> {
-        self.count("law_evaluations", state.gap.len() as u64);
-        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
-        let mean = self.units.displacement / self.units.force;
-        (0..state.gap.len())
-            .map(|c| match self.law(c) {
-                None => Regime::Stuck,
-                Some(law) => {
-                    let rho = self.compliance[c].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean });
-                    let gap = self.step_gap(start, state, c);
-                    let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
-                    law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, 1e-11 * largest)
-                }
-            })
-            .collect()
-    }
-
-    /// Newton's method from a guess. Regimes change all at once as long as their number falls, else
-    /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
-    /// Res. 21), so that regimes that flip for ever are seen.
-    pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        let mut state = guess;
-        let factor = if let Control::Factor(target) = control { *target } else { state.factor };
-        state.factor = factor;
-        let mut motion = std::mem::take(&mut state.motion);
-        self.settle(&mut motion, factor);
-        state.motion = motion;
-        let mut slopes = self.slopes(&state);
-        state.gap = slopes.gap.clone();
-        let rounding = 400.0 * f64::EPSILON * self.units.length / self.units.displacement;
-        let (mut changed, mut restless) = (true, Vec::new());
-        let (mut fewest, mut budget) = (usize::MAX, 8);
-        let mut last_norm = f64::INFINITY;
-        for iteration in 0..60 + (state.gap.len() as u64).min(200) {
-            let mut residual = self.residual(start, &state, &slopes);
-            let (c, constraint) = self.constraint(start, &state, control);
-            let last = residual.len() - 1;
-            residual[last] = c;
-            let norm = residual.iter().map(|x| x.abs()).fold(0.0, f64::max);
-            let size = self.largest(&state);
-            if !norm.is_finite() {
-                return Err(Refusal { why: "an iteration left the numbers".into(), restless });
-            }
-            let tolerance = 1e-13 * size + rounding;
-            let settled = norm <= tolerance || (norm <= 1e-9 * size + 30.0 * rounding && norm > 0.3 * last_norm);
-            if iteration > 0 && !changed && settled {
-                return Ok((state, iteration));
-            }
-            last_norm = norm;
-            let curvature = self.curvature(&state, &slopes);
-            let row = self.gradient(start, &state, &constraint, &curvature);
-            let right: Vec<f64> = residual.iter().map(|x| -x).collect();
-            self.count("newton_iterations", 1);
-            let Some(step) = self.solve(&state.regime, &curvature, &row, &right) else {
-                return Err(Refusal { why: "the regimes of the contact points leave no equilibrium".into(), restless });
-            };
-            // Rotations of an iteration stay where the linearisation means something.
-            let share = if self.finite() {
-                let points = state.gap.len();
-                let turn = (0..self.bodies_free)
-                    .map(|b| (step[2 * points + 3 * b + 2] * self.units.displacement / self.units.length).abs())
-                    .fold(0.0, f64::max);
-                (0.1 / turn.max(1e-300)).min(1.0)
-            } else {
-                1.0
-            };
-            self.apply(&mut state, &step, share);
-            slopes = self.slopes(&state);
-            state.gap = slopes.gap.clone();
-            let wanted = self.wanted(start, &state);
-            let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
-            changed = !differ.is_empty();
-            if differ.len() < fewest {
-                (fewest, budget) = (differ.len(), 8);
-                state.regime = wanted;
-            } else if budget > 0 {
-                budget -= 1;
-                state.regime = wanted;
-            } else if let Some(&c) = differ.last() {
-                state.regime[c] = wanted[c];
-            }
-            restless = differ;
-        }
-        Err(Refusal { why: "the regimes of contact points keep changing".into(), restless })
-    }
-
-    fn largest(&self, state: &State) -> f64 {
-        let u = self.units;
-        let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
-        let motion = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * u.length));
-        force.max(motion.map(|m| m / u.displacement).fold(0.0, f64::max))
-    }
-
-    /// Rate of a converged state with its regimes held, per unit of the control's gradient.
-    pub fn rate(&mut self, start: &State, state: &State, control: &Control) -> Option<Rate> {
-        let slopes = self.slopes(state);
-        let curvature = self.curvature(state, &slopes);
-        let (_, constraint) = self.constraint(start, state, control);
-        let row = self.gradient(start, state, &constraint, &curvature);
-        let mut right = vec![0.0; self.size()];
-        right[self.size() - 1] = 1.0;
-        let x = self.solve(&state.regime, &curvature, &row, &right)?;
-        let mut zero = State {
-            force: vec![[0.0; 2]; state.force.len()],
-            motion: vec![[0.0; 3]; state.motion.len()],
-            factor: 0.0,
-            gap: vec![[0.0; 2]; state.gap.len()],
-            regime: Vec::new(),
-            slip: Vec::new(),
-        };
-        self.apply(&mut zero, &x, 1.0);
-        let factor = zero.factor;
-        let mut motion = vec![[0.0; 3]; state.motion.len()];
-        for (body, settlement) in &self.loaded.growing.settlements {
-            (0..3).for_each(|k| motion[*body][k] += factor * settlement[k]);
-        }
-        for body in (0..motion.len()).filter(|b| self.free[*b].is_some()) {
-            motion[body] = zero.motion[body];
-        }
-        let points = state.gap.len();
-        let mut gap = vec![[0.0; 2]; points];
-        for &(i, j, value) in curvature.entries.iter().filter(|e| e.0 < 2 * points) {
-            if let Some((column, unit)) = self.column(j) {
-                gap[i / 2][i % 2] += value * unit * x[column];
-            }
-        }
-        for c in 0..points {
-            (0..2).for_each(|k| gap[c][k] += curvature.factor[2 * c + k] * factor);
-        }
-        Some(Rate { force: zero.force, motion, factor, gap })
     }
 
     /// The irreversible gaps of a step become history.

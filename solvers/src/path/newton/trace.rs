@@ -52,7 +52,6 @@ pub(super) struct Tracer<'a, 'o> {
     motion: Option<Vec<[f64; 3]>>,
     ray: Option<Vec<[f64; 2]>>,
     peak: Option<Peak>,
-    stopped: bool,
 }
 
 /// Follows all drives.
@@ -85,7 +84,6 @@ pub(super) fn trace(
         motion: None,
         ray: None,
         peak: None,
-        stopped: false,
     };
     tracer.run(problem);
     tracer.answer()
@@ -134,23 +132,18 @@ impl<'a> Tracer<'a, '_> {
                 }
             }
         }
-        self.status = if let Some(peak) = &self.peak {
-            let _ = peak;
-            Status::LimitPoint
-        } else {
-            Status::Stands
-        };
+        self.status = if self.peak.is_some() { Status::LimitPoint } else { Status::Stands };
     }
 
     fn answer(self) -> PathAnswer {
-        let mut counters = self.model.counters;
+        let mut counters = self.model.counters.clone();
         for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
             counters.entry(name.into()).or_default();
         }
         let mut notes = self.notes;
         let r = &self.recorded;
         let (balance, size) = (r.work - r.stored - r.dissipated, r.work.abs() + r.stored.abs() + r.dissipated.abs());
-        if size > 0.0 {
+        if size > 1e-12 * self.model.units.force * self.model.units.displacement {
             notes.push(format!(
                 "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
                 balance / size
@@ -194,16 +187,15 @@ impl<'a> Tracer<'a, '_> {
         self.slopes = slopes;
         self.model.count("steps", 1);
         if !self.observer.state(self.model.problem, &self.recorded) {
-            self.stopped = true;
             self.end(Status::Stalled, "stopped by the observer".into());
             return false;
         }
-        if self.model.finite() {
-            if let Some(why) = self.left_its_pairing() {
-                let status = if self.peak.is_some() { Status::Collapse } else { Status::Stalled };
-                self.end(status, why);
-                return false;
-            }
+        if self.model.finite()
+            && let Some(why) = self.left_its_pairing()
+        {
+            let status = if self.peak.is_some() { Status::Collapse } else { Status::Stalled };
+            self.end(status, why);
+            return false;
         }
         true
     }
@@ -303,11 +295,12 @@ impl<'a> Tracer<'a, '_> {
             step => step,
         } * self.model.units.length
             / self.model.units.displacement;
-        let mut worst = Refusal { why: String::new(), restless: Vec::new() };
+        let mut switched_at: Option<u64> = None;
+        let mut yielding: Option<Vec<Regime>> = None;
         let mut before_peak_rate = rate.factor * direction;
         for _ in 0..MOST_STEPS {
             let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
-            if !(per_rate > 0.0) {
+            if per_rate.is_nan() || per_rate <= 0.0 {
                 previous = None;
                 if measure(&self.model, &self.state, &rate, None) <= 0.0 {
                     self.end(Status::Stalled, "what the continuation strategy controls stopped changing".into());
@@ -328,11 +321,11 @@ impl<'a> Tracer<'a, '_> {
                     length = share * per_rate;
                 }
             }
-            if !strategy.passes_limit_points() {
-                if let Some(slip) = self.first_slip(&rate).filter(|slip| *slip < share) {
-                    share = slip.max(1e-6 * share) * (1.0 + 1e-9);
-                    length = share * per_rate;
-                }
+            if !strategy.passes_limit_points()
+                && let Some(slip) = self.first_slip(&rate).filter(|slip| *slip < share)
+            {
+                share = slip.max(1e-6 * share) * (1.0 + 1e-9);
+                length = share * per_rate;
             }
             let reaches = (self.state.factor + rate.factor * share - target) * direction >= -1e-12 * unit;
             let control = if reaches {
@@ -341,8 +334,14 @@ impl<'a> Tracer<'a, '_> {
                 Control::Strategy { strategy: &*strategy, previous, length }
             };
             let step = if reaches { (target - self.state.factor) / rate.factor } else { share };
-            let guess = self.moved(&rate, step);
+            let mut guess = self.moved(&rate, step);
+            if let Some(regimes) = &yielding {
+                guess.regime = regimes.clone();
+            }
             let found = self.model.newton(&self.state, guess, &control).and_then(|(next, iterations)| {
+                if yielding.is_some() && next.regime == self.state.regime {
+                    return Err(Refusal { why: "the step went back the way it came".into(), restless: Vec::new() });
+                }
                 let judged = self.judge(&rate, step, &next, target, direction, reaches);
                 judged.map(|()| (next, iterations))
             });
@@ -350,10 +349,34 @@ impl<'a> Tracer<'a, '_> {
                 Ok(found) => found,
                 Err(refusal) => {
                     self.model.count("cutbacks", 1);
-                    worst = refusal;
-                    length *= 0.3;
+                    let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
+                    if slip <= 1e-9 * share.max(initial / per_rate)
+                        && switched_at != self.model.counters.get("steps").copied()
+                    {
+                        // At the very event: another branch, on which the points at their limit yield.
+                        switched_at = self.model.counters.get("steps").copied();
+                        if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
+                            let falls = other.factor * direction <= 0.0;
+                            if falls && !strategy.passes_limit_points() {
+                                self.no_step(&refusal, &other, direction);
+                                return Outcome::Ended;
+                            }
+                            if falls && self.peak.is_none() {
+                                let motion = self.scaled_motion(&self.state, &other);
+                                self.peak =
+                                    Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                            }
+                            rate = other;
+                            yielding = Some(regimes);
+                            before_peak_rate = rate.factor * direction;
+                            previous = None;
+                            length = 0.1 * initial;
+                            continue;
+                        }
+                    }
+                    length = if slip > 1e-9 * share && slip < share { slip * per_rate } else { 0.3 * length };
                     if length < 1e-10 * initial {
-                        self.no_step(&worst, &rate, direction);
+                        self.no_step(&refusal, &rate, direction);
                         return Outcome::Ended;
                     }
                     continue;
@@ -363,10 +386,10 @@ impl<'a> Tracer<'a, '_> {
             let next_rate = self.model.rate(&self.state, &next, &control);
             let Some(next_rate) = next_rate else {
                 self.model.count("cutbacks", 1);
-                worst = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
                 length *= 0.3;
                 if length < 1e-10 * initial {
-                    self.no_step(&worst, &rate, direction);
+                    let refusal = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
+                    self.no_step(&refusal, &rate, direction);
                     return Outcome::Ended;
                 }
                 continue;
@@ -390,7 +413,8 @@ impl<'a> Tracer<'a, '_> {
                 return Outcome::Reached;
             }
             rate = next_rate;
-            if !self.model.finite() && self.ray_ends(&rate, direction) {
+            yielding = None;
+            if !self.model.finite() && self.ray_ends(&rate, direction, target) {
                 return Outcome::Ended;
             }
             if self.stops(drive, direction) {
@@ -422,6 +446,17 @@ impl<'a> Tracer<'a, '_> {
         }
         guess.factor += share * rate.factor;
         guess
+    }
+
+    /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
+    fn yielding(&mut self, rate: &Rate, share: f64) -> Option<(Rate, Vec<Regime>)> {
+        let ahead = self.moved(rate, 1e-3 * share);
+        let state = self.state.clone();
+        let regimes = self.model.regimes_ahead(&state, &ahead);
+        if regimes == state.regime {
+            return None;
+        }
+        self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
     }
 
     /// Share of the rate after which the first stuck point whose slip is not associated would slide.
@@ -506,8 +541,9 @@ impl<'a> Tracer<'a, '_> {
             .collect();
         let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
-        if !self.strategy.passes_limit_points() && self.turns_back(rate, direction) {
-            self.end(Status::LimitPoint, format!("{why}; an arc-length step shows that the factor cannot grow"));
+        let falls = rate.factor * direction <= 0.0;
+        if !self.strategy.passes_limit_points() && (falls || self.turns_back(rate, direction)) {
+            self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
         } else {
             self.end(Status::Stalled, why);
         }
@@ -567,24 +603,25 @@ impl<'a> Tracer<'a, '_> {
         Some(Peak { factor: state.factor, state: recorded, motion })
     }
 
-    /// Velocities with p·q̇ = 1.
+    /// Velocities with p·q̇ = 1. `None` where the load does next to no work on them: rates are checked to
+    /// 1e-8 of their size, so less work than a hundred times that proves nothing.
     fn scaled_motion(&self, state: &State, rate: &Rate) -> Option<Vec<[f64; 3]>> {
         let u = self.model.units;
         let power = self.model.increment_of(state, rate).displacement
             * u.displacement
             * load_size(self.model.problem, self.model.loaded.growing);
         let size = self.model.motion_size(rate) * u.displacement * u.force / u.factor;
-        (power > 1e-12 * size).then(|| rate.motion.iter().map(|q| q.map(|x| x / power)).collect())
+        (power > 1e-6 * size).then(|| rate.motion.iter().map(|q| q.map(|x| x / power)).collect())
     }
 
     /// Whether the rate goes on for ever: collapse, or a ray that carries any load.
-    fn ray_ends(&mut self, rate: &Rate, direction: f64) -> bool {
+    fn ray_ends(&mut self, rate: &Rate, direction: f64, target: f64) -> bool {
         let u = self.model.units;
         let motion = self.model.motion_size(rate);
         let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
         let factor = rate.factor / u.factor * direction;
         let still = force <= 1e-9 * motion && factor.abs() <= 1e-9 * motion;
-        let force_unit = if still { f64::INFINITY } else { force * u.force };
+        let force_unit = if still { f64::INFINITY } else { force.max(factor.abs()) * u.force };
         for c in 0..rate.gap.len() {
             let Some(law) = self.model.law(c) else { continue };
             let gap = rate.gap[c].map(|g| g / (u.displacement * motion));
@@ -608,7 +645,7 @@ impl<'a> Tracer<'a, '_> {
             return true;
         }
         // What strengths bound is no ray: the facets have been looked at above with the ray's forces.
-        if factor > 1e-9 * (motion + force) {
+        if target.is_infinite() && factor > 1e-9 * (motion + force) {
             self.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
             self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Unbounded }, String::new());
             if self.peak.is_some() {
@@ -626,15 +663,6 @@ impl<'a> Tracer<'a, '_> {
     fn stops(&mut self, drive: &Drive, direction: f64) -> bool {
         let (factor, displacement) = (self.state.factor, self.recorded.displacement);
         let Some(peak) = &self.peak else {
-            if let Some(stop) = self.settings.stop_displacement {
-                if self.model.finite() && displacement.abs() >= stop.max(self.model.units.length) {
-                    self.end(
-                        Status::Stalled,
-                        format!("no peak up to a displacement of {displacement} m, factor {factor}"),
-                    );
-                    return true;
-                }
-            }
             if self.model.finite() && displacement.abs() > self.model.units.length {
                 self.end(Status::Stalled, format!("no peak up to a displacement of {displacement} m, factor {factor}"));
                 return true;

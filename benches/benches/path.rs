@@ -1,0 +1,43 @@
+//! Newton path: dead and live load of the 14-joint arch, rigid voussoirs with compliant joints and
+//! elastic ones, condensation included; cost against the number of voussoirs.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use std::hint::black_box;
+use voussoir::core::path::{PathProblem, PathSettings, PathSolver, Unobserved};
+use voussoir::solvers::path::newton::NewtonPath;
+use voussoir::study::Case;
+use voussoir_benches::{compliant_ring, elastic_ring};
+
+fn settings(finite: bool) -> PathSettings {
+    PathSettings { finite, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
+}
+
+fn path(case: &Case, finite: bool) -> Option<f64> {
+    let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
+    NewtonPath {}.trace(&problem, &settings(finite), &mut Unobserved).factor
+}
+
+fn the_arch(c: &mut Criterion) {
+    let mut group = c.benchmark_group("newton_path, arch of 14 joints, condensation included");
+    group.sample_size(10);
+    let (rigid, elastic) = (compliant_ring(13), elastic_ring(13));
+    group.bench_function("rigid, compliant joints, small", |b| b.iter(|| path(black_box(&rigid), false)));
+    group.bench_function("elastic 4 x 6 quadratic, small", |b| b.iter(|| path(black_box(&elastic), false)));
+    group.bench_function("elastic 4 x 6 quadratic, finite", |b| b.iter(|| path(black_box(&elastic), true)));
+    group.finish();
+}
+
+fn cost_against_voussoirs(c: &mut Criterion) {
+    let mut group = c.benchmark_group("newton_path against the number of voussoirs, one load step");
+    group.sample_size(10);
+    for voussoirs in [13, 130, 1300] {
+        let mut case = compliant_ring(voussoirs);
+        case.stages.truncate(1);
+        group.throughput(Throughput::Elements(voussoirs as u64));
+        group.bench_with_input(BenchmarkId::from_parameter(voussoirs), &case, |b, case| b.iter(|| path(case, false)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, the_arch, cost_against_voussoirs);
+criterion_main!(benches);

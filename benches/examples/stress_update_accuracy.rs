@@ -1,0 +1,162 @@
+//! Run time against error of the stress update: one return per increment ("full") and step halving with
+//! extrapolation inside each increment ("adaptive"), on a path of four straight increments of strain that turn
+//! while they yield. "Full" divides the increments equally. The reference is the path in 2^17 returns, extrapolated. Prints a table (Markdown) and writes
+//! the figure: `cargo run --release -p voussoir-benches --example stress_update_accuracy -- FIGURE.svg`.
+
+use std::time::Instant;
+use voussoir::core::material::{BulkMaterial, StressUpdate};
+use voussoir::figures::{Series, chart_svg};
+use voussoir_benches::point::{ordinary_stone, paper_stone, states};
+
+type Strain = [f64; 6];
+
+/// Increments of the path, as a program of finite elements would give them: straight each.
+const INCREMENTS: u32 = 4;
+
+/// The path: straight between the ends of its increments.
+fn path(size: f64, s: f64) -> Strain {
+    let along = s * f64::from(INCREMENTS);
+    let corner = along.floor().min(f64::from(INCREMENTS - 1));
+    let at = |corner: f64| curve(size, corner / f64::from(INCREMENTS));
+    between(&at(corner), &at(corner + 1.0), along - corner)
+}
+
+/// Compression with shear that turns: into cap and shear surface.
+fn curve(size: f64, s: f64) -> Strain {
+    let turn = 2.0 * s;
+    let axial = -size * s;
+    [axial, 0.2 * axial * turn.cos(), 0.1 * axial, 0.8 * size * s * turn.sin(), 0.3 * size * s * s, 0.0]
+}
+
+fn between(a: &Strain, b: &Strain, s: f64) -> Strain {
+    std::array::from_fn(|i| a[i] + s * (b[i] - a[i]))
+}
+
+struct Walk<'a> {
+    update: &'a dyn StressUpdate,
+    state: Vec<f64>,
+    stress: Strain,
+    calls: u64,
+}
+
+impl Walk<'_> {
+    fn one(&mut self, strain: &Strain, from: &[f64], to: &mut [f64]) -> Strain {
+        self.calls += 1;
+        self.update.update_point(strain, 1.0, from, to).expect("the update converges").stress
+    }
+
+    /// One implicit return.
+    fn full(&mut self, strain: &Strain) {
+        let mut new = self.state.clone();
+        let old = std::mem::take(&mut self.state);
+        self.stress = self.one(strain, &old, &mut new);
+        self.state = new;
+    }
+
+    /// Parts of the increment, each as one return and as two; their difference controls the next part, and
+    /// twice the state of two less that of one goes on (implicit Euler extrapolated to second order; the
+    /// stress is that of a return of no length from there).
+    fn adaptive(&mut self, from: &Strain, to: &Strain, tolerance: f64, scale: f64) {
+        let (mut done, mut part) = (0.0, 1.0_f64);
+        let size = self.state.len();
+        let (mut coarse, mut half, mut fine) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
+        while done < 1.0 {
+            part = part.min(1.0 - done);
+            let end = if done + part >= 1.0 - 1e-12 { 1.0 } else { done + part };
+            let (middle, last) = (between(from, to, 0.5 * (done + end)), between(from, to, end));
+            let old = self.state.clone();
+            let a = self.one(&last, &old, &mut coarse);
+            self.one(&middle, &old, &mut half);
+            // Yield begins in the second half: both answers are one return and their difference says
+            // nothing. The elastic half is exact; go on from there with half the part.
+            if half == old && coarse != old && part > 1e-6 {
+                done = 0.5 * (done + end);
+                part *= 0.5;
+                continue;
+            }
+            let b = self.one(&last, &half, &mut fine);
+            let error = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
+            if error <= tolerance || part < 1e-6 {
+                for (state, (fine, coarse)) in self.state.iter_mut().zip(fine.iter().zip(&coarse)) {
+                    *state = 2.0 * fine - coarse;
+                }
+                let extrapolated = self.state.clone();
+                let mut settled = extrapolated.clone();
+                self.stress = self.one(&last, &extrapolated, &mut settled);
+                self.state = settled;
+                done = end;
+            }
+            part *= (0.9 * (tolerance / error.max(1e-30)).sqrt()).clamp(0.1, 4.0);
+        }
+    }
+}
+
+fn start(update: &dyn StressUpdate) -> Walk<'_> {
+    Walk { update, state: states(update, 1), stress: [0.0; 6], calls: 0 }
+}
+
+/// Stress at the end, returns used, seconds of one walk.
+fn full(update: &dyn StressUpdate, size: f64, steps: u32) -> (Strain, u64, f64) {
+    timed(|| {
+        let mut walk = start(update);
+        (1..=steps).for_each(|i| walk.full(&path(size, f64::from(i) / f64::from(steps))));
+        (walk.stress, walk.calls)
+    })
+}
+
+fn adaptive(update: &dyn StressUpdate, size: f64, tolerance: f64, scale: f64) -> (Strain, u64, f64) {
+    timed(|| {
+        let mut walk = start(update);
+        for i in 1..=INCREMENTS {
+            let at = |i: u32| path(size, f64::from(i) / f64::from(INCREMENTS));
+            let (a, b) = (at(i - 1), at(i));
+            walk.adaptive(&a, &b, tolerance, scale);
+        }
+        (walk.stress, walk.calls)
+    })
+}
+
+/// The least time of several repetitions.
+fn timed(work: impl Fn() -> (Strain, u64)) -> (Strain, u64, f64) {
+    let (mut best, mut out) = (f64::INFINITY, ([0.0; 6], 0));
+    for _ in 0..7 {
+        let started = Instant::now();
+        out = work();
+        best = best.min(started.elapsed().as_secs_f64());
+    }
+    (out.0, out.1, best)
+}
+
+fn main() {
+    let figure = std::env::args().nth(1);
+    let mut series = Vec::new();
+    println!("| stone | update | increments or tolerance | returns | time [µs] | error |\n|---|---|---|---|---|---|");
+    for (name, law, size) in [("paper", paper_stone(), 0.02), ("ordinary", ordinary_stone(), 0.02)] {
+        let update = law.stress_update().expect("it deforms");
+        let (a, _, _) = full(&*update, size, 1 << 16);
+        let (b, _, _) = full(&*update, size, 1 << 17);
+        let exact: Strain = std::array::from_fn(|i| 2.0 * b[i] - a[i]);
+        let scale = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let error = |stress: &Strain| stress.iter().zip(&exact).map(|(s, e)| (s - e).abs()).fold(0.0, f64::max) / scale;
+        let mut add = |kind: &str, rows: Vec<(String, (Strain, u64, f64))>| {
+            let mut points = Vec::new();
+            for (what, (stress, calls, seconds)) in rows {
+                println!("| {name} | {kind} | {what} | {calls} | {:.2} | {:.1e} |", 1e6 * seconds, error(&stress));
+                points.push((error(&stress).log10(), (1e6 * seconds).log10()));
+            }
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            series.push(Series { name: format!("{name}, {kind}"), points, open_points: Vec::new() });
+        };
+        add("full", (2..=14).step_by(2).map(|k| (format!("{}", 1 << k), full(&*update, size, 1 << k))).collect());
+        let rows = (1..=8).map(|k| {
+            let tolerance = 10f64.powi(-k);
+            (format!("{tolerance:e}"), adaptive(&*update, size, tolerance, scale))
+        });
+        add("adaptive", rows.collect());
+    }
+    if let Some(figure) = figure {
+        let title = "Stress update: run time over error of the stress at the end of a turning path";
+        let svg = chart_svg(title, "log10 of relative error", "log10 of time [µs]", &series, &[]);
+        std::fs::write(&figure, svg).unwrap_or_else(|error| eprintln!("{figure}: {error}"));
+    }
+}

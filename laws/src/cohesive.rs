@@ -1,0 +1,233 @@
+//! `cohesive`: a bond that softens in tension and shear and leaves dry friction behind.
+#![doc = include_str!("cohesive.md")]
+
+use crate::parameters::*;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use voussoir_core::card::{Capability, Card, check_as};
+use voussoir_core::interface::{Formulation, InterfaceLaw, InterfaceResponse, Regime, TractionPoint};
+use voussoir_core::material::UpdateFailure;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range};
+use voussoir_core::units::Quantity;
+
+/// A mortared joint with fracture energies.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cohesive {
+    /// μ.
+    pub friction: Option<f64>,
+    /// atan μ \[deg\].
+    pub friction_angle: Option<f64>,
+    /// f_t \[Pa\].
+    pub tensile_strength: f64,
+    /// c \[Pa\].
+    pub cohesion: f64,
+    /// k_n \[Pa/m\].
+    pub normal_stiffness: f64,
+    /// k_t \[Pa/m\].
+    pub shear_stiffness: f64,
+    /// G_I \[J/m²\].
+    pub tensile_fracture_energy: f64,
+    /// G_II \[J/m²\].
+    pub shear_fracture_energy: f64,
+}
+
+/// One mode of the bond.
+#[derive(Debug, Clone, Copy)]
+struct Mode {
+    /// k \[Pa/m\].
+    stiffness: f64,
+    /// Gap at which softening begins \[m\].
+    onset: f64,
+    /// η = 1 − onset / gap at which the bond is gone.
+    brittleness: f64,
+}
+
+impl Mode {
+    fn new(stiffness: f64, strength: f64, energy: f64) -> Self {
+        let onset = strength / stiffness;
+        Mode { stiffness, onset, brittleness: 1.0 - strength * onset / (2.0 * energy) }
+    }
+}
+
+impl Cohesive {
+    /// What is wrong with the parameters taken together.
+    pub fn validate(&self) -> Vec<(String, String)> {
+        let mut wrong = validate_friction(self.friction, self.friction_angle, None);
+        let modes = [
+            ("tensile_fracture_energy", self.tensile_strength, self.normal_stiffness, self.tensile_fracture_energy),
+            ("shear_fracture_energy", self.cohesion, self.shear_stiffness, self.shear_fracture_energy),
+        ];
+        for (key, strength, stiffness, energy) in modes {
+            let stored = strength * strength / (2.0 * stiffness);
+            if energy <= stored {
+                let message = format!(
+                    "{energy} J/m2 is not more than the energy stored at the strength, {stored:.4e} J/m2: the joint would \
+                     snap back; raise it or the stiffness"
+                );
+                wrong.push((key.into(), message));
+            }
+        }
+        wrong
+    }
+}
+
+#[typetag::serde(name = "cohesive")]
+impl InterfaceLaw for Cohesive {
+    fn formulation(&self) -> Formulation {
+        Formulation::Response(Arc::new(CohesiveResponse {
+            friction: friction(self.friction, self.friction_angle),
+            normal: Mode::new(self.normal_stiffness, self.tensile_strength, self.tensile_fracture_energy),
+            shear: Mode::new(self.shear_stiffness, self.cohesion, self.shear_fracture_energy),
+        }))
+    }
+
+    fn stiffness(&self) -> Option<[f64; 2]> {
+        stiffness(Some(self.normal_stiffness), Some(self.shear_stiffness))
+    }
+}
+
+/// The law at a point. State: damage D and slip z.
+#[derive(Debug, Clone)]
+pub struct CohesiveResponse {
+    friction: f64,
+    normal: Mode,
+    shear: Mode,
+}
+
+/// Damage with its derivatives by the gap, and the equivalent gap r.
+struct Damage {
+    value: f64,
+    by_gap: [f64; 2],
+    reach: f64,
+    brittleness: f64,
+}
+
+impl CohesiveResponse {
+    /// D(g) = min(1, (1 − 1/r) / η), 0 for r ≤ 1.
+    fn damage(&self, gap: [f64; 2]) -> Damage {
+        let a = gap[0].max(0.0) / self.normal.onset;
+        let b = gap[1] / self.shear.onset;
+        let r = a.hypot(b);
+        if r <= 1.0 {
+            return Damage { value: 0.0, by_gap: [0.0; 2], reach: r, brittleness: 1.0 };
+        }
+        let (share_n, share_t) = ((a / r) * (a / r), (b / r) * (b / r));
+        let (eta_n, eta_t) = (self.normal.brittleness, self.shear.brittleness);
+        let eta = eta_n * share_n + eta_t * share_t;
+        let value = (1.0 - 1.0 / r) / eta;
+        if value >= 1.0 {
+            return Damage { value: 1.0, by_gap: [0.0; 2], reach: r, brittleness: eta };
+        }
+        // ∂r = (a/r, b/r), ∂η = 2 (η_n − η_t) (a/r)(b/r) (b, −a) / r².
+        let turn = 2.0 * (eta_n - eta_t) * (a / r) * (b / r) / r;
+        let by_a = (a / r) / (r * r * eta) - value / eta * turn * (b / r);
+        let by_b = (b / r) / (r * r * eta) + value / eta * turn * (a / r);
+        Damage { value, by_gap: [by_a / self.normal.onset, by_b / self.shear.onset], reach: r, brittleness: eta }
+    }
+}
+
+impl InterfaceResponse for CohesiveResponse {
+    fn state_size(&self) -> usize {
+        2
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &["damage [-]", "slip [m]"]
+    }
+
+    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+        if !gap.iter().chain(old).all(|x| x.is_finite()) {
+            return Err(UpdateFailure::NotFinite);
+        }
+        let (k_n, k_t) = (self.normal.stiffness, self.shear.stiffness);
+        let [g_n, g_t] = gap;
+        let (damage_old, slip_old) = (old[0], old[1]);
+        let trial = self.damage(gap);
+        let grows = trial.value > damage_old;
+        let (damage, damage_by) = if grows { (trial.value, trial.by_gap) } else { (damage_old, [0.0; 2]) };
+        let opening = g_n.max(0.0);
+        let pressure = k_n * (-g_n).max(0.0);
+        let pressure_by_n = if g_n < 0.0 { -k_n } else { 0.0 };
+        // Force of the broken share, k_t (D g_t − z), within D μ p.
+        let (mut slip, mut slip_by) = (slip_old, [0.0; 2]);
+        let mut shear = k_t * (g_t - slip_old);
+        let carried = k_t * (damage * g_t - slip_old);
+        let limit = damage * self.friction * pressure;
+        let slides = damage > 0.0 && carried.abs() > limit;
+        if slides {
+            let sense = carried.signum();
+            let per_damage = g_t - sense * self.friction * pressure / k_t;
+            slip = damage * per_damage;
+            // The same as k_t (g_t − z), without its cancellation.
+            shear = (1.0 - damage) * k_t * g_t + sense * limit;
+            slip_by = [
+                damage_by[0] * per_damage - damage * sense * self.friction * pressure_by_n / k_t,
+                damage_by[1] * per_damage + damage,
+            ];
+        }
+        (new[0], new[1]) = (damage, slip);
+        let traction = [-(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n * g_n, -shear];
+        let tangent = [
+            [
+                -(if g_n > 0.0 { 1.0 - damage } else { 1.0 }) * k_n + k_n * opening * damage_by[0],
+                k_n * opening * damage_by[1],
+            ],
+            [k_t * slip_by[0], -k_t * (1.0 - slip_by[1])],
+        ];
+        let per_damage = if damage > 0.0 { slip / damage } else { 0.0 };
+        let broken = g_t - per_damage;
+        let stored = 0.5 * (1.0 - damage) * (k_n * opening * opening + k_t * g_t * g_t)
+            + 0.5 * (k_n * (-g_n).max(0.0).powi(2) + damage * k_t * broken * broken);
+        // Energy released per damage, averaged over the growth: with r(D) = 1/(1 − η D) its mean over
+        // (D_old, D) is that at r² → r(D_old) r(D), exact on proportional paths.
+        let mut dissipated =
+            if slides { (carried.signum() * (slip - slip_old)).max(0.0) * limit / damage } else { 0.0 };
+        if grows {
+            let at = |d: f64| 1.0 / (1.0 - trial.brittleness * d);
+            let mean = at(damage_old) * at(damage) / (trial.reach * trial.reach);
+            let released = 0.5 * (k_n * opening * opening + k_t * per_damage * per_damage);
+            dissipated += released * mean.min(1.0) * (damage - damage_old);
+        }
+        let regime = match (grows, slides && slip != slip_old && self.friction * pressure > 0.0) {
+            (false, false) => Regime::Elastic,
+            (true, false) => Regime::Softening,
+            (false, true) => Regime::Sliding,
+            (true, true) => Regime::SofteningSliding,
+        };
+        Ok(TractionPoint { traction, tangent, regime, stored, dissipated })
+    }
+}
+
+const STRENGTH: Range = Range::POSITIVE;
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::InterfaceLaw,
+        tag: "cohesive",
+        summary: "a bond that softens in tension and shear, with fracture energies, down to dry friction",
+        parameters: &[
+            FRICTION,
+            FRICTION_ANGLE,
+            Parameter::number("tensile_strength", Quantity::Stress, STRENGTH, "greatest tension of the bond"),
+            Parameter::number("cohesion", Quantity::Stress, STRENGTH, "greatest shear of the bond without compression"),
+            Parameter { need: Need::Required, ..NORMAL_STIFFNESS },
+            Parameter { need: Need::Required, ..SHEAR_STIFFNESS },
+            Parameter::number("tensile_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy that opening takes per area, mode I"),
+            Parameter::number("shear_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy that shearing the bond takes per area without friction, mode II"),
+        ],
+        provides: &[Capability::Response],
+        requires: &[],
+        sources: &[
+            "Alfano & Crisfield 2001, Int. J. Numer. Meth. Engng 50 (bilinear mixed-mode damage)",
+            "Alfano & Sacco 2006, Int. J. Numer. Meth. Engng 68 (friction on the damaged share)",
+        ],
+        file: file!(),
+        page: include_str!("cohesive.md"),
+        check: |value| check_as::<Cohesive>(value, Cohesive::validate),
+    }
+}

@@ -1,0 +1,271 @@
+//! `drucker_prager_cap`: stone that fails in shear and crushes under a cap.
+#![doc = include_str!("drucker_prager_cap.md")]
+
+pub mod surface;
+
+use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
+use crate::meridian::Trial;
+use crate::rigid::DENSITY;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use surface::Surface;
+use voussoir_core::card::{Capability, Card, check_as};
+use voussoir_core::material::{
+    BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt,
+};
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+
+/// The modified Drucker–Prager model with a cap.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DruckerPragerCap {
+    /// E \[Pa\].
+    pub young_modulus: f64,
+    /// ν.
+    pub poisson_ratio: f64,
+    /// ρ \[kg/m³\].
+    pub density: f64,
+    /// β \[deg\].
+    pub cap_friction_angle: f64,
+    /// d \[Pa\].
+    pub cap_cohesion: f64,
+    /// R.
+    pub cap_eccentricity: f64,
+    /// α.
+    #[serde(default)]
+    pub transition: f64,
+    /// (ε_v, p_b \[Pa\]) pairs.
+    pub hardening: Option<Vec<[f64; 2]>>,
+    /// Strength in uniaxial compression \[Pa\], instead of `hardening`.
+    pub uniaxial_strength: Option<f64>,
+    /// ε_v of the undeformed material.
+    #[serde(default)]
+    pub initial_compaction: f64,
+}
+
+impl DruckerPragerCap {
+    /// p_b over compaction: the table, or the constant p_b that gives the uniaxial strength. Empty
+    /// where neither is possible.
+    pub fn hardening(&self) -> Vec<[f64; 2]> {
+        match (&self.hardening, self.uniaxial_strength) {
+            (Some(table), _) => table.clone(),
+            (None, Some(strength)) => self.hydrostatic_strength(strength).map_or(Vec::new(), |p| vec![[0.0, p]]),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    /// The p_b \[Pa\] at which uniaxial compression (p = f/3, q = f) meets the cap at f: with
+    /// D_0 = d + f tan β / 3 and x = f/3 − p_a, the root x ≥ 0 of
+    /// x² + (R f / k)² = R² (D_0 − x tan β)². `None` where f > k D_0: it fails in shear before.
+    pub fn hydrostatic_strength(&self, uniaxial: f64) -> Option<f64> {
+        let surface = self.surface_with(&[]);
+        let Surface { friction, eccentricity: r, roundness: k, .. } = surface;
+        let size = self.cap_cohesion + uniaxial * friction / 3.0;
+        if uniaxial > k * size {
+            return None;
+        }
+        let a = 1.0 - (r * friction) * (r * friction);
+        let b = r * r * size * friction;
+        let c = r * r * (uniaxial / k - size) * (uniaxial / k + size);
+        let x = -c / (b + (b * b - a * c).max(0.0).sqrt());
+        let x = if c == 0.0 { 0.0 } else { x };
+        Some(uniaxial / 3.0 - x + r * (size - x * friction))
+    }
+
+    /// Yield surface and flow.
+    pub fn surface(&self) -> Surface {
+        self.surface_with(&self.hardening())
+    }
+
+    fn surface_with(&self, hardening: &[[f64; 2]]) -> Surface {
+        Surface::new(
+            Isotropic::new(self.young_modulus, self.poisson_ratio),
+            self.cap_friction_angle,
+            self.cap_cohesion,
+            self.cap_eccentricity,
+            self.transition,
+            hardening,
+        )
+    }
+
+    /// What is wrong with the parameters taken together.
+    pub fn validate(&self) -> Vec<(String, String)> {
+        let mut wrong = Vec::new();
+        let mut say = |key: &str, message: String| wrong.push((key.to_string(), message));
+        let (sine, cosine) = self.cap_friction_angle.to_radians().sin_cos();
+        if self.transition * sine * sine >= cosine {
+            say(
+                "transition",
+                format!(
+                    "{} is too large for this friction angle: the transition would swallow the shear surface; it must be \
+                     less than cos β / sin² β = {:.6}",
+                    self.transition,
+                    cosine / (sine * sine)
+                ),
+            );
+        }
+        match (&self.hardening, self.uniaxial_strength) {
+            (None, None) => say("", "needs hardening or uniaxial_strength".into()),
+            (Some(_), Some(_)) => say("uniaxial_strength", "given besides hardening; give one of the two".into()),
+            (None, Some(strength)) => match self.hydrostatic_strength(strength) {
+                None => say(
+                    "uniaxial_strength",
+                    format!(
+                        "{strength} Pa is never reached: with this cohesion and friction angle uniaxial compression fails \
+                         in shear before it meets the cap"
+                    ),
+                ),
+                Some(p) if p <= 0.0 => {
+                    say("uniaxial_strength", format!("{strength} Pa would need p_b = {p} Pa, which is not positive"));
+                }
+                Some(_) => {}
+            },
+            (Some(table), None) => {
+                if table.windows(2).any(|pair| pair[1][0] <= pair[0][0]) {
+                    say("hardening", "the compactions must grow from entry to entry".into());
+                } else if table.windows(2).any(|pair| pair[1][1] < pair[0][1]) {
+                    say("hardening", "p_b must not fall as compaction grows".into());
+                } else if table.iter().any(|entry| entry[1] <= 0.0) {
+                    say("hardening", "p_b must be greater than 0".into());
+                } else if cosine > 0.0 && self.transition * sine * sine < cosine {
+                    let steepest =
+                        table.windows(2).map(|p| (p[1][1] - p[0][1]) / (p[1][0] - p[0][0])).fold(0.0, f64::max);
+                    let most = self.steepest_hardening();
+                    if steepest >= most {
+                        say(
+                            "hardening",
+                            format!(
+                                "rises by {steepest:.4e} Pa per unit of compaction; above {most:.4e} Pa dilatancy may \
+                                 weaken the material faster than stress can follow, and the answer is not unique"
+                            ),
+                        );
+                    }
+                }
+            }
+        }
+        if self.cap_cohesion == 0.0 && self.cap_friction_angle == 0.0 {
+            say("cap_cohesion", "0 Pa without friction leaves no strength at all".into());
+        }
+        wrong
+    }
+
+    /// The steepest dp_b/dε_v \[Pa\] for which every return is unique (derived on the law's page).
+    pub fn steepest_hardening(&self) -> f64 {
+        let surface = self.surface_with(&[]);
+        let Surface { friction, roundness, eccentricity, transition, tangency, .. } = surface;
+        let Isotropic { bulk, shear } = surface.elastic;
+        let sine = self.cap_friction_angle.to_radians().sin();
+        let share = (3.0 * shear / (roundness * roundness * friction * friction * bulk)).min(1.0);
+        (1.0 + eccentricity * friction) * tangency[1] * bulk * share / (roundness * friction * transition * sine)
+    }
+}
+
+#[typetag::serde(name = "drucker_prager_cap")]
+impl BulkMaterial for DruckerPragerCap {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn deformability(&self) -> Deformability {
+        Deformability::Inelastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
+    }
+
+    fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
+        Some(Arc::new(CapUpdate { surface: self.surface(), initial_compaction: self.initial_compaction }))
+    }
+}
+
+/// The law at a point. State: plastic strain (engineering shears) and compaction ε_v, which starts at
+/// `initial_compaction`.
+#[derive(Debug, Clone)]
+pub struct CapUpdate {
+    /// Yield surface and flow.
+    pub surface: Surface,
+    /// ε_v of the undeformed material.
+    pub initial_compaction: f64,
+}
+
+/// Index of ε_v in the state.
+pub const COMPACTION: usize = 6;
+
+impl StressUpdate for CapUpdate {
+    fn state_size(&self) -> usize {
+        7
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+        state[COMPACTION] = self.initial_compaction;
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &[
+            "plastic_strain_xx [-]",
+            "plastic_strain_yy [-]",
+            "plastic_strain_zz [-]",
+            "plastic_strain_xy [-]",
+            "plastic_strain_yz [-]",
+            "plastic_strain_zx [-]",
+            "compaction [-]",
+        ]
+    }
+
+    fn update_point(
+        &self,
+        strain: &Voigt,
+        _length: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<StressPoint, UpdateFailure> {
+        let elastic = &self.surface.elastic;
+        let trial = Trial::new(elastic, strain, old)?;
+        new.copy_from_slice(old);
+        match self.surface.project(trial.pressure, trial.mises, old[COMPACTION])? {
+            None => Ok(trial.elastic(elastic)),
+            Some(back) => {
+                new[COMPACTION] += back.compaction;
+                Ok(trial.returned(elastic, &back, new))
+            }
+        }
+    }
+}
+
+static NUMBER: Shape = Shape::Number(Quantity::Ratio, Range::ANY);
+static STRENGTH: Shape = Shape::Number(Quantity::Stress, Range::POSITIVE);
+static ENTRY: Shape = Shape::Tuple(&[&NUMBER, &STRENGTH]);
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::BulkMaterial,
+        tag: "drucker_prager_cap",
+        summary: "modified Drucker-Prager with a cap: fails in shear, crushes under pressure",
+        parameters: &[
+            YOUNG_MODULUS,
+            POISSON_RATIO,
+            DENSITY,
+            Parameter::number("cap_friction_angle", Quantity::Degrees, Range::new(0.0, false, 90.0, true), "slope β of the shear surface in the plane of pressure p and von Mises stress q"),
+            Parameter::number("cap_cohesion", Quantity::Stress, Range::NON_NEGATIVE, "d, the von Mises stress of the shear surface at p = 0"),
+            Parameter::number("cap_eccentricity", Quantity::Ratio, Range::POSITIVE, "R, the cap's half axis along p over that along q"),
+            Parameter::number("transition", Quantity::Ratio, Range::NON_NEGATIVE, "α, size of the rounded transition between shear surface and cap").default("0.0"),
+            Parameter {
+                name: "hardening",
+                doc: "pairs [compaction, p_b]: pressure of yield in hydrostatic compression over volumetric plastic strain, constant beyond the ends",
+                shape: Shape::List { of: &ENTRY, min: 1, max: 1000 },
+                need: Need::Optional("uniaxial_strength is given"),
+            },
+            Parameter::number("uniaxial_strength", Quantity::Stress, Range::POSITIVE, "strength in uniaxial compression, which sets a constant p_b").optional("hardening is given"),
+            Parameter::number("initial_compaction", Quantity::Ratio, Range::ANY, "compaction of the undeformed material, where the table is entered").default("0.0"),
+        ],
+        provides: &[Capability::StressUpdate],
+        requires: &[],
+        sources: &[
+            "Drucker & Prager 1952, Q. Appl. Math. 10",
+            "Abaqus Theory Guide, Drucker-Prager/Cap model for geological materials (K = 1)",
+            "Moré & Sorensen 1983, SIAM J. Sci. Stat. Comput. 4 (rational form of the scalar equation)",
+        ],
+        file: file!(),
+        page: include_str!("drucker_prager_cap.md"),
+        check: |value| check_as::<DruckerPragerCap>(value, DruckerPragerCap::validate),
+    }
+}

@@ -1,0 +1,238 @@
+//! `drucker_prager_softening`: a Drucker–Prager cone that shrinks as it yields.
+#![doc = include_str!("drucker_prager_softening.md")]
+
+use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
+use crate::meridian::{Returned, Trial};
+use crate::rigid::DENSITY;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use voussoir_core::card::{Capability, Card, check_as};
+use voussoir_core::material::{
+    BulkMaterial, Deformability, Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt,
+};
+use voussoir_core::schema::{Parameter, PluginKind, Range};
+use voussoir_core::units::Quantity;
+
+/// Associated Drucker–Prager with linear softening.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DruckerPragerSoftening {
+    /// E \[Pa\].
+    pub young_modulus: f64,
+    /// ν.
+    pub poisson_ratio: f64,
+    /// ρ \[kg/m³\].
+    pub density: f64,
+    /// A.
+    pub pressure_coefficient: f64,
+    /// σ_Y \[Pa\].
+    pub yield_stress: f64,
+    /// R_u \[Pa\].
+    #[serde(default)]
+    pub residual_stress: f64,
+    /// κ_u, instead of `crushing_fracture_energy`.
+    pub ultimate_plastic_strain: Option<f64>,
+    /// G_c \[J/m²\].
+    pub crushing_fracture_energy: Option<f64>,
+}
+
+impl DruckerPragerSoftening {
+    fn drop(&self) -> f64 {
+        self.yield_stress - self.residual_stress
+    }
+
+    /// The steepest softening −dR/dκ \[Pa\] that a point can follow: the smallest of E (1 − A)²
+    /// (uniaxial compression would snap back), 9 K A² (the tip of the cone) and 3 G + 9 K A².
+    pub fn steepest_softening(&self) -> f64 {
+        let Isotropic { bulk, shear } = Isotropic::new(self.young_modulus, self.poisson_ratio);
+        let a = self.pressure_coefficient;
+        let tip = if a > 0.0 { 9.0 * bulk * a * a } else { f64::INFINITY };
+        (self.young_modulus * (1.0 - a).powi(2)).min(tip).min(3.0 * shear + 9.0 * bulk * a * a)
+    }
+
+    /// What is wrong with the parameters taken together.
+    pub fn validate(&self) -> Vec<(String, String)> {
+        let mut wrong = Vec::new();
+        if self.residual_stress >= self.yield_stress {
+            let message = format!("{} Pa must be less than yield_stress: the law softens", self.residual_stress);
+            wrong.push(("residual_stress".into(), message));
+        }
+        match (self.ultimate_plastic_strain, self.crushing_fracture_energy) {
+            (None, None) => {
+                wrong.push((String::new(), "needs crushing_fracture_energy or ultimate_plastic_strain".into()));
+            }
+            (Some(_), Some(_)) => {
+                let message = "given besides crushing_fracture_energy; give one of the two";
+                wrong.push(("ultimate_plastic_strain".into(), message.into()));
+            }
+            (Some(ultimate), None) if self.drop() / ultimate >= self.steepest_softening() => {
+                let least = self.drop() / self.steepest_softening();
+                let message =
+                    format!("{ultimate} is too brittle: a point would snap back; it must be above {least:.4e}");
+                wrong.push(("ultimate_plastic_strain".into(), message));
+            }
+            _ => {}
+        }
+        wrong
+    }
+}
+
+#[typetag::serde(name = "drucker_prager_softening")]
+impl BulkMaterial for DruckerPragerSoftening {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn deformability(&self) -> Deformability {
+        Deformability::Inelastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
+    }
+
+    fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
+        Some(Arc::new(SofteningUpdate {
+            elastic: Isotropic::new(self.young_modulus, self.poisson_ratio),
+            law: self.clone(),
+            largest_length: self
+                .crushing_fracture_energy
+                .map_or(f64::INFINITY, |energy| 2.0 * energy * self.steepest_softening() / self.drop().powi(2)),
+        }))
+    }
+}
+
+/// The law at a point. State: plastic strain (engineering shears) and κ.
+#[derive(Debug, Clone)]
+pub struct SofteningUpdate {
+    elastic: Isotropic,
+    law: DruckerPragerSoftening,
+    largest_length: f64,
+}
+
+const KAPPA: usize = 6;
+
+impl SofteningUpdate {
+    /// κ_u of a point with this characteristic length \[m\].
+    fn ultimate(&self, length: f64) -> f64 {
+        match (self.law.ultimate_plastic_strain, self.law.crushing_fracture_energy) {
+            (_, Some(energy)) => 2.0 * energy / (length * self.law.drop()),
+            (ultimate, None) => ultimate.unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// The root Δκ ≥ 0 of excess − stiffness Δκ − (R(κ + Δκ) − R(κ)) = 0 with the slope
+    /// dR/dκ there. R falls by `slope` up to κ_u; `stiffness` exceeds it, so the left
+    /// side falls and the root is unique.
+    fn multiplier(&self, excess: f64, stiffness: f64, kappa: f64, ultimate: f64) -> (f64, f64) {
+        let slope = -self.law.drop() / ultimate;
+        let left = (ultimate - kappa).max(0.0);
+        let softening = excess / (stiffness + slope);
+        if softening <= left { (softening, slope) } else { ((excess - slope * left) / stiffness, 0.0) }
+    }
+}
+
+impl StressUpdate for SofteningUpdate {
+    fn state_size(&self) -> usize {
+        7
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &[
+            "plastic_strain_xx [-]",
+            "plastic_strain_yy [-]",
+            "plastic_strain_zz [-]",
+            "plastic_strain_xy [-]",
+            "plastic_strain_yz [-]",
+            "plastic_strain_zx [-]",
+            "cumulated_plastic_strain [-]",
+        ]
+    }
+
+    fn largest_length(&self) -> f64 {
+        self.largest_length
+    }
+
+    fn update_point(
+        &self,
+        strain: &Voigt,
+        length: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<StressPoint, UpdateFailure> {
+        // Also refuses a length that is no number.
+        if self.law.crushing_fracture_energy.is_some() && !(length > 0.0 && length <= self.largest_length) {
+            return Err(UpdateFailure::LengthTooLarge);
+        }
+        let Isotropic { bulk, shear } = self.elastic;
+        let trial = Trial::new(&self.elastic, strain, old)?;
+        new.copy_from_slice(old);
+        let a = self.law.pressure_coefficient;
+        let (kappa, ultimate) = (old[KAPPA], self.ultimate(length));
+        let strength = self.law.yield_stress - self.law.drop() * (kappa / ultimate).min(1.0);
+        let excess = trial.mises - 3.0 * a * trial.pressure - strength;
+        if excess <= 0.0 {
+            return Ok(trial.elastic(&self.elastic));
+        }
+        let stiffness = 3.0 * shear + 9.0 * bulk * a * a;
+        let (step, slope) = self.multiplier(excess, stiffness, kappa, ultimate);
+        let q = trial.mises - 3.0 * shear * step;
+        let (back, step) = if q > 0.0 || a == 0.0 {
+            let total = stiffness + slope;
+            let jacobian = [
+                [1.0 - 9.0 * bulk * a * a / total, 3.0 * bulk * a / total],
+                [9.0 * shear * a / total, 1.0 - 3.0 * shear / total],
+            ];
+            let back = Returned {
+                pressure: trial.pressure + 3.0 * bulk * a * step,
+                ratio: (q / trial.mises).max(0.0),
+                compaction: -3.0 * a * step,
+                jacobian,
+                region: Region::Shear,
+            };
+            (back, step)
+        } else {
+            // The tip: −3 A p = R(κ + Δκ), p = P + 3 K A Δκ.
+            let excess = -3.0 * a * trial.pressure - strength;
+            let (step, slope) = self.multiplier(excess, 9.0 * bulk * a * a, kappa, ultimate);
+            let back = Returned {
+                pressure: trial.pressure + 3.0 * bulk * a * step,
+                ratio: 0.0,
+                compaction: -3.0 * a * step,
+                jacobian: [[slope / (9.0 * bulk * a * a + slope), 0.0], [0.0, 0.0]],
+                region: Region::Apex,
+            };
+            (back, step)
+        };
+        new[KAPPA] += step;
+        Ok(trial.returned(&self.elastic, &back, new))
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::BulkMaterial,
+        tag: "drucker_prager_softening",
+        summary: "Drucker-Prager cone that softens linearly; its fracture energy makes it independent of the mesh",
+        parameters: &[
+            YOUNG_MODULUS,
+            POISSON_RATIO,
+            DENSITY,
+            Parameter::number("pressure_coefficient", Quantity::Ratio, Range::new(0.0, false, 1.0, true), "A in q + A tr σ = R"),
+            Parameter::number("yield_stress", Quantity::Stress, Range::POSITIVE, "R of the intact material; it crushes at yield_stress / (1 − A)"),
+            Parameter::number("residual_stress", Quantity::Stress, Range::NON_NEGATIVE, "R once it has softened").default("0.0"),
+            Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy of softening in uniaxial compression per area").optional("ultimate_plastic_strain is given"),
+            Parameter::number("ultimate_plastic_strain", Quantity::Ratio, Range::POSITIVE, "cumulated plastic strain at which softening ends, whatever the element size").optional("crushing_fracture_energy is given"),
+        ],
+        provides: &[Capability::StressUpdate],
+        requires: &[],
+        sources: &[
+            "Drucker & Prager 1952, Q. Appl. Math. 10",
+            "code_aster R7.01.16, Intégration des comportements de Drucker-Prager",
+            "Bažant & Oh 1983, Mater. Struct. 16 (fracture energy over the width of the band)",
+        ],
+        file: file!(),
+        page: include_str!("drucker_prager_softening.md"),
+        check: |value| check_as::<DruckerPragerSoftening>(value, DruckerPragerSoftening::validate),
+    }
+}

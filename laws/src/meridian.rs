@@ -1,0 +1,87 @@
+//! From a return in the meridian plane to stresses in space.
+//!
+//! Isotropic laws whose yield surface and flow potential depend on p = −tr σ / 3 (compression positive)
+//! and q = √(3/2 s:s) alone keep the direction of the trial deviator: with the return (P, Q) → (p, q),
+//! σ = y s_trial − p 1, y = q / Q. Differentiating with n = s_trial / Q, dQ = 3 G n·dε, dP = −K tr dε:
+//!
+//! ```text
+//! dσ = 2 G y dev dε + n (dq − y dQ) − 1 dp
+//! ```
+
+use voussoir_core::material::{Isotropic, Region, StressPoint, UpdateFailure, Voigt, von_mises};
+
+/// Stress before the plastic correction.
+#[derive(Debug, Clone, Copy)]
+pub struct Trial {
+    /// s \[Pa\].
+    pub deviator: Voigt,
+    /// P \[Pa\], compression positive.
+    pub pressure: f64,
+    /// Q \[Pa\].
+    pub mises: f64,
+}
+
+/// A point returned to the yield surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Returned {
+    /// p \[Pa\].
+    pub pressure: f64,
+    /// q / Q; 1 where Q = 0 and the point is elastic.
+    pub ratio: f64,
+    /// Compaction of the step, −tr Δε^p.
+    pub compaction: f64,
+    /// ∂(p, q) / ∂(P, Q).
+    pub jacobian: [[f64; 2]; 2],
+    /// Where it lies.
+    pub region: Region,
+}
+
+impl Trial {
+    /// From the strain and the plastic strain that begins the state.
+    pub fn new(elastic: &Isotropic, strain: &Voigt, state: &[f64]) -> Result<Self, UpdateFailure> {
+        if !strain.iter().chain(state).all(|x| x.is_finite()) {
+            return Err(UpdateFailure::NotFinite);
+        }
+        let mut difference = *strain;
+        for (entry, plastic) in difference.iter_mut().zip(state) {
+            *entry -= plastic;
+        }
+        let (deviator, pressure) = elastic.split(&difference);
+        let mises = von_mises(&deviator);
+        if !(pressure.is_finite() && mises.is_finite()) {
+            return Err(UpdateFailure::NotFinite);
+        }
+        Ok(Trial { deviator, pressure, mises })
+    }
+
+    /// The elastic answer.
+    pub fn elastic(&self, elastic: &Isotropic) -> StressPoint {
+        let mut stress = self.deviator;
+        stress[..3].iter_mut().for_each(|entry| *entry -= self.pressure);
+        StressPoint { stress, tangent: elastic.tangent(), region: Region::Elastic, dissipation: 0.0 }
+    }
+
+    /// The answer with this return; adds the step's plastic strain to the state.
+    pub fn returned(&self, elastic: &Isotropic, back: &Returned, state: &mut [f64]) -> StressPoint {
+        let Isotropic { bulk, shear } = *elastic;
+        let [[p_by_p, p_by_q], [q_by_p, q_by_q]] = back.jacobian;
+        let y = back.ratio;
+        let mut stress = self.deviator.map(|entry| y * entry);
+        let mut tangent = Isotropic::stiffness(y * shear, p_by_p * bulk);
+        let direction = if self.mises > 0.0 { self.deviator.map(|entry| entry / self.mises) } else { [0.0; 6] };
+        for i in 0..6 {
+            let unit = if i < 3 { 1.0 } else { 0.0 };
+            for j in 0..6 {
+                let trace = if j < 3 { bulk } else { 0.0 };
+                let pull = 3.0 * shear * direction[j];
+                tangent[i][j] += direction[i] * ((q_by_q - y) * pull - q_by_p * trace) - unit * p_by_q * pull;
+            }
+            let slip = (1.0 - y) * self.deviator[i] / shear;
+            state[i] += if i < 3 { 0.5 * slip - back.compaction / 3.0 } else { slip };
+            stress[i] -= unit * back.pressure;
+        }
+        let q = y * self.mises;
+        let dissipation = q * (self.mises - q) / (3.0 * shear) + back.pressure * back.compaction;
+        StressPoint { stress, tangent, region: back.region, dissipation }
+    }
+}

@@ -1,0 +1,228 @@
+//! Newton's method on the regimes of a step, and rates of converged states.
+
+use super::kinematics::Curvature;
+use super::law::Regime;
+use super::model::{Control, Model, Rate, Refusal, State};
+
+impl Model<'_> {
+    fn apply(&self, state: &mut State, step: &[f64], share: f64) {
+        let u = self.units;
+        let points = state.force.len();
+        for c in 0..points {
+            (0..2).for_each(|k| state.force[c][k] += share * step[2 * c + k] * u.force);
+        }
+        for body in 0..self.free.len() {
+            if let Some(free) = self.free[body] {
+                for k in 0..3 {
+                    let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
+                    state.motion[body][k] += share * step[2 * points + 3 * free + k] * unit;
+                }
+            }
+        }
+        state.factor += share * step[step.len() - 1] * u.factor;
+        self.settle(&mut state.motion, state.factor);
+    }
+
+    /// Regimes that the present forces and gaps ask for.
+    fn wanted(&mut self, start: &State, state: &State) -> Vec<Regime> {
+        self.count("law_evaluations", state.gap.len() as u64);
+        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
+        let mean = self.units.displacement / self.units.force;
+        (0..state.gap.len())
+            .map(|c| match self.law(c) {
+                None => Regime::Stuck,
+                Some(law) => {
+                    let rho = self.compliance[c].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean });
+                    let gap = self.step_gap(start, state, c);
+                    let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
+                    law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, 1e-11 * largest)
+                }
+            })
+            .collect()
+    }
+
+    /// Newton's method from a guess. Regimes change all at once as long as their number falls, else
+    /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
+    /// Res. 21), so that regimes that flip for ever are seen. Where that fails, once more with one
+    /// change at a time from the beginning.
+    pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
+        self.iterate(start, guess.clone(), control, 8).or_else(|_| self.iterate(start, guess, control, 0))
+    }
+
+    /// Greatest relative residual: balance and yielding against forces, gaps against motions.
+    fn error(&self, residual: &[f64], state: &State) -> f64 {
+        let u = self.units;
+        let points = state.gap.len();
+        let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
+        let whole = self.largest(state);
+        let by_row = |(i, x): (usize, &f64)| {
+            let of_forces = if i < 2 * points {
+                match state.regime[i / 2] {
+                    Regime::Stuck => false,
+                    Regime::Facet(_) => i % 2 == 0,
+                    Regime::Corner(_) => true,
+                }
+            } else {
+                i + 1 < residual.len()
+            };
+            x.abs() / if of_forces { force } else { whole }
+        };
+        residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
+    }
+
+    fn iterate(
+        &mut self,
+        start: &State,
+        guess: State,
+        control: &Control,
+        patience: u32,
+    ) -> Result<(State, u64), Refusal> {
+        let mut state = guess;
+        let factor = if let Control::Factor(target) = control { *target } else { state.factor };
+        state.factor = factor;
+        let mut motion = std::mem::take(&mut state.motion);
+        self.settle(&mut motion, factor);
+        state.motion = motion;
+        let mut slopes = self.slopes(&state);
+        state.gap = slopes.gap.clone();
+        let rounding = 400.0 * f64::EPSILON * self.units.length / self.units.displacement;
+        let (mut changed, mut restless) = (true, Vec::new());
+        let (mut fewest, mut budget) = (usize::MAX, patience);
+        let mut unsolved = 0;
+        let mut last_norm = f64::INFINITY;
+        for iteration in 0..60 + (state.gap.len() as u64).min(200) {
+            let mut residual = self.residual(start, &state, &slopes);
+            let (c, constraint) = self.constraint(start, &state, control);
+            let last = residual.len() - 1;
+            residual[last] = c;
+            let norm = self.error(&residual, &state);
+            if !norm.is_finite() {
+                return Err(Refusal { why: "an iteration left the numbers".into(), restless });
+            }
+            let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && norm > 0.3 * last_norm);
+            if iteration > 0 && !changed && settled {
+                return Ok((state, iteration));
+            }
+            last_norm = norm;
+            let curvature = self.curvature(&state, &slopes);
+            let row = self.gradient(start, &state, &constraint, &curvature);
+            let right: Vec<f64> = residual.iter().map(|x| -x).collect();
+            self.count("newton_iterations", 1);
+            let why = "the regimes of the contact points leave no equilibrium";
+            let Some((step, solved)) = self.solve(&state.regime, &curvature, &row, &right) else {
+                return Err(Refusal { why: why.into(), restless });
+            };
+            // Regimes without a solution may be on the way to ones that have one: with small
+            // displacements the shifted equations, a soft bedding, show which points close.
+            unsolved += u32::from(!solved);
+            if unsolved > if self.finite() { 0 } else { 10 } {
+                return Err(Refusal { why: why.into(), restless });
+            }
+            // Rotations of an iteration stay where the linearisation means something.
+            let share = if self.finite() {
+                let points = state.gap.len();
+                let turn = (0..self.bodies_free)
+                    .map(|b| (step[2 * points + 3 * b + 2] * self.units.displacement / self.units.length).abs())
+                    .fold(0.0, f64::max);
+                (0.1 / turn.max(1e-300)).min(1.0)
+            } else {
+                1.0
+            };
+            self.apply(&mut state, &step, share);
+            slopes = self.slopes(&state);
+            state.gap = slopes.gap.clone();
+            let wanted = self.wanted(start, &state);
+            let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
+            changed = !differ.is_empty();
+            if differ.len() < fewest && (patience > 0 || differ.len() <= 1) {
+                (fewest, budget) = (differ.len(), patience);
+                state.regime = wanted;
+            } else if budget > 0 {
+                budget -= 1;
+                state.regime = wanted;
+            } else if let Some(&c) = differ.last() {
+                state.regime[c] = wanted[c];
+            }
+            restless = differ;
+        }
+        Err(Refusal { why: "the regimes of contact points keep changing".into(), restless })
+    }
+
+    fn largest(&self, state: &State) -> f64 {
+        let u = self.units;
+        let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
+        let motion = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * u.length));
+        force.max(motion.map(|m| m / u.displacement).fold(0.0, f64::max))
+    }
+
+    /// Rate of a converged state with its regimes held, per unit of the control's gradient.
+    pub fn rate(&mut self, start: &State, state: &State, control: &Control) -> Option<Rate> {
+        let slopes = self.slopes(state);
+        let curvature = self.curvature(state, &slopes);
+        let (_, constraint) = self.constraint(start, state, control);
+        let row = self.gradient(start, state, &constraint, &curvature);
+        self.rate_of(state, &curvature, &row)
+    }
+
+    /// Regimes that a small share of a rate asks for, from a converged state.
+    pub fn regimes_ahead(&mut self, state: &State, ahead: &State) -> Vec<Regime> {
+        let mut ahead = ahead.clone();
+        ahead.gap = self.slopes(&ahead).gap;
+        self.wanted(state, &ahead)
+    }
+
+    /// Rate with other regimes than the state's, per unit of the sum of the multipliers of the points
+    /// that change: the branch on which they yield. `None` where there is none.
+    pub fn rate_of_yielding(&mut self, state: &State, regimes: &[Regime]) -> Option<Rate> {
+        let slopes = self.slopes(state);
+        let curvature = self.curvature(state, &slopes);
+        let mut by_gap = vec![0.0; 2 * state.gap.len()];
+        for c in (0..state.gap.len()).filter(|c| regimes[*c] != state.regime[*c]) {
+            let flow = match (regimes[c], self.law(c)) {
+                (Regime::Facet(i), Some(law)) => law.facets[i as usize].flow,
+                _ => [-1.0, 0.0],
+            };
+            (0..2).for_each(|k| by_gap[2 * c + k] = -flow[k] / self.units.displacement);
+        }
+        let mut row = vec![0.0; self.size()];
+        self.add_gaps(&mut row, &by_gap, &curvature);
+        let mut other = state.clone();
+        other.regime = regimes.to_vec();
+        self.rate_of(&other, &curvature, &row)
+    }
+
+    /// Rate of a state with its regimes held, per unit of `row`.
+    fn rate_of(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<Rate> {
+        let mut right = vec![0.0; self.size()];
+        right[self.size() - 1] = 1.0;
+        let (x, _) = self.solve(&state.regime, curvature, row, &right).filter(|(_, solved)| *solved)?;
+        let mut zero = State {
+            force: vec![[0.0; 2]; state.force.len()],
+            motion: vec![[0.0; 3]; state.motion.len()],
+            factor: 0.0,
+            gap: vec![[0.0; 2]; state.gap.len()],
+            regime: Vec::new(),
+            slip: Vec::new(),
+        };
+        self.apply(&mut zero, &x, 1.0);
+        let factor = zero.factor;
+        let mut motion = vec![[0.0; 3]; state.motion.len()];
+        for (body, settlement) in &self.loaded.growing.settlements {
+            (0..3).for_each(|k| motion[*body][k] += factor * settlement[k]);
+        }
+        for body in (0..motion.len()).filter(|b| self.free[*b].is_some()) {
+            motion[body] = zero.motion[body];
+        }
+        let points = state.gap.len();
+        let mut gap = vec![[0.0; 2]; points];
+        for &(i, j, value) in curvature.entries.iter().filter(|e| e.0 < 2 * points) {
+            if let Some((column, unit)) = self.column(j) {
+                gap[i / 2][i % 2] += value * unit * x[column];
+            }
+        }
+        for (c, gap) in gap.iter_mut().enumerate() {
+            (0..2).for_each(|k| gap[k] += curvature.factor[2 * c + k] * factor);
+        }
+        Some(Rate { force: zero.force, motion, factor, gap })
+    }
+}

@@ -1,0 +1,270 @@
+//! The linear system of a step: residual by regimes, rows of constraints, the matrix and its solution.
+//!
+//! Rows by regime:
+//!
+//! ```text
+//! stuck     g − s = 0                     facet   a·r = b A,  Δg × d = 0
+//! corner    r = corner A                  body    ∂Π/∂q = 0          control  c(increment) = length
+//! ```
+//!
+//! The matrix that is factorised is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄
+//! in every body and in every yielding contact. That makes it quasi-definite (Vanderbei 1995, SIAM J.
+//! Optim. 5) where regimes repeat a condition or leave a motion free; iterative refinement against
+//! the true matrix removes the shift from the answer. Where refinement does not converge, the
+//! regimes have no solution, and the step is refused.
+
+use super::kinematics::{Curvature, Slopes};
+use super::law::Regime;
+use super::model::{Control, Model, State, load_size};
+use crate::lu::SparseLu;
+use voussoir_core::geometry::turned;
+use voussoir_core::path::{Constraint, Increment};
+
+/// The shift of the factorised matrix.
+const SHIFT: f64 = 1e-9;
+
+impl Model<'_> {
+    /// Gradient of a constraint over the scaled unknowns.
+    pub(super) fn gradient(
+        &self,
+        start: &State,
+        state: &State,
+        constraint: &Constraint,
+        curvature: &Curvature,
+    ) -> Vec<f64> {
+        let u = self.units;
+        let (points, size) = (state.gap.len(), self.size());
+        let last = size - 1;
+        let mut row = vec![0.0; size];
+        let by = constraint.derivative;
+        row[last] += by.factor;
+        let mut by_gap = vec![0.0; 2 * points];
+        if by.motion != 0.0 {
+            let value = self.increment(start, state).motion.max(1e-300);
+            for body in 0..self.free.len() {
+                let Some(free) = self.free[body] else { continue };
+                for k in 0..3 {
+                    let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
+                    let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
+                    row[2 * points + 3 * free + k] += by.motion * delta / (value * self.bodies_free as f64);
+                }
+            }
+            for c in 0..points {
+                for k in 0..2 {
+                    let delta = (state.gap[c][k] - start.gap[c][k]) / u.displacement;
+                    by_gap[2 * c + k] += by.motion * delta / (value * points as f64 * u.displacement);
+                }
+            }
+        }
+        if by.dissipation != 0.0 {
+            let energy = u.force * u.displacement;
+            for c in 0..points {
+                let Some(law) = self.law(c) else { continue };
+                let (kept, _) = law.irreversible(state.regime[c], self.step_gap(start, state, c));
+                if kept != [0.0; 2] {
+                    for k in 0..2 {
+                        row[2 * c + k] -= by.dissipation * kept[k] * u.force / energy;
+                        by_gap[2 * c + k] -= by.dissipation * state.force[c][k] / energy;
+                    }
+                }
+            }
+        }
+        if by.displacement != 0.0 {
+            let loading = self.loaded.growing;
+            let scale = by.displacement / load_size(self.problem, loading).max(1e-300);
+            let mut wrench = vec![[0.0; 3]; self.free.len()];
+            for (body, _, point, f) in &loading.forces {
+                let arm = point - self.problem.bodies[*body].pole;
+                let theta = if self.finite() { state.motion[*body][2] } else { 0.0 };
+                let arm = nalgebra::Rotation2::new(theta) * arm;
+                wrench[*body][0] += f.x;
+                wrench[*body][1] += f.y;
+                wrench[*body][2] += f.dot(&turned(arm));
+            }
+            for (body, b) in self.problem.bodies.iter().enumerate() {
+                let Some(free) = self.free[body] else { continue };
+                wrench[body][0] += b.mass * loading.acceleration.x;
+                wrench[body][1] += b.mass * loading.acceleration.y;
+                for k in 0..3 {
+                    let unit = if k == 2 { 1.0 / u.length } else { 1.0 };
+                    row[2 * points + 3 * free + k] += scale * wrench[body][k] * unit;
+                }
+            }
+        }
+        self.add_gaps(&mut row, &by_gap, curvature);
+        row
+    }
+
+    /// Adds weighted gaps to a row over the scaled unknowns.
+    pub(super) fn add_gaps(&self, row: &mut [f64], by_gap: &[f64], curvature: &Curvature) {
+        if by_gap.iter().all(|w| *w == 0.0) {
+            return;
+        }
+        for &(i, j, value) in &curvature.entries {
+            if i < by_gap.len()
+                && by_gap[i] != 0.0
+                && let Some((column, unit)) = self.column(j)
+            {
+                row[column] += by_gap[i] * value * unit;
+            }
+        }
+        let last = row.len() - 1;
+        for (i, weight) in by_gap.iter().enumerate() {
+            row[last] += weight * curvature.factor[i] * self.units.factor;
+        }
+    }
+
+    pub(super) fn constraint(&self, start: &State, state: &State, control: &Control) -> (f64, Constraint) {
+        match control {
+            Control::Factor(target) => {
+                let derivative = Increment { factor: 1.0, ..Increment::default() };
+                ((state.factor - target) / self.units.factor, Constraint { value: 0.0, derivative })
+            }
+            Control::Strategy { strategy, previous, length } => {
+                let c = strategy.constraint(&self.increment(start, state), previous.as_ref());
+                (c.value - length, c)
+            }
+        }
+    }
+
+    /// Residual of the regimes' equations in units.
+    pub(super) fn residual(&self, start: &State, state: &State, slopes: &Slopes) -> Vec<f64> {
+        let u = self.units;
+        let points = state.gap.len();
+        let mut out = vec![0.0; self.size()];
+        for c in 0..points {
+            let gap = self.step_gap(start, state, c).map(|g| g / u.displacement);
+            let area = self.problem.contacts[c].area;
+            let r = state.force[c];
+            let rows = match (state.regime[c], self.law(c)) {
+                (Regime::Facet(i), Some(law)) => {
+                    let f = &law.facets[i as usize];
+                    let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
+                    [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
+                }
+                (Regime::Corner(k), Some(law)) => {
+                    let corner = law.corners[k as usize].0;
+                    [(r[0] - corner[0] * area) / u.force, (r[1] - corner[1] * area) / u.force]
+                }
+                _ => gap,
+            };
+            out[2 * c] = rows[0];
+            out[2 * c + 1] = rows[1];
+        }
+        for (body, balance) in slopes.balance.iter().enumerate() {
+            if let Some(free) = self.free[body] {
+                for k in 0..3 {
+                    let unit = if k == 2 { u.force * u.length } else { u.force };
+                    out[2 * points + 3 * free + k] = balance[k] / unit;
+                }
+            }
+        }
+        out
+    }
+
+    /// Solves the regimes' linear equations for one right-hand side in units, and whether it is solved:
+    /// where the equations contradict each other, what comes back is the answer of the shifted ones.
+    pub(super) fn solve(
+        &mut self,
+        regimes: &[Regime],
+        curvature: &Curvature,
+        row: &[f64],
+        right: &[f64],
+    ) -> Option<(Vec<f64>, bool)> {
+        let u = self.units;
+        let (points, size) = (regimes.len(), self.size());
+        let last = size - 1;
+        let mut entries: Vec<(usize, usize, f64)> = Vec::with_capacity(curvature.entries.len() + 4 * size);
+        let mut shifts: Vec<(usize, usize, f64)> = Vec::new();
+        let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
+        let mut place = |i: usize, column: usize, value: f64| {
+            // `value` in SI per scaled unknown.
+            if i >= 2 * points {
+                if let Some((free_row, _)) = self.column(i) {
+                    entries.push((free_row, column, value / row_unit(i)));
+                }
+                return;
+            }
+            let (c, k) = (i / 2, i % 2);
+            let value = value / u.displacement;
+            match (regimes[c], self.law(c)) {
+                (Regime::Facet(f), Some(law)) => {
+                    let d = law.facets[f as usize].flow;
+                    entries.push((2 * c + 1, column, value * if k == 0 { d[1] } else { -d[0] }));
+                    let weight = d[k] / (d[0] * d[0] + d[1] * d[1]);
+                    shifts.push((2 * c, column, SHIFT * weight * value));
+                }
+                (Regime::Corner(_), Some(_)) => shifts.push((i, column, SHIFT * value)),
+                _ => entries.push((i, column, value)),
+            }
+        };
+        for &(i, j, value) in &curvature.entries {
+            if let Some((column, unit)) = self.column(j) {
+                place(i, column, value * unit);
+            }
+        }
+        for (i, value) in curvature.factor.iter().enumerate() {
+            if *value != 0.0 {
+                place(i, last, value * u.factor);
+            }
+        }
+        for (c, regime) in regimes.iter().enumerate() {
+            match (*regime, self.law(c)) {
+                (Regime::Facet(f), Some(law)) => {
+                    let a = law.facets[f as usize].normal;
+                    entries.push((2 * c, 2 * c, a[0]));
+                    entries.push((2 * c, 2 * c + 1, a[1]));
+                }
+                (Regime::Corner(_), Some(_)) => {
+                    entries.push((2 * c, 2 * c, 1.0));
+                    entries.push((2 * c + 1, 2 * c + 1, 1.0));
+                }
+                _ => {
+                    shifts.push((2 * c, 2 * c, SHIFT));
+                    shifts.push((2 * c + 1, 2 * c + 1, SHIFT));
+                }
+            }
+        }
+        for free in 2 * points..last {
+            shifts.push((free, free, -SHIFT));
+        }
+        for (j, value) in row.iter().enumerate() {
+            if *value != 0.0 {
+                entries.push((last, j, *value));
+            }
+        }
+        self.count("factorisations", 1);
+        let mut shifted = entries.clone();
+        shifted.extend(shifts);
+        let factors = SparseLu::new(size, &shifted)?;
+        let mut x = vec![0.0; size];
+        let mut rest = right.to_vec();
+        let mut before = f64::INFINITY;
+        let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        let aim = norm(right);
+        if aim == 0.0 {
+            return Some((x, true));
+        }
+        let mut best = x.clone();
+        for _ in 0..30 {
+            let step = factors.solve(&[rest], 0)?.swap_remove(0);
+            x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+            rest = right.to_vec();
+            for &(i, j, value) in &entries {
+                rest[i] -= value * x[j];
+            }
+            let now = norm(&rest);
+            if now < before {
+                best.copy_from_slice(&x);
+            }
+            if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim {
+                before = before.min(now);
+                break;
+            }
+            before = now;
+        }
+        // What is left over is rounding of the solution's own size, or the system has no solution.
+        let size = norm(&best).max(aim);
+        Some((best, before <= 1e-9 * size))
+    }
+}

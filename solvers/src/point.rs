@@ -1,0 +1,368 @@
+//! One point of a material or of a joint, driven through a path of mixed control.
+//!
+//! For each component either the strain (the gap of a joint) or the stress (its traction) is given.
+//! Newton with the law's own tangent finds the free strains; a step that does not converge is
+//! halved. Stresses beyond what the law can carry end in [`Stop`], never in a number.
+
+use std::fmt;
+use std::sync::Arc;
+use voussoir_core::interface::InterfaceResponse;
+use voussoir_core::material::plane::PlanarUpdate;
+use voussoir_core::material::{StressUpdate, UpdateFailure};
+
+/// Greatest number of components.
+pub const COMPONENTS: usize = 6;
+const ITERATIONS: usize = 50;
+/// Halvings of a step before it is given up.
+const HALVINGS: u32 = 14;
+/// Tolerance of controlled stresses, relative to the greatest stress at the point.
+const TOLERANCE: f64 = 1e-11;
+
+/// The law at the point.
+#[derive(Debug, Clone)]
+pub enum PointLaw {
+    /// A material in space: strains and stresses xx, yy, zz, xy, yz, zx; characteristic length \[m\].
+    Space(Arc<dyn StressUpdate>, f64),
+    /// A material in a plane: xx, yy, xy; characteristic length \[m\].
+    Plane(PlanarUpdate, f64),
+    /// A joint: gaps and tractions n, t.
+    Joint(Arc<dyn InterfaceResponse>),
+}
+
+/// What the law says at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointResponse {
+    /// Strains or gaps; unused components are 0.
+    pub strain: [f64; COMPONENTS],
+    /// Stresses or tractions \[Pa\].
+    pub stress: [f64; COMPONENTS],
+    /// In a plane: ε_zz and σ_zz.
+    pub across: [f64; 2],
+    /// ∂stress/∂strain.
+    pub tangent: [[f64; COMPONENTS]; COMPONENTS],
+    /// Region or regime.
+    pub region: &'static str,
+    /// Plastic work or dissipated energy of the step, per volume or per area.
+    pub dissipated: f64,
+}
+
+/// What is given for one component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Control {
+    /// Its strain or gap.
+    Strain(f64),
+    /// Its stress or traction \[Pa\].
+    Stress(f64),
+}
+
+/// Why a path ends early.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stop {
+    /// The law has no answer.
+    Law(UpdateFailure),
+    /// The controlled stresses could not be reached: beyond the strength, or behind a peak that only
+    /// a controlled strain can pass. The part of the step that was done, and the greatest error of a
+    /// controlled stress at the last attempt \[Pa\].
+    Unreachable {
+        /// Share of the step from 0 to 1.
+        done: f64,
+        /// \[Pa\].
+        error: f64,
+    },
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stop::Law(failure) => write!(out, "{failure}"),
+            Stop::Unreachable { done, error } => write!(
+                out,
+                "the controlled stresses cannot be reached (done: {:.3} of the step, error {error:.3e} Pa): they are beyond \
+                 the strength, or behind a peak that only a controlled strain passes",
+                done
+            ),
+        }
+    }
+}
+
+impl PointLaw {
+    /// Number of components.
+    pub fn components(&self) -> usize {
+        match self {
+            PointLaw::Space(..) => 6,
+            PointLaw::Plane(..) => 3,
+            PointLaw::Joint(_) => 2,
+        }
+    }
+
+    /// Names of the components.
+    pub fn names(&self) -> &'static [&'static str] {
+        match self {
+            PointLaw::Space(..) => &["xx", "yy", "zz", "xy", "yz", "zx"],
+            PointLaw::Plane(..) => &["xx", "yy", "xy"],
+            PointLaw::Joint(_) => &["n", "t"],
+        }
+    }
+
+    /// The state of the untouched point.
+    pub fn initial_state(&self) -> Vec<f64> {
+        let size = match self {
+            PointLaw::Space(law, _) => law.state_size(),
+            PointLaw::Plane(law, _) => law.state_size(),
+            PointLaw::Joint(law) => law.state_size(),
+        };
+        let mut state = vec![0.0; size];
+        match self {
+            PointLaw::Space(law, _) => law.initial_state(&mut state),
+            PointLaw::Plane(law, _) => law.initial_state(&mut state),
+            PointLaw::Joint(law) => law.initial_state(&mut state),
+        }
+        state
+    }
+
+    /// Names of the numbers in the state, with units.
+    pub fn state_names(&self) -> Vec<&'static str> {
+        match self {
+            PointLaw::Space(law, _) => law.state_names().to_vec(),
+            PointLaw::Plane(law, _) => {
+                let mut names = law.law().state_names().to_vec();
+                names.extend((names.len() < law.state_size()).then_some("strain_across [-]"));
+                names
+            }
+            PointLaw::Joint(law) => law.state_names().to_vec(),
+        }
+    }
+
+    /// One update.
+    pub fn update(
+        &self,
+        strain: &[f64; COMPONENTS],
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<PointResponse, UpdateFailure> {
+        let mut out = PointResponse {
+            strain: *strain,
+            stress: [0.0; COMPONENTS],
+            across: [0.0; 2],
+            tangent: [[0.0; COMPONENTS]; COMPONENTS],
+            region: "",
+            dissipated: 0.0,
+        };
+        match self {
+            PointLaw::Space(law, length) => {
+                let point = law.update_point(strain, *length, old, new)?;
+                (out.stress, out.tangent) = (point.stress, point.tangent);
+                (out.region, out.dissipated) = (point.region.name(), point.dissipation);
+            }
+            PointLaw::Plane(law, length) => {
+                let point = law.update_point(&[strain[0], strain[1], strain[2]], *length, old, new)?;
+                out.stress[..3].copy_from_slice(&point.stress);
+                for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
+                    row[..3].copy_from_slice(given);
+                }
+                out.across = [point.strain_across, point.stress_across];
+                (out.region, out.dissipated) = (point.region.name(), point.dissipation);
+            }
+            PointLaw::Joint(law) => {
+                let point = law.respond_point([strain[0], strain[1]], old, new)?;
+                out.stress[..2].copy_from_slice(&point.traction);
+                for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
+                    row[..2].copy_from_slice(given);
+                }
+                (out.region, out.dissipated) = (point.regime.name(), point.dissipated);
+            }
+        }
+        Ok(out)
+    }
+}
+
+/// A point on its path.
+#[derive(Debug, Clone)]
+pub struct DrivenPoint {
+    law: PointLaw,
+    state: Vec<f64>,
+    scratch: Vec<f64>,
+    /// Greatest entry of the untouched point's tangent \[Pa\]: what rounding of strains is worth.
+    stiffness: f64,
+    /// Where it is.
+    pub response: PointResponse,
+    /// Law evaluations so far.
+    pub evaluations: u64,
+    /// Steps that were halved so far.
+    pub halvings: u64,
+}
+
+impl DrivenPoint {
+    /// The untouched point.
+    pub fn new(law: PointLaw) -> Result<Self, UpdateFailure> {
+        let state = law.initial_state();
+        let mut scratch = state.clone();
+        let response = law.update(&[0.0; COMPONENTS], &state, &mut scratch)?;
+        let stiffness = response.tangent.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
+        Ok(DrivenPoint { law, state, scratch, stiffness, response, evaluations: 1, halvings: 0 })
+    }
+
+    /// The law.
+    pub fn law(&self) -> &PointLaw {
+        &self.law
+    }
+
+    /// The state.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// Goes to these controls, one per component, in a straight line from where it is; the step's
+    /// dissipation is the sum over its parts. On failure the point stays at the last part that was done.
+    pub fn step(&mut self, controls: &[Control]) -> Result<(), Stop> {
+        let count = self.law.components();
+        let start: [f64; COMPONENTS] = std::array::from_fn(|i| match controls.get(i) {
+            Some(Control::Stress(_)) => self.response.stress[i],
+            _ => self.response.strain[i],
+        });
+        let (mut done, mut share, mut dissipated) = (0.0, 1.0, 0.0);
+        let mut left = HALVINGS;
+        while done < 1.0 {
+            let to = if done + share >= 1.0 { 1.0 } else { done + share };
+            let part: Vec<Control> = controls[..count]
+                .iter()
+                .zip(start)
+                .map(|(control, from)| {
+                    // The end of a step is met exactly.
+                    let between = |target: f64| if to == 1.0 { target } else { from + to * (target - from) };
+                    match control {
+                        Control::Strain(target) => Control::Strain(between(*target)),
+                        Control::Stress(target) => Control::Stress(between(*target)),
+                    }
+                })
+                .collect();
+            match self.solve(&part) {
+                Ok(found) => {
+                    dissipated += found.dissipated;
+                    self.response = found;
+                    std::mem::swap(&mut self.state, &mut self.scratch);
+                    done = to;
+                }
+                Err(stop) if left == 0 => {
+                    self.response.dissipated = dissipated;
+                    return Err(match stop {
+                        Stop::Unreachable { error, .. } => Stop::Unreachable { done, error },
+                        law => law,
+                    });
+                }
+                Err(_) => {
+                    share *= 0.5;
+                    left -= 1;
+                    self.halvings += 1;
+                }
+            }
+        }
+        self.response.dissipated = dissipated;
+        Ok(())
+    }
+
+    /// The greatest error of a controlled stress \[Pa\].
+    pub fn error(&self, controls: &[Control]) -> f64 {
+        residual(controls, &self.response).iter().fold(0.0, |a, b| a.max(b.abs()))
+    }
+
+    fn solve(&mut self, controls: &[Control]) -> Result<PointResponse, Stop> {
+        let mut strain = self.response.strain;
+        for (entry, control) in strain.iter_mut().zip(controls) {
+            if let Control::Strain(target) = control {
+                *entry = *target;
+            }
+        }
+        let free: Vec<usize> = (0..controls.len()).filter(|&i| matches!(controls[i], Control::Stress(_))).collect();
+        // Predictor: the old tangent carries the change of the given strains to the free ones.
+        let change: [f64; COMPONENTS] = std::array::from_fn(|i| strain[i] - self.response.strain[i]);
+        let mut right = residual(controls, &self.response);
+        for &i in &free {
+            right[i] += (0..controls.len()).map(|j| self.response.tangent[i][j] * change[j]).sum::<f64>();
+        }
+        if let Some(delta) = solve_free(&self.response.tangent, &right, &free) {
+            free.iter().for_each(|&i| strain[i] -= delta[i]);
+        }
+        let mut found = self.evaluate(&strain)?;
+        let mut best = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let wrong = residual(controls, &found);
+            let error = wrong.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let largest = found.stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let noise = self.stiffness * strain.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            best = best.min(error);
+            if error <= TOLERANCE * largest + 8.0 * f64::EPSILON * noise {
+                return Ok(found);
+            }
+            let Some(delta) = solve_free(&found.tangent, &wrong, &free) else {
+                return Err(Stop::Unreachable { done: 0.0, error });
+            };
+            // Backtracking on the greatest error.
+            let (mut fraction, mut accepted) = (1.0, None);
+            for _ in 0..12 {
+                let mut next = strain;
+                free.iter().for_each(|&i| next[i] -= fraction * delta[i]);
+                let there = self.evaluate(&next)?;
+                let now = residual(controls, &there).iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+                if now < error * (1.0 - 1e-4 * fraction) {
+                    accepted = Some((next, there));
+                    break;
+                }
+                fraction *= 0.5;
+            }
+            match accepted {
+                Some((next, there)) => (strain, found) = (next, there),
+                None => return Err(Stop::Unreachable { done: 0.0, error }),
+            }
+        }
+        Err(Stop::Unreachable { done: 0.0, error: best })
+    }
+
+    fn evaluate(&mut self, strain: &[f64; COMPONENTS]) -> Result<PointResponse, Stop> {
+        self.evaluations += 1;
+        self.law.update(strain, &self.state, &mut self.scratch).map_err(Stop::Law)
+    }
+}
+
+/// Stress minus target for controlled stresses, 0 elsewhere.
+fn residual(controls: &[Control], response: &PointResponse) -> [f64; COMPONENTS] {
+    std::array::from_fn(|i| match controls.get(i) {
+        Some(Control::Stress(target)) => response.stress[i] - target,
+        _ => 0.0,
+    })
+}
+
+/// Solves for the free components by elimination with full pivoting; `None` where singular.
+fn solve_free(
+    tangent: &[[f64; COMPONENTS]; COMPONENTS],
+    right: &[f64; COMPONENTS],
+    free: &[usize],
+) -> Option<[f64; COMPONENTS]> {
+    let n = free.len();
+    let mut matrix: Vec<Vec<f64>> =
+        free.iter().map(|&i| free.iter().map(|&j| tangent[i][j]).chain([right[i]]).collect()).collect();
+    let mut order: Vec<usize> = (0..n).collect();
+    let scale = matrix.iter().flat_map(|row| &row[..n]).fold(0.0_f64, |a, b| a.max(b.abs()));
+    for k in 0..n {
+        let places = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
+        let (i, j) = places.max_by(|a, b| matrix[a.0][a.1].abs().total_cmp(&matrix[b.0][b.1].abs()))?;
+        let pivot = matrix[i][j].abs();
+        if pivot.is_nan() || pivot <= 1e-14 * scale {
+            return None;
+        }
+        matrix.swap(k, i);
+        matrix.iter_mut().for_each(|row| row.swap(k, j));
+        order.swap(k, j);
+        let (above, below) = matrix.split_at_mut(k + 1);
+        for row in below {
+            let factor = row[k] / above[k][k];
+            row.iter_mut().zip(&above[k]).skip(k).for_each(|(entry, pivot)| *entry -= factor * pivot);
+        }
+    }
+    let mut out = [0.0; COMPONENTS];
+    for k in (0..n).rev() {
+        let rest: f64 = (k + 1..n).map(|j| matrix[k][j] * out[free[order[j]]]).sum();
+        out[free[order[k]]] = (matrix[k][n] - rest) / matrix[k][k];
+    }
+    Some(out)
+}

@@ -1,0 +1,148 @@
+//! What a study of driven points writes: results.json, results.csv, the figure, the table on the terminal.
+
+use super::{PathStatus, PointResult, PointStudy};
+use crate::figures::chart::{Series, chart_svg};
+use crate::figures::format::{format_number, format_value, key_with_unit};
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+
+/// (name, text) of every file.
+pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
+    let whole = serde_json::json!({ "study": study.name, "version": version, "kind": "point", "cases": results });
+    let mut out = vec![
+        ("results.json".to_string(), format!("{whole:#}\n")),
+        ("results.csv".to_string(), csv(study, results)),
+        ("resolved.toml".to_string(), toml::to_string(&study.resolved).unwrap_or_default()),
+    ];
+    if study.figures {
+        out.push(("figures/path.svg".into(), figure(study, results)));
+    }
+    out
+}
+
+/// Swept keys, in order.
+fn keys(results: &[PointResult]) -> Vec<String> {
+    results.first().map(|result| result.parameters.keys().cloned().collect()).unwrap_or_default()
+}
+
+/// One row per step of every case; columns that a case's law does not have are empty.
+pub fn csv(_study: &PointStudy, results: &[PointResult]) -> String {
+    let mut columns: Vec<&String> = Vec::new();
+    for column in results.iter().flat_map(|result| &result.columns) {
+        if !columns.contains(&column) {
+            columns.push(column);
+        }
+    }
+    let keys = keys(results);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let header = ["id".to_string(), "variant".into()].into_iter().chain(keys.iter().map(|key| key_with_unit(key)));
+    let header = header.chain(["segment".to_string(), "region".into()]).chain(columns.iter().map(|c| c.to_string()));
+    writer.write_record(header).expect("writing to memory does not fail");
+    for result in results {
+        let places: Vec<Option<usize>> =
+            columns.iter().map(|column| result.columns.iter().position(|own| own == *column)).collect();
+        for (index, numbers) in result.rows.iter().enumerate() {
+            let mut row = vec![result.id.to_string(), result.variant.clone().unwrap_or_default()];
+            row.extend(keys.iter().map(|key| result.parameters.get(key).map(format_value).unwrap_or_default()));
+            row.extend([result.segments[index].to_string(), result.regions[index].to_string()]);
+            row.extend(places.iter().map(|place| place.map_or(String::new(), |place| numbers[place].to_string())));
+            writer.write_record(row).expect("every row is as long as the header");
+        }
+    }
+    let bytes = writer.into_inner().expect("writing to memory does not fail");
+    String::from_utf8(bytes).expect("every cell is text")
+}
+
+/// What tells a case apart.
+fn name(result: &PointResult) -> String {
+    let parameters = result.parameters.iter().map(|(key, value)| format!("{key} = {}", format_value(value)));
+    let words: Vec<String> = result.variant.iter().cloned().chain(parameters).collect();
+    if words.is_empty() { result.law.clone() } else { words.join(", ") }
+}
+
+fn column(result: &PointResult, word: &str) -> Option<usize> {
+    result.columns.iter().position(|column| column.split(' ').next() == Some(word))
+}
+
+/// Stresses in MPa, lengths in mm, everything else as it is.
+fn scaled(label: &str) -> (String, f64) {
+    if let Some(word) = label.strip_suffix(" [Pa]") {
+        (format!("{} [MPa]", word.replace('_', " ")), 1e-6)
+    } else if let Some(word) = label.strip_suffix(" [m]") {
+        (format!("{} [mm]", word.replace('_', " ")), 1e3)
+    } else {
+        (label.replace('_', " "), 1.0)
+    }
+}
+
+/// The curve of every case, as SVG.
+pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
+    let mut labels = [String::new(), String::new()];
+    let mut notes = Vec::new();
+    let series: Vec<Series> = study
+        .cases
+        .iter()
+        .zip(results)
+        .map(|(case, result)| {
+            let [x, y] = [0, 1].map(|axis| {
+                let place = column(result, &case.plot[axis]).unwrap_or(axis);
+                let (label, factor) = scaled(&result.columns[place]);
+                labels[axis] = label;
+                (place, factor)
+            });
+            if result.status == PathStatus::Stalled {
+                notes.push(format!("{}: {}", name(result), result.notes.last().cloned().unwrap_or_default()));
+            }
+            let points = result.rows.iter().map(|row| (row[x.0] * x.1, row[y.0] * y.1)).collect();
+            Series { name: name(result), points, open_points: Vec::new() }
+        })
+        .collect();
+    let title = format!("{}: {} over {}", study.name, labels[1], labels[0]);
+    chart_svg(&title, &labels[0], &labels[1], &series, &notes)
+}
+
+/// One row per case: how it ended, and the plotted quantity's least, greatest and last value.
+pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
+    let mut table = Table::new();
+    let keys = keys(results);
+    let mut header = vec!["id".to_string(), "case".into(), "law".into(), "status".into(), "rows".into()];
+    let plotted = study.cases.first().map_or(String::new(), |case| case.plot[1].clone());
+    let label = results.first().and_then(|r| Some(r.columns[column(r, &plotted)?].clone())).unwrap_or(plotted);
+    header.extend([
+        format!("least {label}"),
+        "greatest".into(),
+        "last".into(),
+        "last region".into(),
+        "dissipated".into(),
+    ]);
+    table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
+    for (case, result) in study.cases.iter().zip(results) {
+        let values: Vec<f64> = column(result, &case.plot[1])
+            .map(|place| result.rows.iter().map(|row| row[place]).collect())
+            .unwrap_or_default();
+        let number = |x: Option<f64>| x.map_or(String::new(), |x| format_number(x, 10));
+        let dissipated = column(result, "dissipated").and_then(|place| Some(result.rows.last()?[place]));
+        let told_apart = result.variant.is_some() || !keys.is_empty();
+        table.add_row([
+            result.id.to_string(),
+            if told_apart { name(result) } else { String::new() },
+            result.law.clone(),
+            if result.status == PathStatus::Reached { "reached" } else { "stalled" }.into(),
+            result.rows.len().to_string(),
+            number(values.iter().copied().reduce(f64::min)),
+            number(values.iter().copied().reduce(f64::max)),
+            number(values.last().copied()),
+            result.regions.last().map_or(String::new(), |region| region.to_string()),
+            number(dissipated),
+        ]);
+    }
+    for index in [0, 4, 5, 6, 7, 9] {
+        if let Some(column) = table.column_mut(index) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let mut text: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
+    for result in results {
+        result.notes.iter().for_each(|note| text.push_str(&format!("case {}: {note}\n", result.id)));
+    }
+    text
+}

@@ -1,0 +1,381 @@
+//! The study file of a driven point: its keys, and the cases it becomes.
+
+use crate::config::check::Checker;
+use crate::config::document::{Node, parse};
+use crate::config::expand::{Expanded, Plan};
+use crate::config::overlay::join;
+use crate::config::report::{Mistake, sort, suggest};
+use crate::study::{OUTPUT, apply};
+use serde_json::{Map, Value as Json};
+use std::sync::Arc;
+use voussoir_core::assembly::Plane;
+use voussoir_core::interface::{Formulation, InterfaceLaw};
+use voussoir_core::material::BulkMaterial;
+use voussoir_core::material::plane::PlanarUpdate;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+use voussoir_solvers::point::{Control, PointLaw};
+
+const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
+    Parameter { name, doc, shape, need }
+}
+
+const fn component(name: &'static str, quantity: Quantity) -> Parameter {
+    Parameter {
+        name,
+        doc: "target of this component at the end of the segment",
+        shape: Shape::Number(quantity, Range::ANY),
+        need: Need::Optional("it keeps what it had"),
+    }
+}
+
+static STRAIN: Shape = Shape::Table(&[
+    component("xx", Quantity::Ratio),
+    component("yy", Quantity::Ratio),
+    component("zz", Quantity::Ratio),
+    component("xy", Quantity::Ratio),
+    component("yz", Quantity::Ratio),
+    component("zx", Quantity::Ratio),
+]);
+static STRESS: Shape = Shape::Table(&[
+    component("xx", Quantity::Stress),
+    component("yy", Quantity::Stress),
+    component("zz", Quantity::Stress),
+    component("xy", Quantity::Stress),
+    component("yz", Quantity::Stress),
+    component("zx", Quantity::Stress),
+]);
+static GAP: Shape = Shape::Table(&[component("n", Quantity::Length), component("t", Quantity::Length)]);
+static TRACTION: Shape = Shape::Table(&[component("n", Quantity::Stress), component("t", Quantity::Stress)]);
+
+static SEGMENT: Shape = Shape::Table(&[
+    key("steps", Shape::Integer { min: 1, max: 100_000 }, Need::Default("20"), "equal steps of the segment"),
+    key(
+        "strain",
+        STRAIN,
+        Need::Default("{}"),
+        "strains at the end of the segment, tension positive, engineering shears",
+    ),
+    key("stress", STRESS, Need::Default("{}"), "stresses at the end of the segment, tension positive"),
+    key("gap", GAP, Need::Default("{}"), "gaps of a joint at the end of the segment, n > 0 open"),
+    key(
+        "traction",
+        TRACTION,
+        Need::Default("{}"),
+        "tractions of a joint at the end of the segment, n > 0 in compression",
+    ),
+]);
+
+/// Keys of `[point]`.
+pub static POINT: &[Parameter] = &[
+    key("material", Shape::Reference("materials"), Need::Optional("joint is given"), "the material that is driven"),
+    key("joint", Shape::Reference("joints"), Need::Optional("material is given"), "the joint law that is driven"),
+    key(
+        "plane",
+        Shape::Choice(&["strain", "stress"]),
+        Need::Optional("a material is driven in space"),
+        "plane strain or plane stress",
+    ),
+    Parameter::number(
+        "length",
+        Quantity::Length,
+        Range::POSITIVE,
+        "characteristic length over which the material localises",
+    )
+    .optional("1 m; only softening materials read it"),
+    key(
+        "path",
+        Shape::List { of: &SEGMENT, min: 1, max: 1000 },
+        Need::Required,
+        "segments of the path, [[point.path]], in order",
+    ),
+    key(
+        "plot",
+        Shape::List { of: &Shape::Text, min: 2, max: 2 },
+        Need::Optional("the first component that moves"),
+        "columns of the figure, abscissa and ordinate, such as [\"strain_xx\", \"stress_xx\"]",
+    ),
+];
+
+static MATERIAL: Shape = Shape::Plugin(PluginKind::BulkMaterial);
+static LAW: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
+
+/// The keys of such a study.
+pub static STUDY: &[Parameter] = &[
+    key("name", Shape::Text, Need::Required, "name of the study"),
+    key("kind", Shape::Choice(&["point"]), Need::Required, "what is done"),
+    key("point", Shape::Table(POINT), Need::Required, "what is driven, and how"),
+    key("materials", Shape::Map(&MATERIAL), Need::Default("{}"), "materials by name"),
+    key("joints", Shape::Map(&LAW), Need::Default("{}"), "laws of joints by name"),
+    key("sweep", Shape::Free, Need::Optional("one case"), "as in other studies"),
+    key("variants", Shape::Free, Need::Optional("no variants"), "as in other studies"),
+    key("output", OUTPUT, Need::Default("{}"), "what is written besides the results"),
+];
+
+/// One segment of the path.
+#[derive(Debug, Clone)]
+pub struct Segment {
+    /// Equal steps.
+    pub steps: usize,
+    /// Per component: where it goes, `None` where it keeps what it had.
+    pub targets: Vec<Option<Control>>,
+}
+
+/// One point to drive.
+#[derive(Debug, Clone)]
+pub struct PointCase {
+    /// Index from 0, variants outermost.
+    pub id: usize,
+    /// Name of its variant.
+    pub variant: Option<String>,
+    /// Swept key → value.
+    pub parameters: Map<String, Json>,
+    /// Tag of the law.
+    pub tag: String,
+    /// The law.
+    pub law: PointLaw,
+    /// Its path.
+    pub path: Vec<Segment>,
+    /// Columns of the figure.
+    pub plot: [String; 2],
+    /// Keys that have no influence.
+    pub notes: Vec<String>,
+}
+
+/// A study of driven points.
+#[derive(Debug, Clone)]
+pub struct PointStudy {
+    /// Its name.
+    pub name: String,
+    /// Whether figures are wanted.
+    pub figures: bool,
+    /// Its cases.
+    pub cases: Vec<PointCase>,
+    /// The file with `--set` applied.
+    pub resolved: toml::Value,
+}
+
+/// Whether the text is a study of this kind. Text that cannot be read is not.
+pub fn is_point(text: &str, sets: &[(String, String)]) -> bool {
+    let Ok(mut root) = parse(text, "") else { return false };
+    apply(&mut root, sets);
+    root.table().and_then(|table| table.get("kind")?.text()) == Some("point")
+}
+
+/// The keys of such a study, for its JSON Schema.
+pub fn schema() -> &'static [Parameter] {
+    STUDY
+}
+
+/// Reads a study; every mistake at once. Arguments as of [`crate::study::load`].
+pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<PointStudy, Vec<Mistake>> {
+    let mut root = parse(text, file)?;
+    let mut mistakes = apply(&mut root, sets);
+    let plan = match Plan::new(&root) {
+        Ok(plan) => plan,
+        Err(wrong) => {
+            mistakes.extend(wrong);
+            sort(&mut mistakes);
+            return Err(mistakes);
+        }
+    };
+    let (mut cases, mut figures) = (Vec::new(), true);
+    for id in 0..plan.count() {
+        match plan.case(id).and_then(|expanded| build(id, expanded)) {
+            Ok((case, drawn)) => {
+                figures = drawn;
+                cases.push(case);
+            }
+            Err(wrong) => {
+                for mistake in wrong {
+                    if !mistakes.contains(&mistake) {
+                        mistakes.push(mistake);
+                    }
+                }
+            }
+        }
+        if mistakes.len() > 100 {
+            break;
+        }
+    }
+    if !mistakes.is_empty() {
+        sort(&mut mistakes);
+        return Err(mistakes);
+    }
+    let name = root.table().and_then(|table| table.get("name")?.text()).unwrap_or_default().to_string();
+    Ok(PointStudy { name, figures, cases, resolved: root.to_toml() })
+}
+
+struct Builder<'a> {
+    root: &'a Node,
+    mistakes: Vec<Mistake>,
+}
+
+impl Builder<'_> {
+    fn wrong(&mut self, key: &str, message: impl Into<String>, help: impl Into<String>) {
+        self.mistakes.push(Mistake::new(&self.root.place(key), key, message).help(help));
+    }
+}
+
+fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<Mistake>> {
+    let Expanded { variant, parameters, root } = expanded;
+    let mut checker = Checker::new(&root);
+    let checked = checker.check(&root, &Shape::Table(STUDY), "");
+    let (mistakes, unused) = (std::mem::take(&mut checker.mistakes), std::mem::take(&mut checker.unused));
+    let (Some(resolved), true) = (checked, mistakes.is_empty()) else {
+        return Err(mistakes);
+    };
+    let mut builder = Builder { root: &root, mistakes };
+    let point = &resolved["point"];
+    let law = read_law(&mut builder, &resolved, point);
+    let Some((tag, law)) = law else {
+        return Err(builder.mistakes);
+    };
+    let path: Vec<Segment> = (0..point["path"].as_array().map_or(0, Vec::len))
+        .map(|number| read_segment(&mut builder, &law, &point["path"][number], &format!("point.path.{number}")))
+        .collect();
+    let plot = read_plot(&mut builder, &law, point, &path);
+    if !builder.mistakes.is_empty() {
+        return Err(builder.mistakes);
+    }
+    let notes = unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
+    let drawn = resolved["output"]["figures"].as_bool().unwrap_or(true);
+    Ok((PointCase { id, variant, parameters, tag, law, path, plot, notes }, drawn))
+}
+
+fn read_law(builder: &mut Builder<'_>, resolved: &Json, point: &Json) -> Option<(String, PointLaw)> {
+    let length = point["length"].as_f64().unwrap_or(1.0);
+    match (point["material"].as_str(), point["joint"].as_str()) {
+        (Some(name), None) => {
+            let table = &resolved["materials"][name];
+            let tag = table["law"].as_str().unwrap_or_default().to_string();
+            let material: Box<dyn BulkMaterial> = match serde_json::from_value(table.clone()) {
+                Ok(material) => material,
+                Err(error) => {
+                    let key = join("materials", name);
+                    builder.wrong(&key, format!("cannot be read: {error}"), "correct this table");
+                    return None;
+                }
+            };
+            let Some(update) = material.stress_update() else {
+                let message = format!("bulk material \"{tag}\" gives no stresses from strains at a point");
+                builder.wrong("point.material", message, "drive a material that deforms");
+                return None;
+            };
+            if length > update.largest_length() {
+                let message = format!(
+                    "{length} m is too large for the fracture energy: a point would snap back; it must be at most {:.6} m",
+                    update.largest_length()
+                );
+                builder.wrong(
+                    "point.length",
+                    message,
+                    "give a shorter length (smaller elements) or more fracture energy",
+                );
+                return None;
+            }
+            let plane = match point["plane"].as_str() {
+                None => return Some((tag, PointLaw::Space(update, length))),
+                Some("stress") => Plane::Stress,
+                Some(_) => Plane::Strain,
+            };
+            match PlanarUpdate::new(update, plane) {
+                Ok(planar) => Some((tag, PointLaw::Plane(planar, length))),
+                Err(failure) => {
+                    builder.wrong("point.material", failure.to_string(), "check the parameters of the material");
+                    None
+                }
+            }
+        }
+        (None, Some(name)) => {
+            let table = &resolved["joints"][name];
+            let tag = table["law"].as_str().unwrap_or_default().to_string();
+            let law: Box<dyn InterfaceLaw> = match serde_json::from_value(table.clone()) {
+                Ok(law) => law,
+                Err(error) => {
+                    let key = join("joints", name);
+                    builder.wrong(&key, format!("cannot be read: {error}"), "correct this table");
+                    return None;
+                }
+            };
+            if point["plane"].is_string() {
+                builder.wrong("point.plane", "is for materials; a joint is driven in its own plane", "remove it");
+            }
+            match law.formulation() {
+                Formulation::Response(response) => Some((tag, PointLaw::Joint(response))),
+                Formulation::Facets(facets) => match law.stiffness() {
+                    Some(stiffness) if stiffness.iter().all(|k| k.is_finite()) => {
+                        let response = voussoir_core::interface::facet_response::FacetResponse::new(facets, stiffness);
+                        Some((tag, PointLaw::Joint(Arc::new(response))))
+                    }
+                    _ => {
+                        let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
+                        let help = "give the joint normal_stiffness and shear_stiffness";
+                        builder.wrong("point.joint", message, help);
+                        None
+                    }
+                },
+                _ => {
+                    let message = format!("interface law \"{tag}\" gives no tractions from gaps");
+                    builder.wrong("point.joint", message, "drive a law of facets or of tractions from gaps");
+                    None
+                }
+            }
+        }
+        _ => {
+            builder.wrong("point", "needs either material or joint", "name what is driven");
+            None
+        }
+    }
+}
+
+fn read_segment(builder: &mut Builder<'_>, law: &PointLaw, segment: &Json, at: &str) -> Segment {
+    let names = law.names();
+    let mut targets: Vec<Option<Control>> = vec![None; names.len()];
+    let joint = matches!(law, PointLaw::Joint(_));
+    let tables = [("strain", false, true), ("stress", false, false), ("gap", true, true), ("traction", true, false)];
+    for (table, of_joint, strain) in tables {
+        for (name, value) in segment[table].as_object().into_iter().flatten() {
+            let place = join(&join(at, table), name);
+            let Some(value) = value.as_f64() else { continue };
+            if of_joint != joint {
+                let help = if joint { "a joint has gap and traction" } else { "a material has strain and stress" };
+                builder.wrong(&place, "does not belong to what is driven", help);
+                continue;
+            }
+            let Some(index) = names.iter().position(|known| known == name) else {
+                builder.wrong(&place, "is not a component in a plane", suggest(name, names, "components"));
+                continue;
+            };
+            if targets[index].is_some() {
+                builder.wrong(&place, "is controlled twice in this segment", "give its strain or its stress");
+            }
+            targets[index] = Some(if strain { Control::Strain(value) } else { Control::Stress(value) });
+        }
+    }
+    if targets.iter().all(Option::is_none) {
+        builder.wrong(at, "moves nothing", "name at least one component");
+    }
+    Segment { steps: segment["steps"].as_u64().unwrap_or(1) as usize, targets }
+}
+
+fn read_plot(builder: &mut Builder<'_>, law: &PointLaw, point: &Json, path: &[Segment]) -> [String; 2] {
+    let columns = super::columns(law);
+    let bare: Vec<&str> = columns.iter().filter_map(|column| column.split(' ').next()).collect();
+    if let Some([x, y]) = point["plot"].as_array().map(Vec::as_slice) {
+        let words = [x, y].map(|word| word.as_str().unwrap_or_default().to_string());
+        for (index, word) in words.iter().enumerate() {
+            if !bare.contains(&word.as_str()) {
+                let help = suggest(word, &bare, "columns");
+                builder.wrong(&format!("point.plot.{index}"), format!("there is no column \"{word}\""), help);
+            }
+        }
+        return words;
+    }
+    let strained = path.iter().flat_map(|s| s.targets.iter().enumerate()).find_map(|(index, target)| match target {
+        Some(Control::Strain(value)) if *value != 0.0 => Some(index),
+        _ => None,
+    });
+    let index = strained.unwrap_or(0);
+    [bare[index].to_string(), bare[law.components() + index].to_string()]
+}

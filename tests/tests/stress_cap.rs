@@ -1,0 +1,389 @@
+//! The return to the cap model on random trial states at any distance, against a solver that shares
+//! nothing with it, and its tangent against finite differences.
+
+use proptest::prelude::Rng;
+use proptest::test_runner::{RngAlgorithm, TestRng};
+use std::collections::BTreeMap;
+use voussoir::core::assembly::Plane;
+use voussoir::core::material::plane::PlanarUpdate;
+use voussoir::core::material::{BulkMaterial, Isotropic, Region, von_mises};
+use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
+
+fn rng() -> TestRng {
+    TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32])
+}
+
+fn uniform(rng: &mut TestRng, low: f64, high: f64) -> f64 {
+    low + (high - low) * (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn normal(rng: &mut TestRng) -> f64 {
+    let (a, b) = (uniform(rng, 1e-300, 1.0), uniform(rng, 0.0, 1.0));
+    (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+}
+
+fn law(angle: f64, cohesion: f64, eccentricity: f64, transition: f64, hardening: Vec<[f64; 2]>) -> DruckerPragerCap {
+    DruckerPragerCap {
+        young_modulus: 5e9,
+        poisson_ratio: 0.2,
+        density: 2200.0,
+        cap_friction_angle: angle,
+        cap_cohesion: cohesion,
+        cap_eccentricity: eccentricity,
+        transition,
+        hardening: Some(hardening),
+        uniaxial_strength: None,
+        initial_compaction: 0.0,
+    }
+}
+
+/// The paper's parameters with both readings of its strength, and ordinary ones.
+fn laws() -> Vec<(&'static str, DruckerPragerCap)> {
+    let table = vec![[-0.02, 5e6], [0.0, 10e6], [0.002, 14e6], [0.01, 20e6], [0.05, 60e6]];
+    vec![
+        ("paper, p_b 10 MPa", law(70.0, 1e9, 0.005, 0.03, vec![[0.0, 10e6]])),
+        ("paper, p_b 10/3 MPa", law(70.0, 1e9, 0.005, 0.03, vec![[0.0, 10e6 / 3.0]])),
+        ("paper, hardening", law(70.0, 1e9, 0.005, 0.03, vec![[0.0, 10e6], [0.01, 20e6]])),
+        ("soil", law(30.0, 0.5e6, 0.6, 0.05, table.clone())),
+        ("no transition", law(45.0, 2e6, 0.3, 0.0, table.clone())),
+        ("no friction", law(0.0, 8e6, 0.8, 0.02, table.clone())),
+        ("no cohesion", law(40.0, 0.0, 0.5, 0.03, table)),
+    ]
+}
+
+/// p_b by the table.
+fn strength(law: &DruckerPragerCap, compaction: f64) -> f64 {
+    let table = law.hardening();
+    if compaction <= table[0][0] {
+        return table[0][1];
+    }
+    for pair in table.windows(2) {
+        if compaction <= pair[1][0] {
+            return pair[0][1] + (compaction - pair[0][0]) / (pair[1][0] - pair[0][0]) * (pair[1][1] - pair[0][1]);
+        }
+    }
+    table[table.len() - 1][1]
+}
+
+/// The manual's yield functions as they are printed: (cap, transition, shear), p_a and D.
+fn printed(law: &DruckerPragerCap, p: f64, q: f64, compaction: f64) -> ([f64; 3], f64, f64) {
+    let (tan, cos) = (law.cap_friction_angle.to_radians().tan(), law.cap_friction_angle.to_radians().cos());
+    let (d, r, a) = (law.cap_cohesion, law.cap_eccentricity, law.transition);
+    let p_a = (strength(law, compaction) - r * d) / (1.0 + r * tan);
+    let size = d + p_a * tan;
+    let cap = ((p - p_a).powi(2) + (r * q / (1.0 + a - a / cos)).powi(2)).sqrt() - r * size;
+    let transition = ((p - p_a).powi(2) + (q - (1.0 - a / cos) * size).powi(2)).sqrt() - a * size;
+    ([cap, transition, q - p * tan - d], p_a, size)
+}
+
+/// The active one of them, which is which side of p_a and of the tangent point decides.
+fn active(law: &DruckerPragerCap, p: f64, q: f64, compaction: f64) -> f64 {
+    let (f, p_a, size) = printed(law, p, q, compaction);
+    if p >= p_a {
+        f[0]
+    } else if p >= p_a - law.transition * size * law.cap_friction_angle.to_radians().sin() {
+        // Inside the circle's strip the lower half of the circle is no yield surface.
+        let cos = law.cap_friction_angle.to_radians().cos();
+        if q > (1.0 - law.transition / cos) * size { f[1] } else { -size }
+    } else {
+        f[2]
+    }
+}
+
+/// The return by plain bisection on the plastic multiplier, with p found by an inner bisection: slow,
+/// and it shares neither unknowns nor formulas with the law's own return.
+fn reference(law: &DruckerPragerCap, p_trial: f64, q_trial: f64, compaction: f64) -> (f64, f64) {
+    let Isotropic { bulk, shear } = Isotropic::new(law.young_modulus, law.poisson_ratio);
+    let (tan, cos) = (law.cap_friction_angle.to_radians().tan(), law.cap_friction_angle.to_radians().cos());
+    let k = 1.0 + law.transition - law.transition / cos;
+    let p_a = |p: f64| printed(law, 0.0, 0.0, compaction + (p_trial - p) / bulk).1;
+    let on_cap = p_trial > p_a(p_trial);
+    // p − P + K μ ∂ = 0 with the gradients of F_c² / 2 and G_s² / 2 (the multiplier absorbs their scale).
+    let at = |mu: f64| {
+        let weight = if on_cap { mu } else { mu * tan * tan };
+        let balance = |p: f64| p - p_trial + bulk * weight * (p - p_a(p));
+        let (mut low, mut high) = (p_trial.min(p_a(p_trial)) - 1.0, p_trial.max(p_a(p_trial)) + 1.0);
+        if !on_cap {
+            high = p_a(p_trial).max(p_trial) + 1.0;
+        } else {
+            low = p_a(p_trial).min(p_trial) - 1.0;
+        }
+        for _ in 0..2000 {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if balance(middle) > 0.0 { high = middle } else { low = middle }
+        }
+        let p = 0.5 * (low + high);
+        let q_weight = if on_cap { (law.cap_eccentricity / k).powi(2) } else { 1.0 / (k * k) };
+        (p, q_trial / (1.0 + 3.0 * shear * mu * q_weight))
+    };
+    let outside = |mu: f64| {
+        let (p, q) = at(mu);
+        let centre = p_a(p);
+        // On the way p and p_a may cross by rounding only; keep the side.
+        let p = if on_cap { p.max(centre) } else { p.min(centre - 1e-300) };
+        let c = compaction + (p_trial - p) / bulk;
+        if on_cap { printed(law, p, q, c).0[0] > 0.0 } else { active(law, p, q, c) > 0.0 }
+    };
+    let mut high = 1e-9 / shear;
+    while outside(high) {
+        high *= 2.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..2000 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if outside(middle) { low = middle } else { high = middle }
+    }
+    at(0.5 * (low + high))
+}
+
+/// A random trial strain: its stress is up to 1e6 times `size`, its direction anywhere in (p, q), at
+/// times exactly hydrostatic; and a random compaction.
+fn trial(rng: &mut TestRng, law: &DruckerPragerCap, size: f64) -> ([f64; 6], f64) {
+    let Isotropic { bulk, shear } = Isotropic::new(law.young_modulus, law.poisson_ratio);
+    let magnitude = size * 10f64.powf(uniform(rng, -0.5, 6.0));
+    let angle = uniform(rng, 0.0, std::f64::consts::PI);
+    let (p, q) = (magnitude * angle.cos(), magnitude * angle.sin());
+    let mut deviator: [f64; 6] = std::array::from_fn(|_| normal(rng));
+    let mean = (deviator[0] + deviator[1] + deviator[2]) / 3.0;
+    deviator[..3].iter_mut().for_each(|x| *x -= mean);
+    let scale = if uniform(rng, 0.0, 1.0) < 0.02 { 0.0 } else { q / von_mises(&deviator) };
+    let mut strain = [0.0; 6];
+    for i in 0..6 {
+        strain[i] =
+            scale * deviator[i] / if i < 3 { 2.0 * shear } else { shear } - if i < 3 { p / (3.0 * bulk) } else { 0.0 };
+    }
+    (strain, uniform(rng, -0.01, 0.06))
+}
+
+fn invariants(stress: &[f64; 6]) -> (f64, f64) {
+    let p = -(stress[0] + stress[1] + stress[2]) / 3.0;
+    let mut deviator = *stress;
+    deviator[..3].iter_mut().for_each(|x| *x += p);
+    (p, von_mises(&deviator))
+}
+
+/// On 14,000 random trial states: |f| ≤ 1e-10 of the strength + 8 ε |trial stress|, (p, q) as the
+/// reference finds them, plastic work as large as the page says, and the state is what the strain says.
+#[test]
+fn every_trial_state_returns_to_the_surface() {
+    let mut rng = rng();
+    let mut regions: BTreeMap<Region, usize> = BTreeMap::new();
+    for (name, law) in laws() {
+        assert_eq!(law.validate(), vec![], "{name}");
+        let update = law.stress_update().unwrap();
+        let elastic = Isotropic::new(law.young_modulus, law.poisson_ratio);
+        for sample in 0..2000 {
+            let (_, _, size) = printed(&law, 0.0, 0.0, 0.0);
+            let unit = if sample % 2 == 0 { strength(&law, 0.0) } else { size };
+            let (strain, compaction) = trial(&mut rng, &law, unit);
+            let mut old = [0.0; 7];
+            old[6] = compaction;
+            let mut new = [0.0; 7];
+            let point = update.update_point(&strain, 1.0, &old, &mut new).unwrap_or_else(|f| panic!("{name}: {f}"));
+            *regions.entry(point.region).or_default() += 1;
+            let (deviator, p_trial) = elastic.split(&strain);
+            let q_trial = von_mises(&deviator);
+            let (p, q) = invariants(&point.stress);
+            let f = active(&law, p, q, new[6]);
+            let allowed = 1e-10 * strength(&law, new[6]) + 8.0 * f64::EPSILON * p_trial.hypot(q_trial);
+            if point.region == Region::Elastic {
+                assert!(f <= allowed && new == old, "{name}: elastic at f = {f}");
+                continue;
+            }
+            assert!(f.abs() <= allowed, "{name}: f = {f:e} at ({p}, {q}) in {:?}, allowed {allowed:e}", point.region);
+            let (p_ref, q_ref) = reference(&law, p_trial, q_trial, compaction);
+            let close = 1e-8 * size + 64.0 * f64::EPSILON * p_trial.hypot(q_trial);
+            assert!(
+                (p - p_ref).abs() <= close && (q - q_ref).abs() <= close,
+                "{name}: ({p}, {q}) instead of ({p_ref}, {q_ref}) from ({p_trial}, {q_trial}) at {compaction}"
+            );
+            let trace = new[0] + new[1] + new[2];
+            let scale = strain.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            assert!((compaction - trace - new[6]).abs() <= 1e-14 + 8.0 * f64::EPSILON * scale);
+            if (law.cap_cohesion + size).powi(2) <= 4.0 * law.cap_cohesion * size {
+                assert!(point.dissipation >= 0.0, "{name}");
+            }
+        }
+    }
+    println!("{regions:?}");
+    for region in [Region::Elastic, Region::Shear, Region::Transition, Region::Cap, Region::Apex] {
+        assert!(regions.get(&region).is_some_and(|&count| count >= 50), "{regions:?}");
+    }
+}
+
+/// The tangent is the derivative of the update: central differences with Richardson's correction,
+/// where ±h stays in one region and one piece of the table.
+#[test]
+fn the_tangent_is_the_derivative() {
+    let mut rng = rng();
+    let mut compared: BTreeMap<Region, usize> = BTreeMap::new();
+    for (name, law) in laws() {
+        let update = law.stress_update().unwrap();
+        let elastic = Isotropic::new(law.young_modulus, law.poisson_ratio);
+        for sample in 0..1500 {
+            let (_, _, size) = printed(&law, 0.0, 0.0, 0.0);
+            let unit = if sample % 2 == 0 { strength(&law, 0.0) } else { size };
+            let (mut strain, compaction) = trial(&mut rng, &law, 1e-2 * unit);
+            let h_share = if sample % 3 == 0 { 1e-6 } else { 1e-4 };
+            if sample % 3 == 0 {
+                // Above the transition: the same direction with (p, q) near its arc.
+                let (_, p_a, size) = printed(&law, 0.0, 0.0, compaction);
+                let (s, _) = elastic.split(&strain);
+                let q = size * uniform(&mut rng, 0.95, 1.2);
+                let p = p_a - size * law.transition * uniform(&mut rng, 0.0, 1.5);
+                let factor = q / von_mises(&s).max(1e-9 * size);
+                strain = std::array::from_fn(|i| {
+                    let shear = if i < 3 { 2.0 * elastic.shear } else { elastic.shear };
+                    factor * s[i] / shear - if i < 3 { p / (3.0 * elastic.bulk) } else { 0.0 }
+                });
+            }
+            let trial_size = {
+                let (s, p) = elastic.split(&strain);
+                p.abs().max(von_mises(&s))
+            };
+            if trial_size > 100.0 * unit {
+                continue;
+            }
+            let mut old = [0.0; 7];
+            old[6] = compaction;
+            let mut new = [0.0; 7];
+            let here = update.update_point(&strain, 1.0, &old, &mut new).unwrap();
+            let direction: [f64; 6] = std::array::from_fn(|_| normal(&mut rng));
+            let largest = strain.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let h = h_share * largest;
+            let piece = |c: f64| law.hardening().iter().filter(|entry| entry[0] < c).count();
+            let home = piece(new[6]);
+            let mut same = true;
+            let mut at = |factor: f64| {
+                let moved: [f64; 6] = std::array::from_fn(|i| strain[i] + factor * h * direction[i]);
+                let point = update.update_point(&moved, 1.0, &old, &mut new).unwrap();
+                same &= point.region == here.region && piece(new[6]) == home;
+                point.stress
+            };
+            let (a, b, c, d) = (at(1.0), at(-1.0), at(0.5), at(-0.5));
+            if !same {
+                continue;
+            }
+            let wide: [f64; 6] = std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h));
+            let fine: [f64; 6] = std::array::from_fn(|i| (c[i] - d[i]) / h);
+            let spread = (0..6).fold(0.0_f64, |m, i| m.max((wide[i] - fine[i]).abs()));
+            let rate: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| here.tangent[i][j] * direction[j]).sum());
+            let error = (0..6).fold(0.0_f64, |m, i| m.max((rate[i] - (4.0 * fine[i] - wide[i]) / 3.0).abs()));
+            // Where the difference quotient itself has not settled it says nothing.
+            if spread > 1e-4 * law.young_modulus {
+                continue;
+            }
+            let noise = 1e3 * f64::EPSILON * (trial_size + unit) / h;
+            assert!(
+                error <= 1e-6 * law.young_modulus + 0.1 * spread + noise,
+                "{name}: {error:e} in {:?} (spread {spread:e}, noise {noise:e})",
+                here.region
+            );
+            *compared.entry(here.region).or_default() += 1;
+        }
+    }
+    println!("{compared:?}");
+    for region in [Region::Elastic, Region::Shear, Region::Transition, Region::Cap] {
+        assert!(compared.get(&region).is_some_and(|&count| count >= 100), "{compared:?}");
+    }
+}
+
+/// In plane stress σ_zz vanishes, σ is that of the law in space at the ε_zz found, and the condensed
+/// tangent is the derivative.
+#[test]
+fn plane_stress_has_no_stress_across_and_its_own_tangent() {
+    let mut rng = rng();
+    let mut compared: BTreeMap<Region, usize> = BTreeMap::new();
+    for (name, law) in laws() {
+        let planar = PlanarUpdate::new(law.stress_update().unwrap(), Plane::Stress).unwrap();
+        let unit = strength(&law, 0.0);
+        for _ in 0..1000 {
+            let size = unit / law.young_modulus * 10f64.powf(uniform(&mut rng, -0.5, 2.0));
+            let strain: [f64; 3] = std::array::from_fn(|_| size * normal(&mut rng));
+            let mut old = [0.0; 8];
+            planar.initial_state(&mut old);
+            let mut new = [0.0; 8];
+            let Ok(here) = planar.update_point(&strain, 1.0, &old, &mut new) else {
+                panic!("{name}: no answer for {strain:?}");
+            };
+            let largest = here.stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            assert!(
+                here.stress_across.abs() <= 1e-9 * largest + 1e-14 * law.young_modulus * (size + new[7].abs()),
+                "{name}: {here:?}"
+            );
+            let direction: [f64; 3] = std::array::from_fn(|_| normal(&mut rng));
+            let h = 1e-4 * size;
+            let mut same = true;
+            let mut at = |factor: f64| {
+                let moved: [f64; 3] = std::array::from_fn(|i| strain[i] + factor * h * direction[i]);
+                let point = planar.update_point(&moved, 1.0, &old, &mut new).unwrap();
+                same &= point.region == here.region;
+                point.stress
+            };
+            let (a, b, c, d) = (at(1.0), at(-1.0), at(0.5), at(-0.5));
+            let wide: [f64; 3] = std::array::from_fn(|i| (a[i] - b[i]) / (2.0 * h));
+            let fine: [f64; 3] = std::array::from_fn(|i| (c[i] - d[i]) / h);
+            let spread = (0..3).fold(0.0_f64, |m, i| m.max((wide[i] - fine[i]).abs()));
+            if !same || spread > 1e-4 * law.young_modulus {
+                continue;
+            }
+            let rate: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| here.tangent[i][j] * direction[j]).sum());
+            let error = (0..3).fold(0.0_f64, |m, i| m.max((rate[i] - (4.0 * fine[i] - wide[i]) / 3.0).abs()));
+            assert!(
+                error <= 1e-5 * law.young_modulus + spread,
+                "{name}: {error:e} in {:?}, spread {spread:e}",
+                here.region
+            );
+            *compared.entry(here.region).or_default() += 1;
+        }
+    }
+    println!("{compared:?}");
+    for region in [Region::Elastic, Region::Shear, Region::Cap] {
+        assert!(compared.get(&region).is_some_and(|&count| count >= 50), "{compared:?}");
+    }
+}
+
+/// The same numbers in other units: stresses scaled by a power of two give the same strains to the bit.
+#[test]
+fn results_do_not_depend_on_the_unit_of_stress() {
+    let mut rng = rng();
+    for (name, law) in laws() {
+        let factor = 2f64.powi(-20);
+        let scaled = DruckerPragerCap {
+            young_modulus: law.young_modulus * factor,
+            cap_cohesion: law.cap_cohesion * factor,
+            hardening: law.hardening.clone().map(|t| t.into_iter().map(|[e, p]| [e, p * factor]).collect()),
+            ..law.clone()
+        };
+        let (one, two) = (law.stress_update().unwrap(), scaled.stress_update().unwrap());
+        for _ in 0..200 {
+            let (strain, compaction) = trial(&mut rng, &law, strength(&law, 0.0));
+            let mut old = [0.0; 7];
+            old[6] = compaction;
+            let (mut a, mut b) = ([0.0; 7], [0.0; 7]);
+            let first = one.update_point(&strain, 1.0, &old, &mut a).unwrap();
+            let second = two.update_point(&strain, 1.0, &old, &mut b).unwrap();
+            assert_eq!(a, b, "{name}");
+            assert_eq!(first.stress.map(|x| x * factor), second.stress, "{name}");
+        }
+    }
+}
+
+/// What is not a number is refused, and so are arrays of the wrong length; nothing panics.
+#[test]
+fn nonsense_is_refused() {
+    let update = laws()[0].1.stress_update().unwrap();
+    let mut new = [0.0; 7];
+    for bad in [f64::NAN, f64::INFINITY, 1e300] {
+        let result = update.update_point(&[bad, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0, &[0.0; 7], &mut new);
+        assert!(result.is_err() || result.unwrap().stress.iter().all(|x| x.is_finite()));
+    }
+    let mut points = [voussoir::core::material::StressPoint::ZERO; 2];
+    assert!(update.update(&[[0.0; 6]; 2], &[1.0; 2], &[0.0; 14], &mut [0.0; 7], &mut points).is_err());
+}
