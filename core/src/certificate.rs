@@ -383,7 +383,8 @@ impl Check<'_> {
             let (height, area) = (joint.height(), joint.height() * self.assembly.width);
             let mut open = jump.open;
             let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
-            let sliding = self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * jump.slip < 0.0);
+            let sliding =
+                self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * jump.slip < 0.0);
             match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
                 Some(facet) => {
                     let gamma = -jump.slip / facet.flow[1];

@@ -149,6 +149,7 @@ pub(crate) fn stalled(why: String) -> CaseResult {
     CaseResult {
         id: 0,
         variant: None,
+        scene: None,
         parameters: serde_json::Map::new(),
         status: Status::Stalled,
         load_factor: None,
@@ -267,9 +268,8 @@ fn proven(
         LimitQuestion::Collapse { start, .. } => start,
     };
     let own = solved.own_flow.as_ref();
-    let associated_motion = own
-        .and_then(|own| own.associated_motion.as_ref())
-        .map(|motion| body_velocities(assembly, problem, motion));
+    let associated_motion =
+        own.and_then(|own| own.associated_motion.as_ref()).map(|motion| body_velocities(assembly, problem, motion));
     let reading = if own.is_some() { FlowReading::Own } else { FlowReading::Associated };
     let claim = Claim {
         status: solved.status,

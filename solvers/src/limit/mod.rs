@@ -12,7 +12,9 @@ pub mod sequential;
 mod systems;
 
 use voussoir_core::assembly::Wrenches;
-use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity};
+use voussoir_core::limit::{
+    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
+};
 
 /// Whether a fixed load can be carried.
 #[derive(Debug, Clone)]

@@ -1,9 +1,9 @@
 //! Fields and mechanisms to rounding from the rows that are known to yield and to move.
 
-use voussoir_core::sparse::{Entries, Factorised};
 use super::driven;
 use super::systems::Systems;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+use voussoir_core::sparse::{Entries, Factorised};
 
 type Row = Vec<(usize, f64)>;
 

@@ -86,7 +86,8 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
     let Some(kinematics) = kinematics.take() else { return Range::Closed };
     let mut search = Search::new(statics, kinematics, &excluded);
     for (i, pair) in systems.pairs.iter().enumerate().filter(|(_, pair)| pair.slides()) {
-        let other = (0..systems.pairs.len()).find(|&k| k > i && systems.pairs[k].slides() && systems.pairs[k].openings == pair.openings);
+        let other = (0..systems.pairs.len())
+            .find(|&k| k > i && systems.pairs[k].slides() && systems.pairs[k].openings == pair.openings);
         if let Some(k) = other.filter(|&k| !excluded[i] && !excluded[k] && !pair.openings.is_empty()) {
             search.not_both(i, k);
         }

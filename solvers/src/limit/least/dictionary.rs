@@ -366,9 +366,8 @@ impl Dictionary {
                     self.restore();
                 }
                 None => {
-                    let repairable = self.row(r).iter().zip(&self.nonbasic).any(|(m, &x)| {
-                        !self.fixed[x] && m * sense > 1e-12
-                    });
+                    let repairable =
+                        self.row(r).iter().zip(&self.nonbasic).any(|(m, &x)| !self.fixed[x] && m * sense > 1e-12);
                     if repairable && violation < DOUBTFUL {
                         return Feasibility::Undecided;
                     }

@@ -131,13 +131,12 @@ impl Least<'_> {
         let at_vertex: Vec<usize> = (0..pairs).filter(|&i| statics.at_zero(i)).collect();
         let start = vec![0.0; self.systems.forces + 1];
         let fields = [at_vertex, moving.clone()];
-        let (z, _) = fields
-            .into_iter()
-            .filter_map(|yielding| self.systems.field(&yielding, start.clone()))
-            .find(|(z, violation)| {
+        let (z, _) = fields.into_iter().filter_map(|yielding| self.systems.field(&yielding, start.clone())).find(
+            |(z, violation)| {
                 let idle = moving.iter().map(|&i| self.systems.slack(i, z).abs()).fold(0.0, f64::max);
                 violation.max(idle) <= ADMISSIBLE && z[self.systems.forces] >= -ADMISSIBLE
-            })?;
+            },
+        )?;
         let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
         let (motion, wrong) = self.systems.motion(self.problem, &moves)?;
         if wrong > ADMISSIBLE {

@@ -287,8 +287,11 @@ impl Search {
     /// Refuses that the pairs of `reason` yield together (statics) or are at rest together.
     fn refuse(&mut self, reason: Vec<usize>, statics: bool) -> bool {
         let reason = if reason.len() <= 60 { self.shrink(reason, statics) } else { reason };
-        let clause: Vec<Literal> =
-            reason.iter().filter(|&&i| i < self.pairs && (statics || !self.excluded[i])).map(|&i| literal(i, !statics)).collect();
+        let clause: Vec<Literal> = reason
+            .iter()
+            .filter(|&&i| i < self.pairs && (statics || !self.excluded[i]))
+            .map(|&i| literal(i, !statics))
+            .collect();
         self.learn(clause)
     }
 
@@ -362,11 +365,8 @@ impl Search {
             let moving: Vec<usize> = (0..self.pairs).filter(|&i| gamma[i] > MOVES * greatest).collect();
             let product = |i: usize| self.statics.value(i).max(0.0) * gamma[i] / greatest;
             let key = |i: usize| self.activity[i] / self.bump + 1e-9 * product(i);
-            let chosen = moving
-                .iter()
-                .copied()
-                .filter(|&i| self.value[i].is_none())
-                .max_by(|&a, &b| key(a).total_cmp(&key(b)));
+            let chosen =
+                moving.iter().copied().filter(|&i| self.value[i].is_none()).max_by(|&a, &b| key(a).total_cmp(&key(b)));
             match chosen {
                 Some(pair) => {
                     self.decisions += 1;

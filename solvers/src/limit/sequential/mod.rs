@@ -75,12 +75,7 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
 }
 
 /// Runs the sequence from a field, that of associated flow by default.
-pub fn sequence(
-    problem: &LimitProblem,
-    base: &Wrenches,
-    from: &[JointForce],
-    counters: &mut Counters,
-) -> Sequence {
+pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
     let systems = Systems::new(problem, base);
     let mut reference = from.to_vec();
     let mut last = f64::NAN;
@@ -109,7 +104,13 @@ pub fn sequence(
             return Sequence::Converged(state);
         }
         // Half way where full steps have not settled, then a quarter.
-        let share = if step < 12 { 1.0 } else if step < 40 { 0.5 } else { 0.25 };
+        let share = if step < 12 {
+            1.0
+        } else if step < 40 {
+            0.5
+        } else {
+            0.25
+        };
         for (old, new) in reference.iter_mut().zip(&field) {
             (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
             old.shear += share * (new.shear - old.shear);
