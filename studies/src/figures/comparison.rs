@@ -9,6 +9,11 @@ use voussoir_core::limit::Status;
 /// Relative width from which a bracket is open.
 pub const OPEN: f64 = 1e-6;
 
+/// The bracket of a cell, where it is open and its lower end says more than "not negative".
+fn telling_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
+    open_bracket(cell).filter(|[low, _]| *low > 0.0)
+}
+
 /// The bracket of a cell, where it is open.
 pub fn open_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
     cell.bounds.filter(|[low, high]| (high - low).abs() > OPEN * high.abs().max(low.abs()))
@@ -16,7 +21,12 @@ pub fn open_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
 
 /// What a row is called.
 pub fn row_name(row: &ComparisonRow) -> String {
-    let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_string();
+    // The last name of a key; of an entry of a list also the list's.
+    let last = |key: &str| {
+        let names: Vec<&str> = key.split('.').collect();
+        let index = names.last().is_some_and(|name| name.parse::<usize>().is_ok());
+        names[names.len().saturating_sub(if index { 2 } else { 1 })..].join(".")
+    };
     let swept = row.parameters.iter().map(|(key, value)| format!("{} = {}", last(key), format_value(value)));
     let parts: Vec<String> = row.scene.iter().cloned().chain(swept).collect();
     if parts.is_empty() { "the scene".into() } else { parts.join(", ") }
@@ -39,7 +49,7 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
         cell.load_factor.filter(|factor| *factor > 0.0)
     };
     let bracket = |row: &ComparisonRow, cell: &ComparisonCell| {
-        Some(open_bracket(cell)?.map(|x| x / base(row).unwrap_or(f64::NAN)))
+        Some(telling_bracket(cell)?.map(|x| x / base(row).unwrap_or(f64::NAN)))
     };
     let cells = || comparison.rows.iter().flat_map(|row| row.cells.iter().map(move |cell| (row, cell)));
     let values = cells().flat_map(|(row, cell)| cell.ratio.into_iter().chain(bracket(row, cell).into_iter().flatten()));
@@ -114,7 +124,7 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
         canvas.text([x + 22.0, legend], name, 13.0, "start");
         x += wide;
     }
-    if cells().any(|(_, cell)| cell.ratio.is_some() && open_bracket(cell).is_some()) {
+    if cells().any(|(_, cell)| cell.ratio.is_some() && telling_bracket(cell).is_some()) {
         legend += 22.0;
         canvas.line([30.0, legend - 4.5], [58.0, legend - 4.5], "#666666", 3.0);
         canvas.line([30.0, legend - 8.5], [30.0, legend - 0.5], "#666666", 2.0);

@@ -159,7 +159,7 @@ fn contours(canvas: &mut Canvas, map: &MapAxes, ratios: &[Vec<Option<f64>>], x: 
         return;
     }
     // Round values; of the level 1 only rounding would be drawn where the two loads agree.
-    let levels = round_values(low, high, 7).into_iter().filter(|level| (level - 1.0).abs() > 1e-9);
+    let levels = round_values(low, high, 9).into_iter().filter(|level| (level - 1.0).abs() > 1e-9);
     let mut labels: Vec<Spot> = Vec::new();
     for level in levels {
         let segments: Vec<[Spot; 2]> = contour(&map.x_values, &map.y_values, ratios, level)

@@ -2,7 +2,7 @@
 
 use super::{StudyOutput, Writer, register};
 use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
-use crate::figures::format::{format_number, format_value, key_with_unit, kind_word, status_word};
+use crate::figures::format::{format_number, format_short, format_value, key_with_unit, kind_word, status_word};
 use crate::figures::map::map_svg;
 use crate::results::{Comparison, ComparisonCell};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -74,17 +74,14 @@ pub fn comparison_csv(comparison: &Comparison) -> String {
     String::from_utf8(bytes).expect("every cell is text")
 }
 
-/// A load factor with what must be said of it: `0.6389818`, `0.351 … 0.356`, `0.61 (limit point)`.
+/// A load factor with what must be said of it: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`.
 fn factor(cell: &ComparisonCell) -> String {
     let words = remark(cell);
-    match (cell.load_factor, open_bracket(cell)) {
-        (None, _) => words,
-        (Some(_), Some([low, high])) if words.is_empty() => {
-            format!("{} … {}", format_number(low, 5), format_number(high, 5))
-        }
-        (Some(factor), _) if words.is_empty() => format_number(factor, 7),
-        (Some(factor), _) => format!("{} ({words})", format_number(factor, 7)),
-    }
+    let Some(factor) = cell.load_factor else { return words };
+    let proved = open_bracket(cell).map(|[low, _]| format!("≥ {}", format_short(low, 4)));
+    let said: Vec<String> = Some(words).filter(|words| !words.is_empty()).into_iter().chain(proved).collect();
+    let number = format_number(factor, 7);
+    if said.is_empty() { number } else { format!("{number} ({})", said.join(", ")) }
 }
 
 /// Header and rows: factors of all voices, then ratios of all but the reference.
@@ -116,7 +113,10 @@ pub fn comparison_table(comparison: &Comparison) -> String {
         column.set_cell_alignment(CellAlignment::Right);
     }
     let lines: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
-    format!("\nload factors, and ratios to \"{}\"\n{lines}", comparison.reference)
+    format!(
+        "\nload factors (≥: proved least, where it is not the load found), and ratios to \"{}\"\n{lines}",
+        comparison.reference
+    )
 }
 
 register!(

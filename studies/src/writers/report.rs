@@ -63,8 +63,8 @@ pub fn report_html(study: &StudyOutput) -> String {
 fn comparison(study: &StudyOutput) -> String {
     let Some(comparison) = &study.results.comparison else { return String::new() };
     let mut body = format!(
-        "<h2>Comparison</h2>\n<p>Load factors, then their ratios to those of <em>{}</em>. Where a bracket a … b stands, a \
-         is proved and b was found. A word stands where there is no load factor.</p>\n",
+        "<h2>Comparison</h2>\n<p>Load factors, then their ratios to those of <em>{}</em>. Where a number follows \
+         behind ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
         escape(&comparison.reference)
     );
     if study.figures
