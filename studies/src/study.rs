@@ -254,8 +254,8 @@ pub struct Outline {
     pub variants: Vec<String>,
     /// Names of the scenes compared; empty where there is only one.
     pub scenes: Vec<String>,
-    /// Keys of each axis of the sweep; those of one axis change together.
-    pub axes: Vec<Vec<String>>,
+    /// Keys of each axis of the sweep, which change together, and whether the first takes numbers.
+    pub axes: Vec<(Vec<String>, bool)>,
     /// The table named after the study's kind; empty where it has none.
     pub table: Map<String, Json>,
 }
@@ -318,6 +318,7 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
         return Err(mistakes);
     }
     check_variants(&root, &mut mistakes);
+    let table = kind_table(&root, &mut mistakes);
     let plan = match Plan::new(&root) {
         Ok(plan) => plan,
         Err(wrong) => {
@@ -333,7 +334,8 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
             mistakes.push(Mistake::new(&Origin::Set(path.as_str().into()), path, message).help(help));
         }
     }
-    let outline = outline(&root, &plan, &mut mistakes);
+    let outline = Outline { variants: plan.variants(), scenes: plan.scenes(), axes: plan.axes(), table };
+    check_outline(&root, &outline, &mut mistakes);
     let count = plan.count();
     let mut found: HashMap<Mistake, usize> = HashMap::new();
     let mut order: Vec<(Mistake, String)> = Vec::new();
@@ -394,43 +396,46 @@ fn check_variants(root: &Node, mistakes: &mut Vec<Mistake>) {
     mistakes.append(&mut checker.mistakes);
 }
 
-/// The axes of the study and the table of its kind, checked; the tables of other kinds are checked
-/// too, since they are part of the file.
-fn outline(root: &Node, plan: &Plan, mistakes: &mut Vec<Mistake>) -> Outline {
-    let top = root.table();
-    let text = |name: &str| top.and_then(|table| table.get(name)?.text()).unwrap_or("run");
-    let mut outline =
-        Outline { variants: plan.variants(), scenes: plan.scenes(), axes: plan.axes(), table: Map::new() };
-    let before = mistakes.len();
+/// The word after `kind`.
+fn kind_of(root: &Node) -> &str {
+    root.table().and_then(|table| table.get("kind")?.text()).unwrap_or("run")
+}
+
+/// The table of the study's kind, checked; a table of another kind is a mistake.
+fn kind_table(root: &Node, mistakes: &mut Vec<Mistake>) -> Map<String, Json> {
+    let (kind, mut own) = (kind_of(root), Map::new());
     for parameter in STUDY.iter().filter(|parameter| ["compare", "map"].contains(&parameter.name)) {
-        let Some(node) = top.and_then(|table| table.get(parameter.name)) else { continue };
+        let name = parameter.name;
+        let Some(node) = root.table().and_then(|table| table.get(name)) else { continue };
         let mut checker = Checker::new(root);
-        let value = checker.check(node, &parameter.shape, parameter.name);
+        let value = checker.check(node, &parameter.shape, name);
         mistakes.append(&mut checker.mistakes);
-        if text("kind") == parameter.name {
-            outline.table = value.as_ref().and_then(Json::as_object).cloned().unwrap_or_default();
+        if kind == name {
+            own = value.as_ref().and_then(Json::as_object).cloned().unwrap_or_default();
         } else {
-            let message =
-                format!("is only read by kind = \"{}\", but the kind is \"{}\"", parameter.name, text("kind"));
-            let help = format!("write kind = \"{}\", or remove this table", parameter.name);
-            mistakes.push(Mistake::new(&root.place(parameter.name), parameter.name, message).help(help));
+            let message = format!("is only read by kind = \"{name}\", but the kind is \"{kind}\"");
+            let help = format!("write kind = \"{name}\", or remove this table");
+            mistakes.push(Mistake::new(&root.place(name), name, message).help(help));
         }
     }
-    if mistakes.len() == before
-        && let Some(kind) = crate::kinds::kind(text("kind"))
-    {
-        mistakes.extend(kind.check(&outline).into_iter().map(|issue| {
-            let mut mistake = Mistake::new(&root.place(&issue.path), issue.path, issue.message);
-            mistake.help = issue.help;
-            mistake
-        }));
-    }
-    outline
+    own
+}
+
+/// What the study's kind finds wrong with its axes and its table.
+fn check_outline(root: &Node, outline: &Outline, mistakes: &mut Vec<Mistake>) {
+    let Some(kind) = crate::kinds::kind(kind_of(root)) else { return };
+    mistakes.extend(kind.check(outline).into_iter().map(|issue| {
+        let mut mistake = Mistake::new(&root.place(&issue.path), issue.path, issue.message);
+        mistake.help = issue.help;
+        mistake
+    }));
 }
 
 fn describe_case(case: &Expanded) -> String {
     let variant = case.variant.iter().map(|name| format!("variant \"{name}\""));
-    variant.chain(case.parameters.iter().map(|(key, value)| format!("{key} = {value}"))).collect::<Vec<_>>().join(", ")
+    let scene = case.scene.iter().map(|name| format!("scene \"{name}\""));
+    let swept = case.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+    variant.chain(scene).chain(swept).collect::<Vec<_>>().join(", ")
 }
 
 /// The mistakes of one case, gathered while it is built.

@@ -100,9 +100,11 @@ impl Plan {
         self.axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str())
     }
 
-    /// Keys of each axis of the sweep.
-    pub fn axes(&self) -> Vec<Vec<String>> {
-        self.axes.iter().map(|axis| axis.keys.iter().map(|(key, _)| key.clone()).collect()).collect()
+    /// Each axis of the sweep: its keys, and whether the values of the first are numbers.
+    pub fn axes(&self) -> Vec<(Vec<String>, bool)> {
+        let keys = |axis: &Axis| axis.keys.iter().map(|(key, _)| key.clone()).collect();
+        let numbers = |axis: &Axis| axis.values.iter().all(|step| step[0].number().is_some());
+        self.axes.iter().map(|axis| (keys(axis), numbers(axis))).collect()
     }
 
     /// Names of the variants; empty where the study has none.

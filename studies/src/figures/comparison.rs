@@ -133,10 +133,12 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     Some(canvas.finish(width, legend + 20.0))
 }
 
-/// The load factor of the reference and what voices without a collapse say.
+/// The load factor of the reference, and what voices without a collapse say.
 fn row_remarks(comparison: &Comparison, row: &ComparisonRow) -> String {
     let reference = comparison.voices.iter().position(|voice| *voice == comparison.reference);
-    let base = reference.and_then(|i| row.cells.get(i)?.load_factor).map(|x| format!("1 = {}", format_number(x, 4)));
+    let base = reference
+        .and_then(|i| row.cells.get(i)?.load_factor)
+        .map(|x| format!("{} = {}", comparison.reference, format_number(x, 4)));
     let others = row.cells.iter().zip(&comparison.voices).filter_map(|(cell, voice)| {
         let words = remark(cell);
         (!words.is_empty()).then(|| format!("{voice}: {words}"))

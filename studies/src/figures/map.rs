@@ -1,6 +1,7 @@
 //! The figure of a map: regions of mechanisms and contours of a ratio over two swept numbers.
 
 use super::axes::{Axis, Canvas, round_values};
+use super::comparison::open_bracket;
 use super::format::{format_short, kind_words, status_word};
 use super::lettering::{Spot, text_width, wrapped};
 use crate::results::{Comparison, ComparisonCell, MapAxes};
@@ -147,6 +148,17 @@ pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
         words += &format!("; red dots: {missing} without a ratio");
     }
     canvas.text([40.0, legend], &words, 13.0, "start");
+    let base = voice(&comparison.reference)?;
+    let open = comparison.rows.iter().filter(|row| open_bracket(&row.cells[base]).is_some()).count();
+    if open > 0 {
+        legend += 22.0;
+        let words = format!(
+            "at {open} of {} points \"{}\" may be lower than the load found, and the ratio greater",
+            nx * ny,
+            comparison.reference
+        );
+        canvas.text([40.0, legend], &words, 13.0, "start");
+    }
     Some(canvas.finish(width, legend + 18.0))
 }
 

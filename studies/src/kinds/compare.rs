@@ -53,7 +53,8 @@ voussoir_core::inventory::submit! {
 pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Issue> {
     let mut issues = Vec::new();
     if outline.variants.len() < 2 {
-        let message = format!("\"{kind}\" sets variants beside each other, but there are {}", outline.variants.len());
+        let message =
+            format!("\"{kind}\" sets variants beside each other, but the study has {}", outline.variants.len());
         issues.push(
             Issue::new("kind", message).help("give at least two [[variants]], each with a law or a solver of its own"),
         );

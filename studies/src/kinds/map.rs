@@ -67,8 +67,14 @@ impl StudyKind for Map {
     fn check(&self, outline: &Outline) -> Vec<Issue> {
         let mut issues = check_voices("map", outline, &["reference", "contours", "regions"]);
         if outline.axes.len() != 2 {
-            let message = format!("\"map\" needs two axes in [sweep], but there are {}", outline.axes.len());
+            let message = format!("\"map\" needs two axes, but [sweep] has {}", outline.axes.len());
             issues.push(Issue::new("kind", message).help("the first axis is drawn along x, the second along y"));
+        }
+        for (keys, _) in outline.axes.iter().filter(|(_, numbers)| !numbers) {
+            let key = keys.first().map_or("", String::as_str);
+            let path = format!("sweep.\"{key}\"");
+            issues
+                .push(Issue::new(path, "takes texts, which are no coordinates").help("sweep a number without a unit"));
         }
         issues
     }
@@ -78,14 +84,13 @@ impl StudyKind for Map {
         let reference = outline.variant("reference").unwrap_or(0);
         let other = usize::from(reference == 0);
         let mut comparison = beside_each_other(study, cases, reference)?;
-        let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|keys| keys.first()).cloned());
+        let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
         let (x, y) = (x?, y?);
         let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
             Some(text) => text.to_string(),
             None => key_with_unit(key),
         };
         let name = |key: &str, otherwise: usize| outline.variants[outline.variant(key).unwrap_or(otherwise)].clone();
-        // A text is no coordinate: then there is a table, but no map.
         if let (Some(x_values), Some(y_values)) = (values(study, &x), values(study, &y)) {
             comparison.map = Some(MapAxes {
                 x_label: label("x_label", &x),
