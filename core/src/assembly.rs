@@ -197,6 +197,13 @@ impl Assembly {
         self.catalogue.materials[self.bodies[body].material].1.deformability() == Deformability::Rigid
     }
 
+    /// Whether some free block deforms or some joint is compliant.
+    pub fn deforms(&self) -> bool {
+        let soft = |body: usize| !self.bodies[body].fixed && !self.is_rigid(body);
+        (0..self.bodies.len()).any(soft)
+            || self.joints.iter().any(|j| self.law(j).is_some_and(|law| law.stiffness().is_some()))
+    }
+
     /// Diagonal of the box around everything \[m\].
     pub fn size(&self) -> f64 {
         let points = self.bodies.iter().flat_map(|b| &b.vertices).chain(self.joints.iter().flat_map(|j| &j.ends));

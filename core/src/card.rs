@@ -15,6 +15,8 @@ pub enum Capability {
     Response,
     /// The bulk material gives stresses from strains at a point, with state.
     StressUpdate,
+    /// The material is linear elastic, or rigid.
+    Linear,
     /// Bodies may be read as rigid without changing the answer.
     RigidLimit,
     /// Equilibrium in displaced positions.
@@ -30,6 +32,7 @@ impl Capability {
             Capability::Facets => "facets",
             Capability::Response => "tractions from gaps",
             Capability::StressUpdate => "stresses from strains at a point",
+            Capability::Linear => "a linear law",
             Capability::RigidLimit => "a rigid limit",
             Capability::FiniteDisplacements => "finite displacements",
             Capability::Settlement => "settlements",

@@ -80,7 +80,7 @@ voussoir_core::inventory::submit! {
             POISSON_RATIO,
             DENSITY,
         ],
-        provides: &[Capability::RigidLimit, Capability::StressUpdate],
+        provides: &[Capability::RigidLimit, Capability::Linear, Capability::StressUpdate],
         requires: &[],
         sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
         file: file!(),

@@ -42,7 +42,7 @@ voussoir_core::inventory::submit! {
         tag: "rigid",
         summary: "blocks that do not deform",
         parameters: &[DENSITY],
-        provides: &[Capability::RigidLimit],
+        provides: &[Capability::RigidLimit, Capability::Linear],
         requires: &[],
         sources: &["Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),

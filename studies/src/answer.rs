@@ -76,10 +76,8 @@ pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)>
         Choice::Path(tag, solver) => Some((tag.clone(), solver.clone())),
         Choice::Auto => {
             let assembly = question.assembly;
-            let deforms = (0..assembly.bodies.len()).any(|b| !assembly.bodies[b].fixed && !assembly.is_rigid(b))
-                || assembly.joints.iter().any(|j| assembly.law(j).is_some_and(|law| law.stiffness().is_some()));
             let settles = question.stages.iter().any(|stage| !stage.settlements.is_empty());
-            if !deforms && !question.settings.finite && !settles {
+            if !assembly.deforms() && !question.settings.finite && !settles {
                 return None;
             }
             let facets =

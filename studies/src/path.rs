@@ -70,8 +70,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     for (name, value) in &watch.worst {
         certificate.residuals.insert((*name).into(), *value);
         let bound = TOLERANCES.iter().find(|(n, _)| n == name).map(|(_, t)| *t);
-        // Written so that NaN fails.
-        if bound.is_some_and(|bound| !(*value <= bound)) {
+        if bound.is_some_and(|bound| value.is_nan() || *value > bound) {
             certificate.passed = false;
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
@@ -94,7 +93,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     if let (Some(motion), false) = (&solved.motion, question.settings.finite) {
         let flow = flow_residual(problem, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
-        if !(flow <= 1e-6) {
+        if flow.is_nan() || flow > 1e-6 {
             certificate.passed = false;
             certificate.failures.push(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
         }
@@ -276,8 +275,8 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
             let power: f64 = p.iter().flatten().zip(rates.iter().flatten()).map(|(p, v)| p * v).sum();
             expect((power - 1.0).abs() <= 1e-6, "the mechanism is not scaled to p·q̇ = 1");
         }
-        let unique = result.mechanism.as_ref().and_then(|m| m.unique);
-        let found = mechanism(assembly, &velocities, unique, FlowReading::Own);
+        let found =
+            mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique), FlowReading::Own);
         let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }

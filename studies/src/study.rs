@@ -739,7 +739,8 @@ fn choose_solver(
             let missing: Vec<_> =
                 asked.iter().filter(|need| concerns(**need) == kind && !card.provides.contains(need)).collect();
             for need in missing {
-                let able = solvers_that(|solver| !solver.requires.contains(need));
+                let takes = |need: &Capability| concerns(*need) != kind || card.provides.contains(need);
+                let able = solvers_that(|solver| solver.requires.iter().all(takes));
                 let message = format!(
                     "solver \"{tag}\" needs {}, which {} \"{law}\" of [{table}.{name}] does not give",
                     need.describe(),
@@ -750,6 +751,7 @@ fn choose_solver(
             }
         }
     }
+    needs_deformation(builder, resolved, assembly, chosen, kinematics);
     let own = |key: &str| chosen.is_some_and(|card| card.parameters.iter().any(|p| p.name == key));
     let mut table = solver.as_object()?.clone();
     table.retain(|key, _| key == "solver" || own(key));
@@ -765,10 +767,47 @@ fn choose_solver(
     })
 }
 
+/// What only a path answers needs something that deforms, and no limit analysis.
+fn needs_deformation(
+    builder: &mut Builder<'_>,
+    resolved: &Map<String, Json>,
+    assembly: Option<&Assembly>,
+    chosen: Option<&Card>,
+    kinematics: Kinematics,
+) {
+    let limit = chosen.is_some_and(|card| card.kind == PluginKind::LimitSolver);
+    let path = chosen.is_some_and(|card| card.kind == PluginKind::PathSolver);
+    let rigid = assembly.is_some_and(|assembly| !assembly.deforms());
+    let help = "give a material a young_modulus (law = \"elastic\") or a joint law a normal_stiffness";
+    let reason = "all blocks are rigid and no joint is compliant: there is no path before the collapse";
+    let stages = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    for (index, stage) in stages.iter().enumerate() {
+        if stage["settlement"].as_array().is_none_or(Vec::is_empty) {
+            continue;
+        }
+        let at = format!("stages.{index}.settlement");
+        if limit {
+            let help = "remove the settlement, or take a path solver: event_path, newton_path";
+            builder.wrong(&at, "limit analysis of rigid blocks knows loads only", help);
+        } else if rigid {
+            builder.wrong(&at, reason, help);
+        }
+    }
+    if rigid && kinematics == Kinematics::Finite && !limit {
+        builder.wrong("solver.kinematics", reason, help);
+    } else if rigid && path {
+        builder.wrong(
+            "solver.solver",
+            reason,
+            "take limit analysis, or give a material a young_modulus (law = \"elastic\")",
+        );
+    }
+}
+
 /// Which kind of law a capability is asked of.
 fn concerns(capability: Capability) -> PluginKind {
     match capability {
-        Capability::RigidLimit | Capability::StressUpdate => PluginKind::BulkMaterial,
+        Capability::RigidLimit | Capability::Linear | Capability::StressUpdate => PluginKind::BulkMaterial,
         _ => PluginKind::InterfaceLaw,
     }
 }

@@ -122,6 +122,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         }
     });
     let own = (non_associated && result.flow_read_as.is_none()) || result.associated_load_factor.is_some();
+    expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
     let associated_motion =
         result.associated_motion.as_deref().map(|motion| velocities(assembly, motion)).transpose()?;
     let claim = Claim {

@@ -92,9 +92,18 @@ fn the_program_explains_itself() {
     let output = voussoir(&["list"]);
     assert_eq!(code(&output), 0);
     let listed = String::from_utf8_lossy(&output.stdout).into_owned();
-    for tag in
-        ["unilateral", "coulomb_associated", "mohr_coulomb", "elastic", "arch", "wall", "limit_chain", "limit_conic"]
-    {
+    for tag in [
+        "unilateral",
+        "coulomb_associated",
+        "mohr_coulomb",
+        "elastic",
+        "arch",
+        "wall",
+        "limit_chain",
+        "limit_conic",
+        "limit_least",
+        "limit_sequential",
+    ] {
         assert!(listed.contains(tag), "{tag}");
         assert_eq!(code(&voussoir(&["explain", tag])), 0, "{tag}");
     }

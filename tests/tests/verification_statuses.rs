@@ -145,11 +145,17 @@ fn zero_friction_is_frictionless() {
     }
 }
 
-/// A non-associated law is read with associated flow, and the result says so.
+/// A non-associated law is read with its own flow; a solver that reads it as associated says so.
 #[test]
 fn non_associated_friction_is_flagged() {
-    let result = answered(&block("law = \"coulomb\"\nfriction = 0.6", "10.0", &push(1.0, ""), "auto"));
-    assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
-    assert!(result.notes.iter().any(|note| note.contains("upper bound")));
+    let coulomb = "law = \"coulomb\"\nfriction = 0.6";
+    let own = answered(&block(coulomb, "10.0", &push(1.0, ""), "auto"));
+    assert_eq!((own.solver.as_str(), own.flow_read_as.as_deref()), ("limit_least", None));
+    assert_close(own.load_factor.expect("a collapse"), 5.0, 1e-12);
+    for solver in SOLVERS {
+        let result = answered(&block(coulomb, "10.0", &push(1.0, ""), solver));
+        assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
+        assert!(result.notes.iter().any(|note| note.contains("upper bound")));
+    }
     assert_eq!(answered(&block(ROUGH, "10.0", &push(1.0, ""), "auto")).flow_read_as, None);
 }

@@ -67,8 +67,7 @@ impl Watch {
         }
         let deformation = deformation.max(1e-300);
         if !self.finite {
-            for (w, body) in wrench.iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
-                let _ = body;
+            for (w, _) in wrench.iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
                 self.note("path_equilibrium", w[0].hypot(w[1]).max(w[2].abs() / problem.length) / size.max(1e-300));
             }
             problem.small_gaps(state, &mut gaps);
@@ -111,10 +110,8 @@ impl PathObserver for Watch {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
         self.states += 1;
         self.check(problem, state);
-        if self.curve.is_empty() || self.last.is_none_or(|(drive, _)| drive == state.drive) {
-            if state.drive + 1 == problem.drives.len() {
-                self.curve.push([state.displacement, state.factor]);
-            }
+        if state.drive + 1 == problem.drives.len() {
+            self.curve.push([state.displacement, state.factor]);
         }
         true
     }

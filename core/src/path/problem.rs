@@ -200,7 +200,7 @@ impl PathProblem {
             problem.facets.push(law.formulation().facets().unwrap_or_default());
         }
         problem.contact_points(assembly, &elastic)?;
-        problem.drives(assembly, stages, &elastic)?;
+        problem.drives(stages, &elastic)?;
         problem.condense(assembly, &elastic)?;
         Ok(problem)
     }
@@ -294,7 +294,7 @@ impl PathProblem {
         }
     }
 
-    fn drives(&mut self, assembly: &Assembly, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+    fn drives(&mut self, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
         let mut gravity = Vec2::zeros();
         for (index, stage) in stages.iter().enumerate() {
             let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);
@@ -347,7 +347,6 @@ impl PathProblem {
         if self.drives.is_empty() {
             return Err("no stage has a load".into());
         }
-        let _ = assembly;
         Ok(())
     }
 

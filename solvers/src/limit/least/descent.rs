@@ -95,8 +95,8 @@ impl Descent<'_> {
             let slack = Self::read(self.statics, self.pairs);
             let yields: Vec<bool> = slack.iter().map(|s| *s == 0.0).collect();
             for &without in &state.moving.clone() {
-                for i in 0..self.pairs {
-                    self.kinematics.fix(i, self.excluded[i] || !yields[i] || i == without);
+                for (i, yields) in yields.iter().enumerate() {
+                    self.kinematics.fix(i, self.excluded[i] || !yields || i == without);
                 }
                 if self.kinematics.feasible() != Feasibility::Point {
                     continue;

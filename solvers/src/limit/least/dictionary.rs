@@ -189,6 +189,14 @@ impl Dictionary {
         }
     }
 
+    /// What one unit of a variable costs at the vertex that [`Self::minimise`] reached.
+    pub fn reduced_cost(&self, variable: usize) -> f64 {
+        match self.place[variable] {
+            Place::Column(c) => self.cost[c],
+            Place::Row(_) | Place::Absent => 0.0,
+        }
+    }
+
     /// Whether a variable is zero because it is not in the basis.
     pub fn at_zero(&self, variable: usize) -> bool {
         matches!(self.place[variable], Place::Column(_))

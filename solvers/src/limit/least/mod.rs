@@ -7,7 +7,7 @@ pub(super) mod dictionary;
 mod search;
 
 use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
-use super::systems::Systems;
+use super::systems::{LARGEST, Systems};
 use super::{associated, combined};
 use bracket::{GAP, Work, bracket, dissipations};
 use descent::{Descent, State};
@@ -21,8 +21,6 @@ use voussoir_core::units::Quantity;
 
 /// Work of the search where it is not given.
 const SEARCH_LIMIT: f64 = 4.0;
-/// Entries of the equations beyond which neither local search nor proof is tried.
-const LARGEST: usize = 1_500_000;
 /// Starts of the local search.
 const STARTS: usize = 24;
 /// A state counts when its field and multipliers are right to this.
@@ -62,7 +60,7 @@ voussoir_core::inventory::submit! {
             .default("4.0"),
         ],
         provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &[
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
@@ -102,7 +100,7 @@ impl Least<'_> {
         if s.pairs.iter().any(|p| p.non_associated() && (p.openings.len() != 2 || p.relief < 0.0)) {
             return Err("a joint whose flow is read by its law has no opening rows: no lower bound is proved".into());
         }
-        let entries = (s.equilibrium.len() + s.pairs.len()) * (s.forces + s.pairs.len());
+        let entries = s.entries();
         if entries > LARGEST {
             return Err(format!(
                 "the scene is too large for the search ({entries} entries of {LARGEST}): no lower bound is proved"
@@ -207,29 +205,28 @@ impl LimitSolver for LimitLeast {
         let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
         let most = associated_theta.unwrap_or((max - start) / unit);
         let mut best = least.first(&answer, start);
-        let mut gamma = best.as_ref().map(|b| least.systems.multipliers(problem, &b.1.motion));
-        let searchable = least.searchable();
-        if searchable.is_err() || best.is_none() {
-            let from = answer.field.clone().unwrap_or_default();
-            match sequence(problem, &base, &from, &mut answer.counters) {
-                Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
-                    gamma = Some(least.systems.multipliers(problem, &state.motion));
-                    best = Some((state.factor / unit, state));
-                }
-                Sequence::Converged(_) => {}
-                Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
-            }
-        }
         let mut lower = 0.0;
-        match searchable {
+        match least.searchable() {
             Err(why) => answer.notes.push(why),
             Ok(()) => {
                 let most = best.as_ref().map_or(most, |b| b.0.min(most));
                 if most > 0.0 {
-                    let found = least.local(most, gamma);
+                    let from = answer.motion.as_ref().map(|motion| least.systems.multipliers(problem, motion));
+                    let found = least.local(most, from);
                     least.take(found.map(|state| state.moving), &mut best);
                 }
                 lower = least.prove(self.search_limit, most, &mut best);
+            }
+        }
+        // Where something lower is not excluded, the sequence may know it.
+        if best.as_ref().is_none_or(|b| lower < b.0 * (1.0 - 2.0 * GAP)) {
+            let from = answer.field.clone().unwrap_or_default();
+            match sequence(problem, &base, &from, &mut answer.counters) {
+                Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
+                    best = Some((state.factor / unit, state));
+                }
+                Sequence::Converged(_) => {}
+                Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
             }
         }
         for (name, count) in [

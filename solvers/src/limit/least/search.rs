@@ -98,16 +98,16 @@ impl Search {
     }
 
     fn is_true(&self, l: Literal) -> bool {
-        self.value[pair_of(l)] == Some(l % 2 == 0)
+        self.value[pair_of(l)] == Some(l.is_multiple_of(2))
     }
 
     fn assign(&mut self, l: Literal, cause: Option<usize>) {
         let pair = pair_of(l);
-        self.value[pair] = Some(l % 2 == 0);
+        self.value[pair] = Some(l.is_multiple_of(2));
         self.level[pair] = self.limits.len();
         self.cause[pair] = cause;
         self.trail.push(pair);
-        if l % 2 == 0 {
+        if l.is_multiple_of(2) {
             self.statics.fix(pair, true);
         } else {
             self.kinematics.fix(pair, true);
@@ -322,7 +322,7 @@ impl Search {
         self.statics.work() + self.kinematics.work()
     }
 
-    /// Goes on until something is found, nothing is left, or `most` work is done.
+    /// Goes on until something is found, nothing is left, or the work in all reaches `most`.
     pub fn run(&mut self, most: u64) -> Ending {
         loop {
             if self.empty {

@@ -1,7 +1,8 @@
 //! `limit_sequential`: a non-associated load by sequential linear programming.
 #![doc = include_str!("limit_sequential.md")]
 
-use super::systems::Systems;
+use super::least::dictionary::Feasibility;
+use super::systems::{LARGEST, Systems};
 use super::{Greatest, associated, combined, conic};
 use crate::limit::Engine;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ use voussoir_core::schema::PluginKind;
 
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
-pub const TOLERANCE: f64 = 1e-7;
+pub const TOLERANCE: f64 = 1e-6;
 /// Greatest number of programs.
 const PROGRAMS: usize = 120;
 /// A field moved onto the yield surface is admissible to this.
@@ -32,7 +33,7 @@ voussoir_core::inventory::submit! {
         summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
         parameters: &[],
         provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
         page: include_str!("limit_sequential.md"),
@@ -74,6 +75,33 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
     replaced
 }
 
+/// The program by the simplex method, which ends at a vertex of the fields; `None` in scenes too
+/// large for it, with joints that crush, or where rounding spoils it.
+fn at_vertex(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Option<Greatest> {
+    let systems = Systems::new(problem, base);
+    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return None;
+    }
+    let mut statics = systems.statics(None)?;
+    if statics.feasible() != Feasibility::Point {
+        return None;
+    }
+    let optimum = statics.minimise(&[(systems.theta(), -1.0)], 20_000);
+    *counters.entry("pivots".into()).or_default() += statics.pivots;
+    let (_, true) = optimum? else { return None };
+    let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
+    let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
+    let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
+    let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
+    let (motion, wrong) = systems.motion(problem, &moving)?;
+    (violation <= ADMISSIBLE && wrong <= 1e-11).then(|| Greatest::Collapse {
+        factor: z[systems.forces] * systems.unit,
+        field: systems.joint_forces(&z),
+        motion,
+        unique: false,
+    })
+}
+
 /// Runs the sequence from a field, that of associated flow by default.
 pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
     let systems = Systems::new(problem, base);
@@ -81,17 +109,21 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
     let mut last = f64::NAN;
     for step in 0..PROGRAMS {
         let replaced = fictitious(problem, &reference);
-        let mut engine = conic::engine(&replaced);
-        let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
         *counters.entry("linear_programs".into()).or_default() += 1;
-        for (name, count) in engine.counters() {
-            *counters.entry(name).or_default() += count;
-        }
+        let greatest = at_vertex(&replaced, base, counters).unwrap_or_else(|| {
+            let mut engine = conic::engine(&replaced);
+            let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+            for (name, count) in engine.counters() {
+                *counters.entry(name).or_default() += count;
+            }
+            greatest
+        });
         let (factor, field, motion) = match greatest {
             Greatest::Collapse { factor, field, motion, .. } => (factor, field, motion),
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
+        let steady = (factor - last).abs() <= TOLERANCE * factor.abs().max(TOLERANCE * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);
         let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
@@ -99,9 +131,13 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
         if worst.max(idle) <= TOLERANCE
-            && let Some(state) = settled(&systems, problem, (z, factor), &gamma, &moving)
+            && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
             return Sequence::Converged(state);
+        }
+        // Where fields are many the programs may wander among them at one factor.
+        if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
+            return Sequence::Converged(FlowState { factor, field, motion });
         }
         // Half way where full steps have not settled, then a quarter.
         let share = if step < 12 {
@@ -127,12 +163,38 @@ pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
     (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
 }
 
+/// A field at this factor, to the tolerance, in which all moving pairs yield.
+fn field_at(
+    systems: &Systems,
+    problem: &LimitProblem,
+    factor: f64,
+    moving: &[usize],
+) -> Option<(Vec<JointForce>, f64)> {
+    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return None;
+    }
+    let theta = factor / systems.unit;
+    let mut statics = systems.statics(Some(theta))?;
+    moving.iter().for_each(|&i| statics.fix(i, true));
+    if statics.feasible() != Feasibility::Point {
+        return None;
+    }
+    let (_, true) = statics.minimise(&[(systems.theta(), -1.0)], 20_000)? else { return None };
+    if statics.value(systems.theta()) < theta - TOLERANCE * theta.abs() {
+        return None;
+    }
+    let slacks: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.value(i).max(0.0)).collect();
+    let (z, violation) = systems.field_with(&slacks)?;
+    let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
+    let near = violation.max(idle) <= ADMISSIBLE && (z[systems.forces] - theta).abs() <= 2.0 * TOLERANCE * theta.abs();
+    near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+}
+
 /// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
 fn settled(
     systems: &Systems,
-    problem: &LimitProblem,
     (mut z, factor): (Vec<f64>, f64),
-    gamma: &[f64],
+    motion: Vec<Velocity>,
     moving: &[usize],
 ) -> Option<FlowState> {
     z.push(factor / systems.unit);
@@ -145,8 +207,6 @@ fn settled(
         .into_iter()
         .filter_map(|yielding| systems.field(&yielding, z.clone()))
         .find(|(_, violation)| *violation <= ADMISSIBLE)?;
-    let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
-    let (motion, _) = systems.motion(problem, &moves)?;
     Some(FlowState { factor: z[systems.forces] * systems.unit, field: systems.joint_forces(&z), motion })
 }
 

@@ -54,8 +54,8 @@ impl Base {
                     let facet = &system.facets[c].as_ref()?[*f];
                     entries.extend((0..2).map(|i| (2 * c, 2 * c + i, -facet.normal[i])));
                     let n = across(facet.flow);
-                    for i in 0..2 {
-                        gap_row(c, i, 2 * c + 1, n[i], &mut entries);
+                    for (i, n) in n.into_iter().enumerate() {
+                        gap_row(c, i, 2 * c + 1, n, &mut entries);
                     }
                 }
             }

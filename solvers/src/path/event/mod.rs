@@ -49,7 +49,7 @@ voussoir_core::inventory::submit! {
         summary: "exact path of elastic blocks and facet laws, small displacements, from event to event, to rounding",
         parameters: &[],
         provides: &[Capability::Settlement],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::Linear],
         sources: &[
             "Klarbring 1990, Ingenieur-Archiv 60, 529-541 (the frictional rate problem)",
             "Maier 1970, Meccanica 5, 54-66 (piecewise linear laws as complementarity problems)",

@@ -448,34 +448,45 @@ impl RateProblem<'_> {
             let moves = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
             let largest = unit.iter().copied().fold(0.0, f64::max);
             let still = w.amax() <= PIVOTING * z_size && z.iter().all(|z| *z >= -PIVOTING * z_size);
-            if !still || moves * largest <= PIVOTING * z_size || (!associated && q.dot(&DVector::from_vec(z)) > 0.0) {
+            if !still
+                || moves * largest <= PIVOTING * z_size
+                || (!associated && q.dot(&DVector::from_vec(z.clone())) > 0.0)
+            {
                 return None;
             }
-            let pieces = gaps.iter().map(|g| if g[0].hypot(g[1]) > 0.0 { Piece::Free } else { Piece::Stick }).collect();
+            let pieces = self.read(&facets, |i| z[i] > 1e-8 * z_size);
+            // What does not flow does not move, not even by rounding.
+            for (gap, _) in gaps.iter_mut().zip(&pieces).filter(|(_, piece)| **piece == Piece::Stick) {
+                *gap = [0.0; 2];
+            }
             return Some(Pivoted::Ray(Rate { factor: 0.0, pieces, gaps }));
         }
         let w = &q + &m * DVector::from_vec(z.clone());
         let w_size = w.amax().max(1e-300);
+        let pieces = self.read(&facets, |i| z[i] / z_size > (w[i] / w_size).max(1e-12));
+        Some(Pivoted::Guess(pieces))
+    }
+
+    /// Pieces from which facets (point, index) flow.
+    fn read(&self, facets: &[(usize, usize)], flows: impl Fn(usize) -> bool) -> Vec<Piece> {
         let mut pieces = vec![Piece::Stick; self.points.len()];
-        for (i, (k, f)) in facets.iter().enumerate() {
-            if z[i] / z_size <= (w[i] / w_size).max(1e-12) {
-                continue;
-            }
-            let opens = facet(i).mode == FacetMode::Opening;
+        for (_, (k, f)) in facets.iter().enumerate().filter(|(i, _)| flows(*i)) {
+            let point = &self.points[*k];
+            let opens = point.facets[*f].mode == FacetMode::Opening;
             pieces[*k] = match pieces[*k] {
-                Piece::Stick if self.points[*k].apex && opens => Piece::Free,
+                Piece::Stick if point.apex && opens => Piece::Free,
                 Piece::Stick => Piece::Facet(*f),
-                _ if self.points[*k].apex => Piece::Free,
+                _ if point.apex => Piece::Free,
                 Piece::Facet(other) => Piece::Corner(other, *f),
                 kept => kept,
             };
         }
-        Some(Pivoted::Guess(pieces))
+        pieces
     }
 
     /// Associated flow makes the problem monotone: from its solution the flow is turned step by step
     /// into the law's own.
-    fn from_associated(&self, counters: &mut u64) -> Option<Rate> {
+    fn turned_from_associated(&self, counters: &mut u64) -> Option<Rate> {
         let Some(Pivoted::Guess(mut pieces)) = self.pivoted(true, counters) else { return None };
         for own in [0.0, 0.25, 0.5, 0.7, 0.85, 0.95, 1.0] {
             let turned =
@@ -513,7 +524,7 @@ impl RateProblem<'_> {
                 Some(Pivoted::Ray(rate)) => return Verdict::Found(rate, None),
                 None => {}
             }
-            if let Some(rate) = self.from_associated(counters) {
+            if let Some(rate) = self.turned_from_associated(counters) {
                 return Verdict::Found(rate, None);
             }
             return Verdict::Undecided(combinations);

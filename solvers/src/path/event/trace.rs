@@ -162,7 +162,7 @@ impl<'a> Tracer<'a> {
 
     /// Follows all drives.
     pub fn run(mut self) -> PathAnswer {
-        let greatest_events = 400 + 60 * self.system.contacts;
+        let greatest_events = 400 + 40 * self.system.contacts;
         for drive in 0..self.problem.drives.len() {
             self.drive = drive;
             let end = self.problem.drives[drive].end;
@@ -187,7 +187,7 @@ impl<'a> Tracer<'a> {
             while (target - self.factor) * sense > 0.0 {
                 steps += 1;
                 if steps > greatest_events {
-                    return self.stalled(format!("{greatest_events} events without an end"));
+                    return self.lost(format!("{greatest_events} events without an end"));
                 }
                 let (direction, falling) = match self.direction(&load) {
                     Next::Go(direction) => (direction, false),
@@ -199,7 +199,7 @@ impl<'a> Tracer<'a> {
                         ));
                         return self.ended();
                     }
-                    Next::Lost(why) => return self.stalled(why),
+                    Next::Lost(why) => return self.lost(why),
                 };
                 if falling && self.limit_point.is_none() {
                     self.limit_point = Some(self.state());
@@ -246,6 +246,15 @@ impl<'a> Tracer<'a> {
 
     fn ended(self) -> PathAnswer {
         self.finish(Status::LimitPoint, None, None, None)
+    }
+
+    /// The path cannot be followed further: an answer where a limit point is proven already.
+    fn lost(mut self, why: String) -> PathAnswer {
+        if self.limit_point.is_some() {
+            self.notes.push(format!("the branch behind the limit point was not followed to an end: {why}"));
+            return self.ended();
+        }
+        self.stalled(why)
     }
 
     fn stalled(self, why: String) -> PathAnswer {
@@ -441,15 +450,16 @@ impl<'a> Tracer<'a> {
     /// The direction with gaps of all points; those of settled points are made exact.
     fn completed(&mut self, mut x: Vec<f64>, factor: f64, load: &Load) -> Direction {
         let mut gaps = self.system.gaps(&x);
-        if factor == 0.0 {
-            // In a mechanism forces stand still; what is left of them is rounding.
-            let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a: f64, b| a.max(b.abs()));
-            let forces = 2 * self.system.contacts;
-            let still = size(&mut x[..forces].iter().copied()) < MECHANISM * size(&mut gaps.iter().flatten().copied());
-            if still {
-                x[..forces].fill(0.0);
-                gaps = self.system.gaps(&x);
-            }
+        // In a mechanism forces and λ stand still; what is left of them beside the motion is rounding.
+        let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let forces = 2 * self.system.contacts;
+        let mut factor = factor;
+        let stiffest = self.points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
+        let still = if factor == 0.0 { 100.0 * MECHANISM * stiffest } else { MECHANISM };
+        if largest(&x[..forces]) < still * largest(&x[forces..]) {
+            factor = 0.0;
+            x[..forces].fill(0.0);
+            gaps = self.system.gaps(&x);
         }
         for (c, gap) in gaps.iter_mut().enumerate() {
             (0..2).for_each(|i| gap[i] += factor * load.gap[c][i]);
@@ -595,14 +605,14 @@ impl<'a> Tracer<'a> {
         self.applied[self.drive] += sense * step * direction.factor;
         let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut events = Vec::new();
-        for c in 0..self.points.len() {
+        for (c, opening_rate) in openings.into_iter().enumerate() {
             let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
             let Some(facets) = &self.system.facets[c] else { continue };
             let was_open = self.points[c].open();
             let was_hit = std::mem::take(&mut self.points[c].hit);
             let point = &mut self.points[c];
             point.opening = if was_open || matches!(point.piece, Piece::Free | Piece::Facet(_) | Piece::Corner(..)) {
-                (point.opening + step * openings[c]).max(0.0)
+                (point.opening + step * opening_rate).max(0.0)
             } else {
                 0.0
             };
@@ -664,7 +674,7 @@ impl<'a> Tracer<'a> {
                 }
                 let force = [self.x[2 * c], self.x[2 * c + 1]];
                 // At the apex all facets meet.
-                if point.apex && facets[f].mode == FacetMode::Opening || (point.apex && force[0].abs() <= SAME) {
+                if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SAME) {
                     point.active = (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
                     point.piece = Piece::Free;
                 } else {

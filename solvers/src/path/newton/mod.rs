@@ -53,7 +53,7 @@ voussoir_core::inventory::submit! {
         summary: "steps by semismooth Newton: any facets, small or finite displacements, peaks and falling branches",
         parameters: &[],
         provides: &[Capability::FiniteDisplacements, Capability::Settlement],
-        requires: &[Capability::Facets],
+        requires: &[Capability::Facets, Capability::Linear],
         sources: &[
             "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",
