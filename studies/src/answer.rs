@@ -147,6 +147,7 @@ pub(crate) fn stalled(why: String) -> CaseResult {
     CaseResult {
         id: 0,
         variant: None,
+        scene: None,
         parameters: serde_json::Map::new(),
         status: Status::Stalled,
         load_factor: None,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use voussoir_core::certificate::Certificate;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::mechanism::Mechanism;
+use voussoir_core::mechanism::{Mechanism, MechanismKind};
 use voussoir_core::path::Happening;
 
 /// All results of a study.
@@ -15,6 +15,76 @@ pub struct StudyResults {
     pub version: String,
     /// One entry per case, by `id`.
     pub cases: Vec<CaseResult>,
+    /// Of `kind = "compare"` and `"map"`: the cases beside each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+}
+
+/// The cases of a study beside each other: a row for each scene and swept value, a column for each
+/// variant (a *voice*: a law with a solver).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// The voice that the others are divided by.
+    pub reference: String,
+    /// Names of the columns.
+    pub voices: Vec<String>,
+    /// Scenes outermost, then the axes of the sweep.
+    pub rows: Vec<ComparisonRow>,
+    /// Of a map: the swept keys along x and y; rows run through x slowest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<MapAxes>,
+}
+
+/// What all voices say of one scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComparisonRow {
+    /// Name of the scene, where there are several.
+    pub scene: Option<String>,
+    /// Swept key → value.
+    pub parameters: serde_json::Map<String, serde_json::Value>,
+    /// One per voice.
+    pub cells: Vec<ComparisonCell>,
+}
+
+/// What one voice says of one scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComparisonCell {
+    /// Id of the case.
+    pub case: usize,
+    /// How it ends; `null` where it was not answered.
+    pub status: Option<Status>,
+    /// The collapse factor.
+    pub load_factor: Option<f64>,
+    /// \[proved lower, found upper\].
+    pub bounds: Option<[f64; 2]>,
+    /// The factor over that of the reference; `null` where one of them is missing or the reference is 0.
+    pub ratio: Option<f64>,
+    /// Kind of the mechanism.
+    pub mechanism: Option<MechanismKind>,
+    /// `"associated"` where a non-associated law was read so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_read_as: Option<String>,
+}
+
+/// The axes of a map and what is drawn over them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapAxes {
+    /// Swept key along x.
+    pub x: String,
+    /// Its values.
+    pub x_values: Vec<f64>,
+    /// Swept key along y.
+    pub y: String,
+    /// Its values.
+    pub y_values: Vec<f64>,
+    /// How the x axis is called.
+    pub x_label: String,
+    /// How the y axis is called.
+    pub y_label: String,
+    /// The voice whose ratio to the reference is drawn as contours.
+    pub contours: String,
+    /// The voice whose mechanisms are drawn as regions.
+    pub regions: String,
 }
 
 /// A contact force at a point of a joint \[N\].
@@ -84,6 +154,9 @@ pub struct CaseResult {
     pub id: usize,
     /// Name of the variant, if the study has variants.
     pub variant: Option<String>,
+    /// Name of the scene, where the study compares several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: serde_json::Map<String, serde_json::Value>,
     /// How it ends.

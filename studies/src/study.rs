@@ -124,8 +124,9 @@ static AXIS: Shape = Shape::Table(&[
 ]);
 static AXES: Shape = Shape::Either(&[AXIS, Shape::Map(&AXIS)]);
 
-static VARIANT: Shape = Shape::Table(&[
-    key("name", Shape::Text, Need::Required, "name of the variant, unique in the study"),
+/// A variant, and a scene of a comparison.
+pub(crate) static VARIANT: Shape = Shape::Table(&[
+    key("name", Shape::Text, Need::Required, "its name, unique in the study"),
     key("set", Shape::Map(&FREE), Need::Default("{}"), "dotted keys in quotes, with the values they take"),
 ]);
 
@@ -167,6 +168,18 @@ pub static STUDY: &[Parameter] = &[
         Need::Optional("no variants"),
         "each overrides any keys",
     ),
+    key(
+        "compare",
+        Shape::Table(crate::kinds::compare::KEYS),
+        Need::Optional("one scene"),
+        "what kind = \"compare\" sets beside each other",
+    ),
+    key(
+        "map",
+        Shape::Table(crate::kinds::map::KEYS),
+        Need::Optional("the first two variants are compared"),
+        "what kind = \"map\" draws",
+    ),
     key("output", OUTPUT, Need::Default("{}"), "what is written besides the results"),
 ];
 
@@ -205,6 +218,8 @@ pub struct Case {
     pub id: usize,
     /// Name of its variant, if the study has variants.
     pub variant: Option<String>,
+    /// Name of its scene, where the study compares several.
+    pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: Map<String, Json>,
     /// Bodies and joints.
@@ -232,6 +247,27 @@ pub struct Output {
     pub vtu: bool,
 }
 
+/// The axes of a study, outermost first, and what its kind is told.
+#[derive(Debug, Clone, Default)]
+pub struct Outline {
+    /// Names of the variants; empty where there are none.
+    pub variants: Vec<String>,
+    /// Names of the scenes compared; empty where there is only one.
+    pub scenes: Vec<String>,
+    /// Keys of each axis of the sweep, which change together, and whether the first takes numbers.
+    pub axes: Vec<(Vec<String>, bool)>,
+    /// The table named after the study's kind; empty where it has none.
+    pub table: Map<String, Json>,
+}
+
+impl Outline {
+    /// The index of the variant that `key` of the kind's table names.
+    pub fn variant(&self, key: &str) -> Option<usize> {
+        let name = self.table.get(key)?.as_str()?;
+        self.variants.iter().position(|variant| variant == name)
+    }
+}
+
 /// A study file that holds no mistake.
 #[derive(Debug, Clone)]
 pub struct Study {
@@ -239,6 +275,8 @@ pub struct Study {
     pub name: String,
     /// What is done with the cases: the tag of a study kind.
     pub kind: String,
+    /// Its axes and the table of its kind.
+    pub outline: Outline,
     /// What is written.
     pub output: Output,
     /// All cases in order.
@@ -280,6 +318,7 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
         return Err(mistakes);
     }
     check_variants(&root, &mut mistakes);
+    let table = kind_table(&root, &mut mistakes);
     let plan = match Plan::new(&root) {
         Ok(plan) => plan,
         Err(wrong) => {
@@ -295,6 +334,8 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
             mistakes.push(Mistake::new(&Origin::Set(path.as_str().into()), path, message).help(help));
         }
     }
+    let outline = Outline { variants: plan.variants(), scenes: plan.scenes(), axes: plan.axes(), table };
+    check_outline(&root, &outline, &mut mistakes);
     let count = plan.count();
     let mut found: HashMap<Mistake, usize> = HashMap::new();
     let mut order: Vec<(Mistake, String)> = Vec::new();
@@ -339,6 +380,7 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
     Ok(Study {
         name: text_of("name"),
         kind: text_of("kind"),
+        outline,
         output: Output { curve: flag("curve"), figures: flag("figures"), vtu: flag("vtu") },
         cases,
         resolved: root.to_toml(),
@@ -354,9 +396,46 @@ fn check_variants(root: &Node, mistakes: &mut Vec<Mistake>) {
     mistakes.append(&mut checker.mistakes);
 }
 
+/// The word after `kind`.
+fn kind_of(root: &Node) -> &str {
+    root.table().and_then(|table| table.get("kind")?.text()).unwrap_or("run")
+}
+
+/// The table of the study's kind, checked; a table of another kind is a mistake.
+fn kind_table(root: &Node, mistakes: &mut Vec<Mistake>) -> Map<String, Json> {
+    let (kind, mut own) = (kind_of(root), Map::new());
+    for parameter in STUDY.iter().filter(|parameter| ["compare", "map"].contains(&parameter.name)) {
+        let name = parameter.name;
+        let Some(node) = root.table().and_then(|table| table.get(name)) else { continue };
+        let mut checker = Checker::new(root);
+        let value = checker.check(node, &parameter.shape, name);
+        mistakes.append(&mut checker.mistakes);
+        if kind == name {
+            own = value.as_ref().and_then(Json::as_object).cloned().unwrap_or_default();
+        } else {
+            let message = format!("is only read by kind = \"{name}\", but the kind is \"{kind}\"");
+            let help = format!("write kind = \"{name}\", or remove this table");
+            mistakes.push(Mistake::new(&root.place(name), name, message).help(help));
+        }
+    }
+    own
+}
+
+/// What the study's kind finds wrong with its axes and its table.
+fn check_outline(root: &Node, outline: &Outline, mistakes: &mut Vec<Mistake>) {
+    let Some(kind) = crate::kinds::kind(kind_of(root)) else { return };
+    mistakes.extend(kind.check(outline).into_iter().map(|issue| {
+        let mut mistake = Mistake::new(&root.place(&issue.path), issue.path, issue.message);
+        mistake.help = issue.help;
+        mistake
+    }));
+}
+
 fn describe_case(case: &Expanded) -> String {
     let variant = case.variant.iter().map(|name| format!("variant \"{name}\""));
-    variant.chain(case.parameters.iter().map(|(key, value)| format!("{key} = {value}"))).collect::<Vec<_>>().join(", ")
+    let scene = case.scene.iter().map(|name| format!("scene \"{name}\""));
+    let swept = case.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+    variant.chain(scene).chain(swept).collect::<Vec<_>>().join(", ")
 }
 
 /// The mistakes of one case, gathered while it is built.
@@ -391,7 +470,7 @@ impl Builder<'_> {
 }
 
 fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
-    let Expanded { variant, parameters, root } = expanded;
+    let Expanded { variant, scene, parameters, root } = expanded;
     let mut checker = Checker::new(&root);
     checker.gravity = gravity_of(&root);
     let Some(table) = root.table() else {
@@ -406,7 +485,8 @@ fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
         checker.mistakes.push(Mistake::new(&entry.origin, &entry.key, "is not a key of a study").help(help));
     }
     let mut resolved = Map::new();
-    for parameter in STUDY.iter().filter(|p| p.name != "sweep" && p.name != "variants") {
+    let apart = ["sweep", "variants", "compare", "map"];
+    for parameter in STUDY.iter().filter(|p| !apart.contains(&p.name)) {
         if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
             continue;
         }
@@ -432,6 +512,7 @@ fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
             Ok(Case {
                 id,
                 variant,
+                scene,
                 parameters,
                 assembly,
                 stages,

@@ -34,6 +34,10 @@ pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
             None => wrong.push((result.id, "the study has no such case".into())),
         }
     }
+    let comparison = crate::kinds::kind(&study.kind).and_then(|kind| kind.compare(study, &results.cases));
+    if comparison != results.comparison {
+        wrong.push((0, "the comparison is not that of the cases".into()));
+    }
     wrong
 }
 
@@ -74,6 +78,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         }
     };
     expect(result.variant == case.variant, "variant is not that of the study");
+    expect(result.scene == case.scene, "scene is not that of the study");
     expect(result.parameters == case.parameters, "parameters are not those of the study");
     let assembly = &case.assembly;
     let last = result.stages.len().checked_sub(1).ok_or("no stage")?;

@@ -13,7 +13,7 @@ fn results(text: &str) -> (Study, Value) {
     let resolved = toml::to_string(&original.resolved).expect("a study can be written");
     let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
     let cases = original.cases.iter().map(answer_case).collect();
-    let results = StudyResults { study: original.name, version: "test".into(), cases };
+    let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
     (again, serde_json::to_value(&results).expect("results can be written"))
 }
 

@@ -135,10 +135,12 @@ fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
         done.insert(case.id, case);
     }
     progress.bar.finish_and_clear();
+    let cases: Vec<CaseResult> = done.into_values().collect();
     let results = StudyResults {
         study: study.name.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
-        cases: done.into_values().collect(),
+        comparison: kind.compare(study, &cases),
+        cases,
     };
     write_results(study, &results, dir, options)?;
     let _ = std::fs::remove_file(&journal);
@@ -166,6 +168,9 @@ fn write_results(study: &Study, results: &StudyResults, dir: &Path, options: &Op
     }
     if !options.quiet {
         say(voussoir::writers::table::results_table(&output));
+        if let Some(comparison) = &results.comparison {
+            say(voussoir::writers::comparison::comparison_table(comparison));
+        }
         say(format!("results in {}", dir.display()));
     }
     Ok(())

@@ -1,5 +1,6 @@
-//! Variants and sweeps: the cases of a study. Variants are outermost, then the axes of the sweep
-//! in the order of the file, the first slowest.
+//! Variants, scenes of a comparison and sweeps: the cases of a study. Variants are outermost, then
+//! the scenes, then the axes of the sweep in the order of the file, the first slowest. A variant is
+//! set on top of a scene, a swept value on top of both.
 
 use crate::config::document::{Node, Origin, Table, Value};
 use crate::config::overlay::{join, set};
@@ -28,6 +29,7 @@ struct Variant {
 pub struct Plan {
     base: Node,
     variants: Vec<Variant>,
+    scenes: Vec<Variant>,
     axes: Vec<Axis>,
 }
 
@@ -36,9 +38,12 @@ pub struct Plan {
 pub struct Expanded {
     /// Name of its variant.
     pub variant: Option<String>,
+    /// Name of its scene, where the study compares several.
+    pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: Map<String, Json>,
-    /// The whole study file of this case, without `sweep` and `variants`.
+    /// The whole study file of this case, without `sweep`, `variants`
+    /// and the tables of study kinds.
     pub root: Node,
 }
 
@@ -53,26 +58,35 @@ impl Plan {
         let mut mistakes = Vec::new();
         let table = root.table().cloned().unwrap_or_default();
         let axes = table.get("sweep").map(|node| axes(node, &mut mistakes)).unwrap_or_default();
-        let mut variants = table.get("variants").map(|node| read_variants(node, &mut mistakes)).unwrap_or_default();
+        let overrides = |node: Option<&Node>, key: &str, what: &str, mistakes: &mut Vec<Mistake>| -> Vec<Variant> {
+            let read = node.map(|node| read_variants(node, key, what, mistakes)).unwrap_or_default();
+            if read.is_empty() { vec![Variant { name: None, set: Vec::new() }] } else { read }
+        };
+        let variants = overrides(table.get("variants"), "variants", "variants", &mut mistakes);
+        let scenes = table.get("compare").and_then(|compare| compare.table()?.get("scenes"));
+        let scenes = overrides(scenes, "compare.scenes", "scenes", &mut mistakes);
         let swept: Vec<&str> = axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str()).collect();
         for (index, (key, origin)) in axes.iter().flat_map(|axis| &axis.keys).enumerate() {
             if swept[..index].contains(&key.as_str()) {
                 mistakes.push(Mistake::new(origin, key, "is swept twice").help("keep one of the two axes"));
             }
         }
-        for (key, origin, _) in variants.iter().flat_map(|variant| &variant.set) {
-            if swept.contains(&key.as_str()) {
-                let help = "remove it from the sweep or from the variant";
-                mistakes.push(Mistake::new(origin, key, "is set by a variant, but swept too").help(help));
+        for (what, list) in [("variant", &variants), ("scene", &scenes)] {
+            for (key, origin, _) in list.iter().flat_map(|entry| &entry.set) {
+                if swept.contains(&key.as_str()) {
+                    let help = format!("remove it from the sweep or from the {what}");
+                    mistakes.push(Mistake::new(origin, key, format!("is set by a {what}, but swept too")).help(help));
+                }
             }
         }
-        if variants.is_empty() {
-            variants.push(Variant { name: None, set: Vec::new() });
-        }
-        let base =
-            Table { entries: table.entries.into_iter().filter(|e| e.key != "sweep" && e.key != "variants").collect() };
-        let plan = Plan { base: Node { value: Value::Table(base), origin: root.origin.clone() }, variants, axes };
-        let count = plan.axes.iter().try_fold(plan.variants.len(), |n, axis| n.checked_mul(axis.values.len()));
+        let apart = ["sweep", "variants", "compare", "map"];
+        let base = table.entries.into_iter().filter(|entry| !apart.contains(&entry.key.as_str()));
+        let base = Table { entries: base.collect() };
+        let base = Node { value: Value::Table(base), origin: root.origin.clone() };
+        let plan = Plan { base, variants, scenes, axes };
+        let overridden = plan.variants.len().checked_mul(plan.scenes.len());
+        let count =
+            plan.axes.iter().try_fold(overridden.unwrap_or(usize::MAX), |n, axis| n.checked_mul(axis.values.len()));
         if count.is_none_or(|count| count > MAX_CASES) {
             let count = count.map_or("far too many".into(), |count| count.to_string());
             let message = format!("makes {count} cases; a study holds at most {MAX_CASES}");
@@ -86,9 +100,26 @@ impl Plan {
         self.axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str())
     }
 
+    /// Each axis of the sweep: its keys, and whether the values of the first are numbers.
+    pub fn axes(&self) -> Vec<(Vec<String>, bool)> {
+        let keys = |axis: &Axis| axis.keys.iter().map(|(key, _)| key.clone()).collect();
+        let numbers = |axis: &Axis| axis.values.iter().all(|step| step[0].number().is_some());
+        self.axes.iter().map(|axis| (keys(axis), numbers(axis))).collect()
+    }
+
+    /// Names of the variants; empty where the study has none.
+    pub fn variants(&self) -> Vec<String> {
+        self.variants.iter().filter_map(|variant| variant.name.clone()).collect()
+    }
+
+    /// Names of the scenes compared; empty where the study has only its own.
+    pub fn scenes(&self) -> Vec<String> {
+        self.scenes.iter().filter_map(|scene| scene.name.clone()).collect()
+    }
+
     /// Number of cases.
     pub fn count(&self) -> usize {
-        self.axes.iter().map(|axis| axis.values.len()).product::<usize>() * self.variants.len()
+        self.axes.iter().map(|axis| axis.values.len()).product::<usize>() * self.variants.len() * self.scenes.len()
     }
 
     /// Case `id < count()`.
@@ -98,9 +129,9 @@ impl Plan {
         for (step, axis) in steps.iter_mut().zip(&self.axes).rev() {
             (*step, rest) = (rest % axis.values.len(), rest / axis.values.len());
         }
-        let variant = &self.variants[rest];
+        let (variant, scene) = (&self.variants[rest / self.scenes.len()], &self.scenes[rest % self.scenes.len()]);
         let (mut root, mut mistakes, mut parameters) = (self.base.clone(), Vec::new(), Map::new());
-        for (key, origin, value) in &variant.set {
+        for (key, origin, value) in scene.set.iter().chain(&variant.set) {
             mistakes.extend(set(&mut root, key, value.clone(), origin).err().map(|mistake| *mistake));
         }
         for (axis, &step) in self.axes.iter().zip(&steps) {
@@ -110,23 +141,27 @@ impl Plan {
             }
         }
         if mistakes.is_empty() {
-            Ok(Expanded { variant: variant.name.clone(), parameters, root })
+            Ok(Expanded { variant: variant.name.clone(), scene: scene.name.clone(), parameters, root })
         } else {
             Err(mistakes)
         }
     }
 }
 
-fn read_variants(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Variant> {
+/// The entries of a list of overrides: `key` is where it stands, `what` how its entries are called.
+fn read_variants(node: &Node, key: &str, what: &str, mistakes: &mut Vec<Mistake>) -> Vec<Variant> {
     let mut out: Vec<Variant> = Vec::new();
     for (index, node) in node.array().unwrap_or_default().iter().enumerate() {
         let Some(table) = node.table() else { continue };
         let name = table.get("name").and_then(Node::text).map(str::to_string);
         if name.is_some() && out.iter().any(|earlier| earlier.name == name) {
-            let key = join(&join("variants", &index.to_string()), "name");
-            let message = format!("two variants are called \"{}\"", name.clone().unwrap_or_default());
+            let key = join(&join(key, &index.to_string()), "name");
+            let message = format!("two {what} are called \"{}\"", name.clone().unwrap_or_default());
             let place = table.get("name").map_or(&node.origin, |name| &name.origin);
-            mistakes.push(Mistake::new(place, key, message).help("give each variant a name of its own"));
+            mistakes.push(
+                Mistake::new(place, key, message)
+                    .help(format!("give each {} a name of its own", what.trim_end_matches('s'))),
+            );
         }
         let set = table.get("set").and_then(Node::table).map(|set| set.entries.as_slice()).unwrap_or_default();
         let set = set.iter().map(|e| (e.key.clone(), e.origin.clone(), e.node.clone())).collect();

@@ -196,6 +196,7 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
 pub fn case_title(study: &str, result: &CaseResult) -> String {
     let mut parts = vec![study.to_string(), format!("case {}", result.id)];
     parts.extend(result.variant.clone());
+    parts.extend(result.scene.clone());
     parts.extend(Some(parameters_text(result)).filter(|text| !text.is_empty()));
     parts.join(", ")
 }

@@ -2,13 +2,16 @@
 //!
 //! Everything here is a pure function from results to text (SVG). No file is touched.
 
+pub mod axes;
 pub mod chart;
 pub mod closure;
+pub mod comparison;
 pub mod displaced;
 pub mod drawing;
 pub mod format;
 pub mod lettering;
 pub mod loads;
+pub mod map;
 pub mod marks;
 pub mod mechanism;
 pub mod sheet;

@@ -90,6 +90,7 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
     CaseResult {
         id,
         variant: None,
+        scene: None,
         parameters: serde_json::Map::new(),
         status,
         load_factor: None,

@@ -229,7 +229,7 @@ fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
             cases.push(case);
         }
     }
-    (assemblies, stages, StudyResults { study: "rise".into(), version: "0.1.0".into(), cases })
+    (assemblies, stages, StudyResults { study: "rise".into(), version: "0.1.0".into(), cases, comparison: None })
 }
 
 fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {

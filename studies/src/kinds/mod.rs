@@ -1,10 +1,13 @@
 //! Study kinds: what is done with the cases of a study.
 
+pub mod compare;
+pub mod map;
 pub mod point;
 pub mod run;
 
-use crate::results::CaseResult;
-use crate::study::Study;
+use crate::results::{CaseResult, Comparison};
+use crate::study::{Outline, Study};
+use voussoir_core::issue::Issue;
 
 /// Follows a study while it is worked on; libraries never print.
 pub trait Observer: Sync {
@@ -18,6 +21,19 @@ pub trait StudyKind: Sync {
     /// Answers the cases of a study whose ids are in `wanted`, in order of id. `jobs` cases side by
     /// side; the results do not depend on it.
     fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult>;
+
+    /// Mistakes in a study's axes and in the table of this kind, beyond those of single keys.
+    fn check(&self, outline: &Outline) -> Vec<Issue> {
+        let _ = outline;
+        Vec::new()
+    }
+
+    /// The cases beside each other, where this kind compares them; a pure function of its arguments,
+    /// so that `verify` can repeat it.
+    fn compare(&self, study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
+        let _ = (study, cases);
+        None
+    }
 }
 
 /// Connects a tag with a study kind.

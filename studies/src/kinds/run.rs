@@ -71,6 +71,7 @@ pub fn answer_case(case: &Case) -> CaseResult {
     let mut result = answer(&question);
     result.id = case.id;
     result.variant = case.variant.clone();
+    result.scene = case.scene.clone();
     result.parameters = case.parameters.clone();
     result.notes.extend(case.notes.iter().cloned());
     if !case.output_curve {
@@ -80,16 +81,21 @@ pub fn answer_case(case: &Case) -> CaseResult {
     result
 }
 
+/// Answers cases, `jobs` of them side by side.
+pub fn answer_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+    let one = |id: &usize| {
+        let result = answer_case(&study.cases[*id]);
+        observer.answered(&result);
+        result
+    };
+    match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
+        Ok(pool) if jobs > 1 => pool.install(|| wanted.par_iter().map(one).collect()),
+        _ => wanted.iter().map(one).collect(),
+    }
+}
+
 impl StudyKind for Run {
     fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-        let one = |id: &usize| {
-            let result = answer_case(&study.cases[*id]);
-            observer.answered(&result);
-            result
-        };
-        match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
-            Ok(pool) if jobs > 1 => pool.install(|| wanted.par_iter().map(one).collect()),
-            _ => wanted.iter().map(one).collect(),
-        }
+        answer_cases(study, wanted, jobs, observer)
     }
 }

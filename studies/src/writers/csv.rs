@@ -40,21 +40,24 @@ const AFTER: [&str; 17] = [
 pub fn results_csv(study: &StudyOutput) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let keys = study.sweep_keys.iter().map(|key| key_with_unit(key));
-    let header = BEFORE.iter().map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string()));
+    let scenes = study.results.cases.iter().any(|case| case.scene.is_some());
+    let before = BEFORE.iter().copied().chain(scenes.then_some("scene"));
+    let header = before.map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string()));
     writer.write_record(header).expect("writing to memory does not fail");
     for case in &study.results.cases {
-        writer.write_record(row(case, study.sweep_keys)).expect("every row is as long as the header");
+        writer.write_record(row(case, scenes, study.sweep_keys)).expect("every row is as long as the header");
     }
     let bytes = writer.into_inner().expect("writing to memory does not fail");
     String::from_utf8(bytes).expect("every cell is text")
 }
 
-fn row(case: &CaseResult, keys: &[String]) -> Vec<String> {
+fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<String> {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     let joints = |list: Vec<usize>| list.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let mechanism = case.mechanism.as_ref();
     let residual = case.certificate.residuals.values().copied().fold(f64::NAN, f64::max);
     let mut row = vec![case.id.to_string(), case.variant.clone().unwrap_or_default()];
+    row.extend(scenes.then(|| case.scene.clone().unwrap_or_default()));
     row.extend(keys.iter().map(|key| case.parameters.get(key).map(format_value).unwrap_or_default()));
     row.extend([
         status_word(case.status).to_string(),

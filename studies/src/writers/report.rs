@@ -1,5 +1,6 @@
 //! `report.html`: one self-contained page for reading and printing.
 
+use super::comparison::{comparison_rows, figure};
 use super::page::{self, STYLE};
 use super::table::{distinct_notes, id_list};
 use super::{StudyOutput, Writer, register};
@@ -38,6 +39,7 @@ pub fn report_html(study: &StudyOutput) -> String {
         body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
                  lines only join neighbouring cases.</figcaption></figure>\n";
     }
+    body += &comparison(study);
     body += "<h2>Cases</h2>\n";
     body += &case_table(study);
     body += &notes(cases);
@@ -55,6 +57,30 @@ pub fn report_html(study: &StudyOutput) -> String {
          content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
         escape(study.name)
     )
+}
+
+/// Variants beside each other, where the study compares them.
+fn comparison(study: &StudyOutput) -> String {
+    let Some(comparison) = &study.results.comparison else { return String::new() };
+    let mut body = format!(
+        "<h2>Comparison</h2>\n<p>Load factors, then their ratios to those of <em>{}</em>. Where a number follows \
+         behind ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
+        escape(&comparison.reference)
+    );
+    if study.figures
+        && let Some((name, svg)) = figure(study.name, comparison)
+    {
+        let caption = match name {
+            "map" => {
+                "One cell for each point of the grid. Contours are linear between points and end where a point has no \
+                 ratio."
+            }
+            _ => "One row for each scene, one mark for each variant; words at the right name what is no collapse.",
+        };
+        body += &format!("<figure>{svg}<figcaption>{caption}</figcaption></figure>\n");
+    }
+    let (header, rows) = comparison_rows(comparison);
+    body + &page::table(&header, rows.into_iter())
 }
 
 /// What came out, in plain words.
@@ -105,11 +131,13 @@ fn summary(study: &StudyOutput) -> String {
 fn case_table(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
     let variants = cases.iter().any(|case| case.variant.is_some());
+    let scenes = cases.iter().any(|case| case.scene.is_some());
     let loads: Vec<Option<f64>> =
         (0..cases.len()).map(|i| study.scene(i).and_then(|(_, stages)| unit_load(stages))).collect();
     let with_load = loads.iter().any(Option::is_some);
     let mut header = vec!["id".to_string()];
     header.extend(variants.then(|| "variant".into()));
+    header.extend(scenes.then(|| "scene".into()));
     header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
     header.extend(["status".to_string(), "load factor".into()]);
     header.extend(with_load.then(|| "load".into()));
@@ -117,6 +145,7 @@ fn case_table(study: &StudyOutput) -> String {
     let rows = cases.iter().zip(&loads).map(|(case, load)| {
         let mut row = vec![case.id.to_string()];
         row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
+        row.extend(scenes.then(|| case.scene.clone().unwrap_or_default()));
         row.extend(study.sweep_keys.iter().map(|key| case.parameters.get(key).map(page::value).unwrap_or_default()));
         row.push(status_word(case.status).replace('_', " "));
         row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));

@@ -12,6 +12,8 @@ pub fn results_table(study: &StudyOutput) -> String {
     let variants = cases.iter().any(|case| case.variant.is_some());
     let mut header = vec!["id".to_string()];
     header.extend(variants.then(|| "variant".to_string()));
+    let scenes = cases.iter().any(|case| case.scene.is_some());
+    header.extend(scenes.then(|| "scene".to_string()));
     header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
     let factor_column = header.len() + 1;
     header.extend(["status", "load factor", "kind", "hinges", "certificate", "notes"].map(String::from));
@@ -29,6 +31,7 @@ pub fn results_table(study: &StudyOutput) -> String {
     for (place, case) in cases.iter().enumerate() {
         let mut row = vec![case.id.to_string()];
         row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
+        row.extend(scenes.then(|| case.scene.clone().unwrap_or_default()));
         row.extend(swept.iter().map(|column| column[place].clone()));
         row.push(status_word(case.status).into());
         row.push(factors[place].clone());

@@ -218,7 +218,7 @@ impl Builder<'_> {
 }
 
 fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<Mistake>> {
-    let Expanded { variant, parameters, root } = expanded;
+    let Expanded { variant, parameters, root, .. } = expanded;
     let mut checker = Checker::new(&root);
     let checked = checker.check(&root, &Shape::Table(STUDY), "");
     let (mistakes, unused) = (std::mem::take(&mut checker.mistakes), std::mem::take(&mut checker.unused));

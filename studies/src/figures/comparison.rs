@@ -1,0 +1,147 @@
+//! The figure of a comparison: for each scene the ratios of all voices to the reference.
+
+use super::axes::{Axis, COLOURS, Canvas};
+use super::format::{format_number, format_value, status_word};
+use super::lettering::{text_width, wrapped};
+use crate::results::{Comparison, ComparisonCell, ComparisonRow};
+use voussoir_core::limit::Status;
+
+/// Relative width from which a bracket is open.
+pub const OPEN: f64 = 1e-6;
+
+/// The bracket of a cell, where it is open and its lower end says more than "not negative".
+fn telling_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
+    open_bracket(cell).filter(|[low, _]| *low > 0.0)
+}
+
+/// The bracket of a cell, where it is open.
+pub fn open_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
+    cell.bounds.filter(|[low, high]| (high - low).abs() > OPEN * high.abs().max(low.abs()))
+}
+
+/// What a row is called.
+pub fn row_name(row: &ComparisonRow) -> String {
+    // The last name of a key; of an entry of a list also the list's.
+    let last = |key: &str| {
+        let names: Vec<&str> = key.split('.').collect();
+        let index = names.last().is_some_and(|name| name.parse::<usize>().is_ok());
+        names[names.len().saturating_sub(if index { 2 } else { 1 })..].join(".")
+    };
+    let swept = row.parameters.iter().map(|(key, value)| format!("{} = {}", last(key), format_value(value)));
+    let parts: Vec<String> = row.scene.iter().cloned().chain(swept).collect();
+    if parts.is_empty() { "the scene".into() } else { parts.join(", ") }
+}
+
+/// Why a cell has no number or, where it has one, what kind of number; empty for a collapse.
+pub fn remark(cell: &ComparisonCell) -> String {
+    match (cell.status, &cell.flow_read_as) {
+        (None, _) => "not answered".into(),
+        (Some(Status::Collapse), Some(flow)) => format!("flow read as {flow}"),
+        (Some(Status::Collapse), None) => String::new(),
+        (Some(status), _) => status_word(status).replace('_', " "),
+    }
+}
+
+/// The figure; `None` where no voice has a ratio.
+pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
+    let base = |row: &ComparisonRow| {
+        let cell = row.cells.get(comparison.voices.iter().position(|voice| *voice == comparison.reference)?)?;
+        cell.load_factor.filter(|factor| *factor > 0.0)
+    };
+    let bracket = |row: &ComparisonRow, cell: &ComparisonCell| {
+        Some(telling_bracket(cell)?.map(|x| x / base(row).unwrap_or(f64::NAN)))
+    };
+    let cells = || comparison.rows.iter().flat_map(|row| row.cells.iter().map(move |cell| (row, cell)));
+    let values = cells().flat_map(|(row, cell)| cell.ratio.into_iter().chain(bracket(row, cell).into_iter().flatten()));
+    let (low, high) = values
+        .filter(|x| x.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    if low > high {
+        return None;
+    }
+    let margin = (0.04 * (high - low)).max(0.01);
+    let low = if low - margin < 0.1 * high { 0.0 } else { low - margin };
+    let names: Vec<Vec<String>> = comparison.rows.iter().map(|row| wrapped(&row_name(row), 13.0, 230.0)).collect();
+    let widest = names.iter().flatten().map(|line| text_width(line, 13.0)).fold(80.0, f64::max);
+    let (left, plot) = (widest + 34.0, 520.0);
+    let voices = comparison.voices.len();
+    let remarks: Vec<String> = comparison.rows.iter().map(|row| row_remarks(comparison, row)).collect();
+    let right = remarks.iter().map(|words| text_width(words, 12.0)).fold(30.0, f64::max).min(430.0) + 24.0;
+    let width = left + plot + right;
+    let axis = Axis { values: [low, high + margin], places: [left, left + plot] };
+    let row_height = (12.0 * voices as f64 + 12.0).max(34.0);
+    let titles =
+        wrapped(&format!("{study}: load factor over that of \"{}\"", comparison.reference), 17.0, width - 40.0);
+    let top = 22.0 + 24.0 * titles.len() as f64;
+    let bottom = top + row_height * comparison.rows.len() as f64;
+    let mut canvas = Canvas::default();
+    for (i, line) in titles.iter().enumerate() {
+        canvas.text([width / 2.0, 28.0 + 24.0 * i as f64], line, 17.0, "middle");
+    }
+    for (i, _) in comparison.rows.iter().enumerate().filter(|(i, _)| i % 2 == 0) {
+        let y = top + row_height * i as f64;
+        canvas.rectangle([10.0, y], [width - 10.0, y + row_height], "#f4f4f4");
+    }
+    for tick in axis.ticks(7) {
+        let x = axis.at(tick);
+        canvas.line([x, top], [x, bottom], if tick == 1.0 { "#888888" } else { "#dddddd" }, 1.0);
+        canvas.text([x, bottom + 18.0], &Canvas::number(tick), 13.0, "middle");
+    }
+    canvas.line([left, bottom], [left + plot, bottom], "#222222", 1.0);
+    let axis_name = format!("load factor / load factor of \"{}\" [-]", comparison.reference);
+    canvas.text([left + plot / 2.0, bottom + 40.0], &axis_name, 14.0, "middle");
+    for (i, row) in comparison.rows.iter().enumerate() {
+        let y = top + row_height * i as f64;
+        let middle = y + row_height / 2.0;
+        for (line, words) in names[i].iter().enumerate() {
+            let shift = 16.0 * (line as f64 - (names[i].len() as f64 - 1.0) / 2.0);
+            canvas.text([left - 14.0, middle + shift + 4.5], words, 13.0, "end");
+        }
+        for (voice, cell) in row.cells.iter().enumerate() {
+            let at = middle + 12.0 * (voice as f64 - (voices as f64 - 1.0) / 2.0);
+            if let Some([a, b]) = bracket(row, cell).filter(|ends| ends.iter().all(|x| x.is_finite())) {
+                canvas.line([axis.at(a), at], [axis.at(b), at], COLOURS[voice % COLOURS.len()], 3.0);
+                canvas.line([axis.at(a), at - 4.0], [axis.at(a), at + 4.0], COLOURS[voice % COLOURS.len()], 2.0);
+            }
+            if let Some(ratio) = cell.ratio {
+                canvas.mark(voice, [axis.at(ratio), at]);
+            }
+        }
+        let lines = wrapped(&remarks[i], 12.0, right - 20.0);
+        for (line, words) in lines.iter().enumerate() {
+            let shift = 14.0 * (line as f64 - (lines.len() as f64 - 1.0) / 2.0);
+            canvas.text([left + plot + 12.0, middle + shift + 4.0], words, 12.0, "start");
+        }
+    }
+    let mut legend = bottom + 66.0;
+    let mut x = 30.0;
+    for (voice, name) in comparison.voices.iter().enumerate() {
+        let wide = 26.0 + text_width(name, 13.0) + 18.0;
+        if x > 30.0 && x + wide > width - 20.0 {
+            (x, legend) = (30.0, legend + 22.0);
+        }
+        canvas.mark(voice, [x + 8.0, legend - 4.5]);
+        canvas.text([x + 22.0, legend], name, 13.0, "start");
+        x += wide;
+    }
+    if cells().any(|(_, cell)| cell.ratio.is_some() && telling_bracket(cell).is_some()) {
+        legend += 22.0;
+        canvas.line([30.0, legend - 4.5], [58.0, legend - 4.5], "#666666", 3.0);
+        canvas.line([30.0, legend - 8.5], [30.0, legend - 0.5], "#666666", 2.0);
+        canvas.text([68.0, legend], "from the proved lower bound to the load found, where they differ", 13.0, "start");
+    }
+    Some(canvas.finish(width, legend + 20.0))
+}
+
+/// The load factor of the reference, and what voices without a collapse say.
+fn row_remarks(comparison: &Comparison, row: &ComparisonRow) -> String {
+    let reference = comparison.voices.iter().position(|voice| *voice == comparison.reference);
+    let base = reference
+        .and_then(|i| row.cells.get(i)?.load_factor)
+        .map(|x| format!("{} = {}", comparison.reference, format_number(x, 4)));
+    let others = row.cells.iter().zip(&comparison.voices).filter_map(|(cell, voice)| {
+        let words = remark(cell);
+        (!words.is_empty()).then(|| format!("{voice}: {words}"))
+    });
+    base.into_iter().chain(others).collect::<Vec<_>>().join("; ")
+}

@@ -1,0 +1,128 @@
+//! `compare`: several laws and solvers on one or several scenes, in one table.
+#![doc = include_str!("compare.md")]
+
+use super::run::answer_cases;
+use super::{KindEntry, Observer, StudyKind};
+use crate::config::report::suggest;
+use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
+use crate::study::{Outline, Study, VARIANT};
+use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::issue::Issue;
+use voussoir_core::limit::Status;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+
+struct Compare;
+
+/// The key of the voice that others are divided by, the same in every kind that compares.
+pub(super) const REFERENCE: Parameter = Parameter {
+    name: "reference",
+    doc: "name of the variant that the others are divided by",
+    shape: Shape::Text,
+    need: Need::Optional("the first variant"),
+};
+
+/// Keys of `[compare]`.
+pub const KEYS: &[Parameter] = &[
+    REFERENCE,
+    Parameter {
+        name: "scenes",
+        doc: "[[compare.scenes]]: name and set, as in [[variants]]; a variant is set on top of each",
+        shape: Shape::List { of: &VARIANT, min: 1, max: usize::MAX },
+        need: Need::Optional("the study's own scene"),
+    },
+];
+
+voussoir_core::inventory::submit! { KindEntry { tag: "compare", kind: &Compare } }
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::StudyKind,
+        tag: "compare",
+        summary: "several laws and solvers (variants) on one or several scenes: one table with ratios, one figure",
+        parameters: KEYS,
+        provides: &[],
+        requires: &[],
+        sources: &[],
+        file: file!(),
+        page: include_str!("compare.md"),
+        check: no_further_check,
+    }
+}
+
+/// Mistakes that every kind that compares looks for: fewer than two voices, names of none.
+pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Issue> {
+    let mut issues = Vec::new();
+    if outline.variants.len() < 2 {
+        let message =
+            format!("\"{kind}\" sets variants beside each other, but the study has {}", outline.variants.len());
+        issues.push(
+            Issue::new("kind", message).help("give at least two [[variants]], each with a law or a solver of its own"),
+        );
+        return issues;
+    }
+    for key in keys {
+        if let Some(name) = outline.table.get(*key).and_then(|value| value.as_str())
+            && outline.variant(key).is_none()
+        {
+            let names: Vec<&str> = outline.variants.iter().map(String::as_str).collect();
+            let message = format!("there is no variant \"{name}\"");
+            issues.push(Issue::new(format!("{kind}.{key}"), message).help(suggest(name, &names, "variants")));
+        }
+    }
+    issues
+}
+
+/// The variants beside each other; `reference` is the index of the one that others are divided by.
+pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: usize) -> Option<Comparison> {
+    let voices = &study.outline.variants;
+    let rows = study.cases.len().checked_div(voices.len())?;
+    let answered = |id: usize| cases.iter().find(|case| case.id == id);
+    let row = |row: usize| {
+        let base = answered(reference * rows + row).and_then(factor);
+        let cell = |voice: usize| {
+            let id = voice * rows + row;
+            let case = answered(id);
+            let ratio = case.and_then(factor).zip(base).and_then(|(own, base)| (base > 0.0).then(|| own / base));
+            ComparisonCell {
+                case: id,
+                status: case.map(|case| case.status),
+                load_factor: case.and_then(|case| case.load_factor),
+                bounds: case.and_then(|case| case.bounds),
+                ratio,
+                mechanism: case.and_then(|case| case.mechanism.as_ref()).map(|mechanism| mechanism.kind),
+                flow_read_as: case.and_then(|case| case.flow_read_as.clone()),
+            }
+        };
+        let first = &study.cases[row];
+        ComparisonRow {
+            scene: first.scene.clone(),
+            parameters: first.parameters.clone(),
+            cells: (0..voices.len()).map(cell).collect(),
+        }
+    };
+    Some(Comparison {
+        reference: voices.get(reference)?.clone(),
+        voices: voices.clone(),
+        rows: (0..rows).map(row).collect(),
+        map: None,
+    })
+}
+
+/// The load factor that a case ended at, by a mechanism or at a limit point.
+fn factor(case: &CaseResult) -> Option<f64> {
+    case.load_factor.filter(|_| matches!(case.status, Status::Collapse | Status::LimitPoint))
+}
+
+impl StudyKind for Compare {
+    fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+        answer_cases(study, wanted, jobs, observer)
+    }
+
+    fn check(&self, outline: &Outline) -> Vec<Issue> {
+        check_voices("compare", outline, &["reference"])
+    }
+
+    fn compare(&self, study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
+        beside_each_other(study, cases, study.outline.variant("reference").unwrap_or(0))
+    }
+}

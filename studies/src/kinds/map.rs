@@ -1,0 +1,108 @@
+//! `map`: several laws and solvers over two swept numbers.
+#![doc = include_str!("map.md")]
+
+use super::compare::{REFERENCE, beside_each_other, check_voices};
+use super::run::answer_cases;
+use super::{KindEntry, Observer, StudyKind};
+use crate::figures::format::key_with_unit;
+use crate::results::{CaseResult, Comparison, MapAxes};
+use crate::study::{Outline, Study};
+use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::issue::Issue;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+
+struct Map;
+
+const fn text(name: &'static str, doc: &'static str, otherwise: &'static str) -> Parameter {
+    Parameter { name, doc, shape: Shape::Text, need: Need::Optional(otherwise) }
+}
+
+/// Keys of `[map]`.
+pub const KEYS: &[Parameter] = &[
+    REFERENCE,
+    text(
+        "contours",
+        "name of the variant whose load over that of the reference is drawn as contours",
+        "the first that is not the reference",
+    ),
+    text("regions", "name of the variant whose kinds of mechanism are coloured", "the reference"),
+    text("x_label", "name of the first axis of the sweep in the figure", "its key"),
+    text("y_label", "name of the second axis of the sweep in the figure", "its key"),
+];
+
+voussoir_core::inventory::submit! { KindEntry { tag: "map", kind: &Map } }
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::StudyKind,
+        tag: "map",
+        summary: "several laws and solvers (variants) over two swept numbers: regions of mechanisms, contours of ratios",
+        parameters: KEYS,
+        provides: &[],
+        requires: &[],
+        sources: &[],
+        file: file!(),
+        page: include_str!("map.md"),
+        check: no_further_check,
+    }
+}
+
+/// The different values of a key in the order of the cases; `None` unless all are numbers.
+fn values(study: &Study, key: &str) -> Option<Vec<f64>> {
+    let mut found: Vec<f64> = Vec::new();
+    for case in &study.cases {
+        let value = case.parameters.get(key)?.as_f64()?;
+        if !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    Some(found)
+}
+
+impl StudyKind for Map {
+    fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+        answer_cases(study, wanted, jobs, observer)
+    }
+
+    fn check(&self, outline: &Outline) -> Vec<Issue> {
+        let mut issues = check_voices("map", outline, &["reference", "contours", "regions"]);
+        if outline.axes.len() != 2 {
+            let message = format!("\"map\" needs two axes, but [sweep] has {}", outline.axes.len());
+            issues.push(Issue::new("kind", message).help("the first axis is drawn along x, the second along y"));
+        }
+        for (keys, _) in outline.axes.iter().filter(|(_, numbers)| !numbers) {
+            let key = keys.first().map_or("", String::as_str);
+            let path = format!("sweep.\"{key}\"");
+            issues
+                .push(Issue::new(path, "takes texts, which are no coordinates").help("sweep a number without a unit"));
+        }
+        issues
+    }
+
+    fn compare(&self, study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
+        let outline = &study.outline;
+        let reference = outline.variant("reference").unwrap_or(0);
+        let other = usize::from(reference == 0);
+        let mut comparison = beside_each_other(study, cases, reference)?;
+        let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
+        let (x, y) = (x?, y?);
+        let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
+            Some(text) => text.to_string(),
+            None => key_with_unit(key),
+        };
+        let name = |key: &str, otherwise: usize| outline.variants[outline.variant(key).unwrap_or(otherwise)].clone();
+        if let (Some(x_values), Some(y_values)) = (values(study, &x), values(study, &y)) {
+            comparison.map = Some(MapAxes {
+                x_label: label("x_label", &x),
+                y_label: label("y_label", &y),
+                contours: name("contours", other),
+                regions: name("regions", reference),
+                x,
+                x_values,
+                y,
+                y_values,
+            });
+        }
+        Some(comparison)
+    }
+}

@@ -1,0 +1,128 @@
+//! `comparison.csv` and the figures of comparisons and maps: the cases beside each other.
+
+use super::{StudyOutput, Writer, register};
+use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
+use crate::figures::format::{format_number, format_short, format_value, key_with_unit, kind_word, status_word};
+use crate::figures::map::map_svg;
+use crate::results::{Comparison, ComparisonCell};
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+
+/// Writes `comparison.csv`, `figures/comparison.svg` and `figures/map.svg`.
+#[derive(Debug)]
+pub struct ComparisonFiles;
+
+impl Writer for ComparisonFiles {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+        let Some(comparison) = &study.results.comparison else { return Vec::new() };
+        let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison))];
+        if study.figures {
+            files.extend(figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
+        }
+        files
+    }
+}
+
+/// The figure of a comparison with its name: that of a map where it is one.
+pub fn figure(study: &str, comparison: &Comparison) -> Option<(&'static str, String)> {
+    match comparison.map {
+        Some(_) => Some(("map", map_svg(study, comparison)?)),
+        None => Some(("comparison", comparison_svg(study, comparison)?)),
+    }
+}
+
+fn swept(comparison: &Comparison) -> Vec<String> {
+    comparison.rows.first().map(|row| row.parameters.keys().cloned().collect()).unwrap_or_default()
+}
+
+/// One row per scene and swept value; for each voice status, factor, bounds, ratio and mechanism.
+pub fn comparison_csv(comparison: &Comparison) -> String {
+    let keys = swept(comparison);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut header = vec!["scene".to_string()];
+    header.extend(keys.iter().map(|key| key_with_unit(key)));
+    for voice in &comparison.voices {
+        let columns = [
+            "status".to_string(),
+            "load_factor [-]".into(),
+            "lower_bound [-]".into(),
+            "upper_bound [-]".into(),
+            format!("ratio to {} [-]", comparison.reference),
+            "mechanism".into(),
+            "case".into(),
+        ];
+        header.extend(columns.map(|column| format!("{voice}: {column}")));
+    }
+    writer.write_record(header).expect("writing to memory does not fail");
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+    for row in &comparison.rows {
+        let mut cells = vec![row.scene.clone().unwrap_or_default()];
+        cells.extend(keys.iter().map(|key| row.parameters.get(key).map(format_value).unwrap_or_default()));
+        for cell in &row.cells {
+            cells.extend([
+                cell.status.map_or("not answered", status_word).to_string(),
+                number(cell.load_factor),
+                number(cell.bounds.map(|b| b[0])),
+                number(cell.bounds.map(|b| b[1])),
+                number(cell.ratio),
+                cell.mechanism.map_or(String::new(), |kind| kind_word(kind).into()),
+                cell.case.to_string(),
+            ]);
+        }
+        writer.write_record(cells).expect("every row is as long as the header");
+    }
+    let bytes = writer.into_inner().expect("writing to memory does not fail");
+    String::from_utf8(bytes).expect("every cell is text")
+}
+
+/// A load factor with what must be said of it: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`.
+fn factor(cell: &ComparisonCell) -> String {
+    let words = remark(cell);
+    let Some(factor) = cell.load_factor else { return words };
+    let proved = open_bracket(cell).map(|[low, _]| format!("≥ {}", format_short(low, 4)));
+    let said: Vec<String> = Some(words).filter(|words| !words.is_empty()).into_iter().chain(proved).collect();
+    let number = format_number(factor, 7);
+    if said.is_empty() { number } else { format!("{number} ({})", said.join(", ")) }
+}
+
+/// Header and rows: factors of all voices, then ratios of all but the reference.
+pub fn comparison_rows(comparison: &Comparison) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut header = vec![if comparison.rows.iter().any(|row| row.scene.is_some()) { "scene" } else { "" }.to_string()];
+    header.extend(comparison.voices.iter().cloned());
+    let others: Vec<usize> =
+        (0..comparison.voices.len()).filter(|&i| comparison.voices[i] != comparison.reference).collect();
+    header.extend(others.iter().map(|&i| format!("{} / {}", comparison.voices[i], comparison.reference)));
+    let rows = comparison.rows.iter().map(|row| {
+        let mut cells = vec![row_name(row)];
+        cells.extend(row.cells.iter().map(factor));
+        cells.extend(others.iter().map(|&i| row.cells[i].ratio.map_or("–".into(), |ratio| format!("{ratio:.4}"))));
+        cells
+    });
+    let rows = rows.collect();
+    (header, rows)
+}
+
+/// The table on the terminal.
+pub fn comparison_table(comparison: &Comparison) -> String {
+    let (header, rows) = comparison_rows(comparison);
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
+    for row in rows {
+        table.add_row(row);
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let lines: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
+    format!(
+        "\nload factors (≥: proved least, where it is not the load found), and ratios to \"{}\"\n{lines}",
+        comparison.reference
+    )
+}
+
+register!(
+    "comparison",
+    ComparisonFiles,
+    "comparison.csv and its figure: variants beside each other, with ratios (kinds compare and map)",
+    "# `comparison`\n\nWrites `comparison.csv`, one row for each scene and swept value, seven columns for each variant, and \
+     `figures/comparison.svg` or `figures/map.svg`.\n"
+);
