@@ -7,6 +7,7 @@
 pub mod answer;
 pub mod config;
 pub mod figures;
+pub mod history;
 pub mod kinds;
 pub mod loads;
 pub mod path;

@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 
 /// One line of a chart.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
     /// For the legend.
     pub name: String,
@@ -15,6 +15,19 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// Points without an ordinate (unbounded), shown at the top edge; only abscissas count.
     pub open_points: Vec<(f64, f64)>,
+    /// What is marked instead of every point: the line is then drawn in the order of its points.
+    pub spots: Option<Vec<Spot>>,
+}
+
+/// A marked place of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spot {
+    /// Where.
+    pub at: (f64, f64),
+    /// What: each kind has one marker in all series, named in the legend.
+    pub kind: &'static str,
+    /// Written beside it.
+    pub label: String,
 }
 
 const WIDTH: u32 = 900;
@@ -117,7 +130,14 @@ fn draw(
         y_high + if open { 0.12 * (y_high - y_low.min(0.0)) } else { 0.0 },
     );
 
-    let entries: Vec<(usize, bool, String)> = series
+    let mut kinds: Vec<&str> = Vec::new();
+    for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
+        if !kinds.contains(&spot.kind) {
+            kinds.push(spot.kind);
+        }
+    }
+    kinds.sort_unstable();
+    let mut entries: Vec<(usize, bool, String)> = series
         .iter()
         .enumerate()
         .map(|(i, s)| (i, false, s.name.clone()))
@@ -125,6 +145,8 @@ fn draw(
             (i, true, if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
         }))
         .collect();
+    let lines_end = entries.len();
+    entries.extend(kinds.iter().enumerate().map(|(kind, words)| (kind, false, words.to_string())));
     let mut places = Vec::new();
     let (mut x, mut row) = (70, 0);
     for (_, _, words) in &entries {
@@ -183,7 +205,22 @@ fn draw(
     }
     for (i, s) in series.iter().enumerate() {
         let colour = PALETTE[i % PALETTE.len()];
-        for &(x, y) in s.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()) {
+        for spot in s.spots.iter().flatten().filter(|spot| spot.at.0.is_finite() && spot.at.1.is_finite()) {
+            let (x, y) = chart.backend_coord(&spot.at);
+            let kind = kinds.iter().position(|kind| *kind == spot.kind).unwrap_or(0);
+            mark(&root, (x, y), &corners(kind), colour)?;
+            let width = text_width(&spot.label, 13.0) as i32;
+            let fits = x + 10 + width < WIDTH as i32 - 6;
+            write(
+                &root,
+                (if fits { x + 10 } else { x - 4 - width }, y + if fits { 9 } else { 16 }),
+                &spot.label,
+                13,
+                false,
+            )?;
+        }
+        let every = s.spots.is_none();
+        for &(x, y) in s.points.iter().filter(|(x, y)| every && x.is_finite() && y.is_finite()) {
             mark(&root, chart.backend_coord(&(x, y)), &corners(i), colour)?;
         }
         for &(x, _) in s.open_points.iter().filter(|(x, _)| x.is_finite()) {
@@ -192,9 +229,13 @@ fn draw(
         }
     }
     let base = (head + PLOT) as i32 + 14;
-    for ((i, is_open, words), (x, row)) in entries.iter().zip(&places) {
+    for (entry, ((i, is_open, words), (x, row))) in entries.iter().zip(&places).enumerate() {
         let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
-        if *is_open {
+        if entry >= lines_end {
+            mark(&root, (x + 26, y), &corners(*i), INK)?;
+        } else if series[*i].spots.is_some() {
+            root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;
+        } else if *is_open {
             mark(&root, (x + 16, y - 10), &ARROW, colour)?;
         } else {
             root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;

@@ -4,6 +4,7 @@
 //! to the registry.
 
 pub mod csv;
+pub mod curve_csv;
 pub mod figures;
 mod page;
 pub mod report;
