@@ -6,6 +6,7 @@
 
 pub mod answer;
 pub mod config;
+pub mod deformed;
 pub mod figures;
 pub mod history;
 pub mod kinds;

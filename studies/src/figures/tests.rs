@@ -244,6 +244,7 @@ fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
         stages: &stages,
         sweep_keys: &keys,
         figures,
+        vtu: None,
     })
 }
 
