@@ -118,7 +118,10 @@ fn a_column_carries_its_weight() {
                 assert!((stress[1] - exact).abs() < far * 3.0 * weight, "{kinematics} {x:?} {stress:?} {exact}");
                 assert!(stress[0].abs().max(stress[3].abs()) < far * 3.0 * weight, "{stress:?}");
                 let sinks = -weight * (3.0 * x.y - x.y * x.y / 2.0) / 1e9;
-                assert!((u - Vec2::new(0.0, sinks)).norm() < 1e-9 * 9e-5 + far * 9e-5, "{kinematics} {x:?} {u:?} {sinks}");
+                assert!(
+                    (u - Vec2::new(0.0, sinks)).norm() < 1e-9 * 9e-5 + far * 9e-5,
+                    "{kinematics} {x:?} {u:?} {sinks}"
+                );
             }
         }
         assert!(blocks[0].displacement.iter().all(|u| u.norm() == 0.0) && blocks[0].stress.is_empty());
@@ -160,8 +163,11 @@ fn stresses_at_the_springings_carry_the_arch() {
             .collect();
         along.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert_eq!(along.len(), 13);
-        let force: Vec2 =
-            along.windows(3).step_by(2).map(|t| (t[0].1 + t[1].1 * 4.0 + t[2].1) * ((t[2].0 - t[0].0) / 6.0 * width)).sum();
+        let force: Vec2 = along
+            .windows(3)
+            .step_by(2)
+            .map(|t| (t[0].1 + t[1].1 * 4.0 + t[2].1) * ((t[2].0 - t[0].0) / 6.0 * width))
+            .sum();
         thrust = thrust.max(force.x.abs());
         sum += force;
     }
@@ -185,10 +191,8 @@ fn files_for_paraview_are_well_formed() {
         }
     }
     assert!(open.is_empty());
-    let (points, cells) = (
-        blocks.iter().map(|b| b.nodes.len()).sum::<usize>(),
-        blocks.iter().map(|b| b.cells.len()).sum::<usize>(),
-    );
+    let (points, cells) =
+        (blocks.iter().map(|b| b.nodes.len()).sum::<usize>(), blocks.iter().map(|b| b.cells.len()).sum::<usize>());
     assert!(text.contains(&format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\"")));
     let corners: usize = blocks.iter().flat_map(|b| b.cells.iter().map(Vec::len)).sum();
     for (section, name, count) in [

@@ -19,13 +19,26 @@ pub struct Series {
     pub spots: Option<Vec<Spot>>,
 }
 
+/// How a place is marked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    /// A filled octagon.
+    Dot,
+    /// A filled square.
+    Square,
+    /// A circle around what else is there.
+    Ring,
+}
+
 /// A marked place of a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spot {
     /// Where.
     pub at: (f64, f64),
-    /// What: each kind has one marker in all series, named in the legend.
+    /// What, for the legend: a kind has one marker.
     pub kind: &'static str,
+    /// How it is drawn.
+    pub marker: Marker,
     /// Written beside it.
     pub label: String,
 }
@@ -80,6 +93,14 @@ fn mark(area: &Canvas, at: (i32, i32), corners: &[(i32, i32)], colour: RGBColor)
     Ok(())
 }
 
+fn symbol(area: &Canvas, at: (i32, i32), marker: Marker, colour: RGBColor) -> Result<(), Box<dyn Error>> {
+    match marker {
+        Marker::Dot => mark(area, at, &corners(0), colour),
+        Marker::Square => mark(area, at, &corners(1), colour),
+        Marker::Ring => Ok(area.draw(&Circle::new(at, 9, colour.stroke_width(2)))?),
+    }
+}
+
 fn write(area: &Canvas, at: (i32, i32), words: &str, size: u32, centred: bool) -> Result<(), Box<dyn Error>> {
     let place = Pos::new(if centred { HPos::Center } else { HPos::Left }, VPos::Center);
     area.draw(&Text::new(words.to_string(), at, ("sans-serif", size).into_font().color(&INK).pos(place)))?;
@@ -130,13 +151,13 @@ fn draw(
         y_high + if open { 0.12 * (y_high - y_low.min(0.0)) } else { 0.0 },
     );
 
-    let mut kinds: Vec<&str> = Vec::new();
+    let mut kinds: Vec<(&str, Marker)> = Vec::new();
     for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
-        if !kinds.contains(&spot.kind) {
-            kinds.push(spot.kind);
+        if !kinds.contains(&(spot.kind, spot.marker)) {
+            kinds.push((spot.kind, spot.marker));
         }
     }
-    kinds.sort_unstable();
+    kinds.sort_unstable_by_key(|(kind, _)| *kind);
     let mut entries: Vec<(usize, bool, String)> = series
         .iter()
         .enumerate()
@@ -146,7 +167,7 @@ fn draw(
         }))
         .collect();
     let lines_end = entries.len();
-    entries.extend(kinds.iter().enumerate().map(|(kind, words)| (kind, false, words.to_string())));
+    entries.extend(kinds.iter().enumerate().map(|(kind, (words, _))| (kind, false, words.to_string())));
     let mut places = Vec::new();
     let (mut x, mut row) = (70, 0);
     for (_, _, words) in &entries {
@@ -207,8 +228,7 @@ fn draw(
         let colour = PALETTE[i % PALETTE.len()];
         for spot in s.spots.iter().flatten().filter(|spot| spot.at.0.is_finite() && spot.at.1.is_finite()) {
             let (x, y) = chart.backend_coord(&spot.at);
-            let kind = kinds.iter().position(|kind| *kind == spot.kind).unwrap_or(0);
-            mark(&root, (x, y), &corners(kind), colour)?;
+            symbol(&root, (x, y), spot.marker, colour)?;
             let width = text_width(&spot.label, 13.0) as i32;
             let fits = x + 10 + width < WIDTH as i32 - 6;
             write(
@@ -232,7 +252,7 @@ fn draw(
     for (entry, ((i, is_open, words), (x, row))) in entries.iter().zip(&places).enumerate() {
         let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
         if entry >= lines_end {
-            mark(&root, (x + 26, y), &corners(*i), INK)?;
+            symbol(&root, (x + 26, y), kinds[*i].1, INK)?;
         } else if series[*i].spots.is_some() {
             root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;
         } else if *is_open {

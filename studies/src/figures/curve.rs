@@ -1,6 +1,6 @@
 //! Load-displacement curves of paths, with the joints that became hinges on the way.
 
-use super::chart::{Series, Spot, chart_svg};
+use super::chart::{Marker, Series, Spot, chart_svg};
 use super::format::{case_title, format_force, parameters_text, unit_load};
 use crate::history::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
@@ -48,8 +48,8 @@ fn places(curve: &[(f64, f64)], factors: impl Iterator<Item = f64>) -> Vec<Optio
 fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labelled: bool) -> Vec<Spot> {
     let last_stage = result.stages.last().map(|stage| stage.name.as_str());
     let kind = |event: &JointEvent| match event.became {
-        Some(JointState::Hinge(_)) => Some("a joint becomes a hinge"),
-        Some(JointState::Slides) => Some("a joint slides"),
+        Some(JointState::Hinge(_)) => Some(("a joint becomes a hinge", Marker::Dot)),
+        Some(JointState::Slides) => Some(("a joint slides", Marker::Square)),
         _ => None,
     };
     let range = |axis: fn(&(f64, f64)) -> f64| {
@@ -58,7 +58,7 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
     };
     let (wide, high) = (range(|p| p.0), range(|p| p.1));
     let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() <= 0.08 * wide && (a.1 - b.1).abs() <= 0.04 * high;
-    let shown: Vec<(&JointEvent, &'static str)> = events
+    let shown: Vec<(&JointEvent, (&'static str, Marker))> = events
         .iter()
         .filter(|event| !event.gravity && Some(event.stage.as_str()) == last_stage)
         .filter_map(|event| Some((event, kind(event)?)))
@@ -67,14 +67,14 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
     let mut spots: Vec<Spot> = shown
         .iter()
         .zip(at)
-        .filter_map(|((event, kind), at)| {
+        .filter_map(|((event, (kind, marker)), at)| {
             let label = if labelled { format!("joint {}", event.joint) } else { String::new() };
-            Some(Spot { at: at?, kind, label })
+            Some(Spot { at: at?, kind, marker: *marker, label })
         })
         .collect();
     if let Some(&end) = line.last() {
         let kind = if result.status == Status::Collapse { "collapse" } else { "end of the path" };
-        spots.push(Spot { at: end, kind, label: String::new() });
+        spots.push(Spot { at: end, kind, marker: Marker::Ring, label: String::new() });
     }
     // Labels of events near each other would cover each other: the last names them all.
     for late in 1..spots.len() {
@@ -91,7 +91,7 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
 pub fn curve_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> Option<String> {
     let line = points(result.curve.as_deref().filter(|curve| curve.len() > 1)?);
     let spots = spots(result, &joint_events(assembly, result), &line, true);
-    let title = format!("{}: load over displacement", case_title(study, result));
+    let title = case_title(study, result);
     let name = result.stages.last().map_or("path".into(), |stage| format!("stage \"{}\"", stage.name));
     let series = [Series { name, points: line, spots: Some(spots), ..Series::default() }];
     Some(chart_svg(&title, X_LABEL, &factor_label(unit_load(stages)), &series, &[]))

@@ -21,7 +21,7 @@ pub(crate) mod sample;
 #[cfg(test)]
 mod tests;
 
-pub use chart::{Series, Spot, chart_svg};
+pub use chart::{Marker, Series, Spot, chart_svg};
 pub use curve::{curve_charts, curve_svg};
 pub use drawing::scene_svg;
 pub use mechanism::mechanism_svg;
