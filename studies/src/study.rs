@@ -134,7 +134,7 @@ pub(crate) static VARIANT: Shape = Shape::Table(&[
 pub(crate) static OUTPUT: Shape = Shape::Table(&[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
     key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
-    key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView"),
+    key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ]);
 
 /// The keys of a study file.
@@ -536,9 +536,6 @@ fn check_kind_and_output(builder: &mut Builder<'_>, resolved: &Map<String, Json>
             let help = suggest(kind, &kinds, "kinds available");
             builder.wrong("kind", format!("there is no study kind \"{kind}\""), help);
         }
-    }
-    if resolved.get("output").is_some_and(|output| output["vtu"] == true) {
-        builder.wrong("output.vtu", "files for ParaView are not available yet", "set vtu = false");
     }
 }
 
