@@ -505,7 +505,11 @@ fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
     let stages = resolved.get("stages").and_then(|stages| build_stages(&mut builder, stages, assembly.as_ref()));
     let solver =
         resolved.get("solver").and_then(|solver| choose_solver(&mut builder, solver, &resolved, assembly.as_ref()));
-    notes.extend(unused_by_limit_analysis(&resolved));
+    let limit = solver.as_ref().is_some_and(|solver| card(PluginKind::LimitSolver, &solver.tag).is_some());
+    let rigid = assembly.as_ref().is_some_and(|assembly| !assembly.deforms());
+    if limit || rigid {
+        notes.extend(unused_by_limit_analysis(&resolved));
+    }
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if builder.mistakes.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
