@@ -50,7 +50,7 @@ impl Model<'_> {
     }
 
     /// Newton's method from all points open.
-    pub fn from_open(&mut self, start: &State, control: &Control) -> Result<(State, u64), Refusal> {
+    pub fn tried_from_open(&mut self, start: &State, control: &Control) -> Result<(State, u64), Refusal> {
         let mut guess = start.clone();
         for c in 0..guess.regime.len() {
             let Some(law) = self.law(c) else { continue };

@@ -250,7 +250,7 @@ impl<'a> Tracer<'a, '_> {
         let control = Control::Factor(factor);
         let mut whole = self.model.newton(&self.state, self.state.clone(), &control);
         if whole.is_err() && !self.model.finite() {
-            whole = self.model.from_open(&self.state, &control);
+            whole = self.model.tried_from_open(&self.state, &control);
         }
         if let Ok((next, iterations)) = whole {
             let slips = (0..next.gap.len()).any(|c| {
