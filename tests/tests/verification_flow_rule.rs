@@ -186,7 +186,7 @@ fn results_are_verified_and_changes_found() {
         let resolved = toml::to_string(&original.resolved).expect("a study can be written");
         let again = load(&resolved, "resolved.toml", &[]).expect("and read");
         let cases = original.cases.iter().map(answer_case).collect();
-        let results = StudyResults { study: original.name, version: "test".into(), cases };
+        let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
         assert_eq!(results.cases[0].status, Status::Collapse, "{solver}: {:?}", results.cases[0].notes);
         assert_eq!(verify(&again, &results), vec![]);
         let changes: [fn(&mut CaseResult); 6] = [
