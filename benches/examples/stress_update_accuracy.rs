@@ -145,7 +145,7 @@ fn main() {
                 points.push((error(&stress).log10(), (1e6 * seconds).log10()));
             }
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            series.push(Series { name: format!("{name}, {kind}"), points, open_points: Vec::new() });
+            series.push(Series { name: format!("{name}, {kind}"), points, ..Series::default() });
         };
         add("full", (2..=14).step_by(2).map(|k| (format!("{}", 1 << k), full(&*update, size, 1 << k))).collect());
         let rows = (1..=8).map(|k| {

@@ -24,6 +24,15 @@ impl SparseLu {
         Some(SparseLu { matrix, factors })
     }
 
+    /// Factorises a matrix with something added, which refinement takes out again: where the matrix
+    /// itself is singular but its right-hand sides are consistent. `None` as for [`SparseLu::new`].
+    pub fn shifted(size: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
+        let all: Entries = entries.iter().chain(shift).copied().collect();
+        let triplets: Vec<_> = entries.iter().map(|&(i, j, v)| Triplet::new(i, j, v)).collect();
+        let factors = SparseLu::new(size, &all)?.factors;
+        Some(SparseLu { matrix: SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?, factors })
+    }
+
     /// Solves for several right-hand sides (columns), each with `refinements` steps of iterative
     /// refinement. `None` where the matrix is singular to rounding.
     pub fn solve(&self, right: &[Vec<f64>], refinements: usize) -> Option<Vec<Vec<f64>>> {

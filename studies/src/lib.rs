@@ -6,7 +6,9 @@
 
 pub mod answer;
 pub mod config;
+pub mod deformed;
 pub mod figures;
+pub mod history;
 pub mod kinds;
 pub mod loads;
 pub mod path;

@@ -14,6 +14,8 @@ use voussoir_core::issue::Issue;
 use voussoir_core::schema::{Need, Parameter, Range, Shape, Variant};
 use voussoir_core::units::Quantity;
 
+/// Parts of an evenly spread load on a deformable block.
+const PARTS: usize = 16;
 /// Share of the scene's size within which a load is at a vertex.
 const ROUNDING: f64 = 1e-12;
 
@@ -142,7 +144,7 @@ pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec
         }
         Load::Pressure { block, edge, value } => {
             place.finite(&[("value", &[*value])])?;
-            Ok((vec![place.on_edge(block, *edge, *value)?], Vec::new()))
+            Ok((place.on_edge(block, *edge, *value)?, Vec::new()))
         }
         Load::Body { acceleration } => {
             place.finite(&[("acceleration", acceleration)])?;
@@ -266,7 +268,7 @@ impl Place<'_> {
         Ok(PointForce { body, point, force })
     }
 
-    fn on_edge(&self, block: &BlockName, edge: usize, value: f64) -> Result<PointForce, Vec<Issue>> {
+    fn on_edge(&self, block: &BlockName, edge: usize, value: f64) -> Result<Vec<PointForce>, Vec<Issue>> {
         let body = self.block(block)?;
         let vertices = &self.assembly.bodies[body].vertices;
         if edge >= vertices.len() {
@@ -276,7 +278,7 @@ impl Place<'_> {
         let (a, b) = (vertices[edge], vertices[(edge + 1) % vertices.len()]);
         // Of an anticlockwise polygon the inside lies to the left of every edge.
         let force = turned(b - a) * (value * self.assembly.width);
-        Ok(PointForce { body, point: (a + b) / 2.0, force })
+        Ok(self.spread(body, [a, b], force))
     }
 
     fn on_extrados(&self, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Issue>> {
@@ -305,6 +307,19 @@ impl Place<'_> {
             .into_iter()
             .map(|&(_, body, point)| Ok(PointForce { body: self.movable(body, key)?, point, force: share }))
             .collect()
+    }
+
+    /// A force spread evenly between two points: as its resultant on a rigid block, as the points of
+    /// a Gauss rule on equal parts on a deformable one.
+    fn spread(&self, body: usize, [from, to]: [Vec2; 2], force: Vec2) -> Vec<PointForce> {
+        if self.assembly.is_rigid(body) || self.assembly.bodies[body].fixed {
+            return vec![PointForce { body, point: (from + to) / 2.0, force }];
+        }
+        let offset = 0.5 / 3f64.sqrt();
+        let at = |part: usize, side: f64| (part as f64 + 0.5 + side * offset) / PARTS as f64;
+        let places = (0..PARTS).flat_map(|part| [at(part, -1.0), at(part, 1.0)]);
+        let share = force / (2 * PARTS) as f64;
+        places.map(|t| PointForce { body, point: from + (to - from) * t, force: share }).collect()
     }
 
     fn strip(&self, from: f64, to: f64, pressure: f64) -> Result<Vec<PointForce>, Vec<Issue>> {
@@ -349,7 +364,7 @@ impl Place<'_> {
         for (chord, low, high) in parts {
             let body = self.movable(chord.body, "")?;
             let force = Vec2::new(0.0, -pressure * width * (high - low));
-            forces.push(PointForce { body, point: chord.at((low + high) / 2.0), force });
+            forces.extend(self.spread(body, [chord.at(low), chord.at(high)], force));
         }
         Ok(forces)
     }

@@ -134,7 +134,7 @@ pub(crate) static VARIANT: Shape = Shape::Table(&[
 pub(crate) static OUTPUT: Shape = Shape::Table(&[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
     key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
-    key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView"),
+    key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ]);
 
 /// The keys of a study file.
@@ -505,7 +505,11 @@ fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mistake>> {
     let stages = resolved.get("stages").and_then(|stages| build_stages(&mut builder, stages, assembly.as_ref()));
     let solver =
         resolved.get("solver").and_then(|solver| choose_solver(&mut builder, solver, &resolved, assembly.as_ref()));
-    notes.extend(unused_by_limit_analysis(&resolved));
+    let limit = solver.as_ref().is_some_and(|solver| card(PluginKind::LimitSolver, &solver.tag).is_some());
+    let rigid = assembly.as_ref().is_some_and(|assembly| !assembly.deforms());
+    if limit || rigid {
+        notes.extend(unused_by_limit_analysis(&resolved));
+    }
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if builder.mistakes.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
@@ -536,9 +540,6 @@ fn check_kind_and_output(builder: &mut Builder<'_>, resolved: &Map<String, Json>
             let help = suggest(kind, &kinds, "kinds available");
             builder.wrong("kind", format!("there is no study kind \"{kind}\""), help);
         }
-    }
-    if resolved.get("output").is_some_and(|output| output["vtu"] == true) {
-        builder.wrong("output.vtu", "files for ParaView are not available yet", "set vtu = false");
     }
 }
 

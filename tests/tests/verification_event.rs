@@ -1,9 +1,16 @@
-//! `event_path` against limit analysis and closed forms: small displacements, any mesh.
+//! `event_path` against limit analysis, closed forms and published numbers: small displacements.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use voussoir::core::geometry::Vec2;
+use voussoir::core::interface::Facet;
 use voussoir::core::limit::Status;
-use voussoir::core::path::{PathAnswer, PathProblem, PathSettings, PathSolver, certificate::Watch};
+use voussoir::core::path::{
+    Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
+    PathSettings, PathSolver, PathState, certificate::Watch,
+};
 use voussoir::solvers::path::event::EventPath;
-use voussoir_tests::{Arch, assert_close, first_case, friction};
+use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
 
 fn settings() -> PathSettings {
     PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
@@ -15,55 +22,252 @@ fn elastic(study: &str, mesh: &str) -> String {
         .replace("[materials.stone]", &format!("[scene.mesh]\n{mesh}\n[materials.stone]"))
 }
 
-fn path(study: &str) -> PathAnswer {
-    let case = first_case(study);
-    let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
-    let mut watch = Watch::default();
-    let now = std::time::Instant::now();
-    let answer = EventPath {}.trace(&problem, &settings(), &mut watch);
-    eprintln!("{:?} {:?} {:?} {:?} {:?}", answer.status, answer.factor, answer.counters, answer.notes, now.elapsed());
-    eprintln!("{}", watch.worst.iter().map(|(k, v)| format!("{k} {v:.1e}")).collect::<Vec<_>>().join(", "));
-    answer
-}
+/// Keeps every state.
+#[derive(Default)]
+struct Record(Vec<PathState>);
 
-#[test]
-fn the_last_factor_is_that_of_limit_analysis() {
-    for mesh in ["elements = [1, 1]\norder = 1", "elements = [2, 2]\norder = 2", "elements = [4, 6]\norder = 2"] {
-        let answer = path(&elastic(&Arch { joint: friction(0.6), ..Arch::default() }.study(), mesh));
-        assert_eq!(answer.status, Status::Collapse);
-        assert_close(answer.factor.unwrap(), 698.0226652123788, 1e-9);
+impl PathObserver for Record {
+    fn state(&mut self, _problem: &PathProblem, state: &PathState) -> bool {
+        self.0.push(state.clone());
+        true
     }
 }
 
+/// The last factor is that of limit analysis to 1e-9 on any mesh of any order, also where slip does
+/// not dilate, with the same hinges.
 #[test]
-fn other_arches() {
-    for friction_law in ["coulomb", "coulomb_associated"] {
+fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
+    let limit = answered(&Arch::default().study());
+    for mesh in [
+        "elements = [1, 1]\norder = 1",
+        "elements = [2, 2]\norder = 2",
+        "elements = [2, 3]\norder = 3",
+        "elements = [4, 6]\norder = 2\ngrading = 5.0",
+    ] {
+        for law in ["coulomb", "coulomb_associated"] {
+            let joint = friction(0.6).replace("coulomb_associated", law);
+            let result = answered(&elastic(&Arch { joint, ..Arch::default() }.study(), mesh));
+            assert!(result.certificate.passed && result.solver == "event_path", "{:?}", result.notes);
+            assert_close(result.load_factor.unwrap(), 698.0226652123788, 1e-9);
+            let hinges = |r: &voussoir::results::CaseResult| r.stages.last().unwrap().hinges.clone();
+            assert_eq!(hinges(&result), hinges(&limit));
+            assert_eq!(result.mechanism.as_ref().unwrap().kind, limit.mechanism.as_ref().unwrap().kind);
+        }
+    }
+}
+
+/// Also with little friction, jointed ends and other rises; a locked arch ends unbounded.
+#[test]
+fn other_arches_end_where_limit_analysis_does() {
+    for law in ["coulomb", "coulomb_associated"] {
         for (rise, mu, ends, voussoirs) in [
             (2.99, 0.6, "jointed", 13),
             (2.99, 0.3, "bonded", 15),
             (4.49, 0.6, "bonded", 15),
+            (1.79, 0.6, "bonded", 15),
             (1.49, 0.6, "bonded", 15),
             (2.09, 0.4, "bonded", 15),
-            (0.59, 0.6, "bonded", 15),
             (1.19, 0.6, "bonded", 15),
+            (0.59, 0.6, "bonded", 15),
         ] {
-            let arch = Arch {
-                rise,
-                voussoirs,
-                ends,
-                joint: friction(mu).replace("coulomb_associated", friction_law),
-                ..Arch::default()
-            };
-            let limit = voussoir_tests::answered(&Arch { joint: friction(mu), ..arch.clone() }.study());
-            let answer = path(&elastic(&arch.study(), "elements = [4, 6]\norder = 2"));
-            eprintln!(
-                "{friction_law} {rise} {mu} {ends}: limit {:?} {:?} path {:?} {:?} {:e}",
-                limit.status,
-                limit.load_factor,
-                answer.status,
-                answer.factor,
-                answer.factor.unwrap_or(f64::NAN) / limit.load_factor.unwrap_or(f64::NAN) - 1.0
-            );
+            let joint = friction(mu);
+            let arch = Arch { rise, voussoirs, ends, joint, ..Arch::default() };
+            let limit = answered(&arch.study());
+            let own = Arch { joint: friction(mu).replace("coulomb_associated", law), ..arch };
+            let path = answered(&elastic(&own.study(), "elements = [4, 6]\norder = 2"));
+            assert!(path.certificate.passed, "{:?}", path.notes);
+            assert_eq!(path.status, limit.status, "rise {rise} friction {mu} {law}");
+            if let (Some(a), Some(b)) = (path.load_factor, limit.load_factor) {
+                assert_close(a, b, 1e-9);
+            }
         }
+    }
+}
+
+/// One factorisation for 13 congruent voussoirs; none, and no path, where all blocks are rigid.
+#[test]
+fn congruent_voussoirs_are_condensed_once() {
+    let arch = Arch { voussoirs: 13, ends: "jointed", ..Arch::default() };
+    let result = answered(&elastic(&arch.study(), "elements = [4, 6]\norder = 2"));
+    assert_eq!(result.counters["condensation_factorisations"], 1);
+    let case = first_case(&arch.study());
+    let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
+    assert_eq!(problem.counters["condensation_factorisations"], 0);
+    assert!(problem.bodies.iter().all(|body| body.flexibility.is_none()));
+    assert!(EventPath {}.refuses(&problem, &settings()).unwrap().contains("rigid"));
+}
+
+/// The two-degree-of-freedom example of Klarbring's kind: K = [[1, −1], [−1, 2]] in (t, n).
+fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
+    // C = K⁻¹ = [[2, 1], [1, 1]]; axes x = t, y = n. The plus body is held and deforms.
+    let flexibility = Arc::new(nalgebra::DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]));
+    let body = |flexible: bool| PathBody {
+        members: vec![usize::from(flexible)],
+        pole: Vec2::zeros(),
+        held: true,
+        mass: 0.0,
+        points: if flexible { vec![Vec2::zeros()] } else { Vec::new() },
+        flexibility: flexible.then(|| flexibility.clone()),
+        gravity: flexible.then(|| Arc::new(nalgebra::DMatrix::zeros(2, 2))),
+    };
+    let drive = |(stage, (force, end)): (usize, &([f64; 2], DriveEnd))| Drive {
+        stage,
+        gravity: false,
+        loading: Loading {
+            forces: vec![(1, Some(0), Vec2::zeros(), Vec2::new(force[0], force[1]))],
+            ..Loading::default()
+        },
+        start: 0.0,
+        end: *end,
+    };
+    PathProblem {
+        bodies: vec![body(false), body(true)],
+        body_of: vec![0, 1],
+        contacts: vec![Contact {
+            joint: 0,
+            position: Vec2::zeros(),
+            normal: Vec2::new(0.0, 1.0),
+            tangent: Vec2::new(1.0, 0.0),
+            minus: Attachment { body: 0, slot: None },
+            plus: Attachment { body: 1, slot: Some(0) },
+            area: 1.0,
+            gap: 0.0,
+            law: ContactLaw::Law(0),
+            compliance: [0.0; 2],
+        }],
+        facets: vec![std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect()],
+        drives: forces.iter().enumerate().map(drive).collect(),
+        length: 1.0,
+        counters: BTreeMap::new(),
+    }
+}
+
+fn trace(problem: &PathProblem) -> (PathAnswer, Vec<PathState>) {
+    let mut record = Record::default();
+    let answer = EventPath {}.trace(problem, &settings(), &mut record);
+    (answer, record.0)
+}
+
+/// f = (λ, −1), μ = 1.25: stick to 1.25, slip back to λ = 1 at u_t = 1, then open without bound.
+#[test]
+fn friction_can_turn_the_load_back() {
+    let problem = two_degrees(1.25, &[([0.0, -1.0], DriveEnd::Factor(1.0)), ([1.0, 0.0], DriveEnd::Collapse(100.0))]);
+    let (answer, states) = trace(&problem);
+    assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+    assert_close(answer.factor.unwrap(), 1.25, 1e-12);
+    let turn = states.iter().find(|s| (s.gap[0][1] - 1.0).abs() < 1e-9).expect("the end of the slip");
+    assert_close(turn.factor, 1.0, 1e-12);
+    let last = answer.last.unwrap();
+    assert_close(last.gap[0][1], 2.0 * last.factor - 1.0, 1e-12);
+    assert_close(last.gap[0][0], last.factor - 1.0, 1e-12);
+}
+
+/// f = (1.2, −1) at once: with little friction separation is the only solution.
+#[test]
+fn separation_where_it_is_the_only_solution() {
+    for mu in [0.5, 0.9, 1.1] {
+        let (answer, states) = trace(&two_degrees(mu, &[([1.2, -1.0], DriveEnd::Factor(1.0))]));
+        assert_eq!(answer.status, Status::Stands, "{mu} {:?}", answer.notes);
+        let end = states.last().unwrap();
+        // K u = f without contact force: u_t = 2·1.2 − 1, u_n = 1.2 − 1.
+        assert_close(end.gap[0][1], 1.4, 1e-12);
+        assert_close(end.gap[0][0], 0.2, 1e-12);
+    }
+}
+
+/// Slip is irreversible: a rigid block on a compliant joint pushed to the verge of sliding, back, and
+/// to and fro follows the closed form of a spring with a Coulomb slider, and what it dissipates is
+/// what the loads lose.
+#[test]
+fn a_spring_slider_keeps_its_history() {
+    let law = "law = \"coulomb\"\nfriction = 0.5\nnormal_stiffness = 1e9\nshear_stiffness = 1e8";
+    let stage = |name: &str, factor: f64| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\nfactor = {factor:?}\nloads = [{{ kind = \"point\", block = \"b\", point = [0.5, 0.0], force = [1000.0, 0.0] }}]\n"
+        )
+    };
+    // Two blocks hold a third between them: sliding on the left joint, held elastically by a stuck one.
+    let text = format!(
+        "name = \"slider\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\nblocks = [\n{{ name = \"ground\", vertices = [[-1.0, -0.5], [2.0, -0.5], [2.0, 0.0], [-1.0, 0.0]], fixed = true }},\n{{ name = \"b\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.2], [0.0, 0.2]] }}\n]\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{law}\n[solver]\nsolver = \"event_path\"\n[[stages]]\nname = \"dead\"\ngravity = 10.0\n{}{}{}",
+        stage("out", 1.5),
+        stage("back", -3.0),
+        stage("forth", 1.5),
+    );
+    let case = first_case(&text);
+    let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
+    let mut watch = Watch::new(false);
+    let answer = EventPath {}.trace(&problem, &settings(), &mut watch);
+    // 4 kN of weight, friction 2 kN: ±1.5 kN never slide as a whole; forces at the joint's points do
+    // not move, because weight and shear are uniform.
+    assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
+    assert!(watch.worst["path_energy"] < 1e-9 && watch.worst["path_strength"] < 1e-9, "{:?}", watch.worst);
+    let slip = answer.state.motion[1][0];
+    assert!(slip.abs() < 1e-12, "back where it began: {slip:e}");
+    // 2.5 kN is more than friction carries: the block slides away at 2.
+    let sliding = text.replace("factor = 1.5\nloads", "until = \"collapse\"\nloads");
+    let cut = sliding.find("[[stages]]\nname = \"back\"").unwrap();
+    let result = answered(&sliding[..cut]);
+    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+    assert_close(result.load_factor.unwrap(), 2.0, 1e-9);
+}
+
+/// The GAMNI plate (code_aster SSNV128): slip along the bottom, within the scatter of published codes.
+#[test]
+fn the_gamni_plate_slips_as_published() {
+    let text = r#"name = "gamni"
+[scene]
+scene = "blocks"
+width = 1.0
+plane = "strain"
+material = "steel"
+joint = "rough"
+blocks = [
+  { name = "ground", vertices = [[-0.02, -0.02], [0.06, -0.02], [0.06, 0.0], [-0.02, 0.0]], fixed = true },
+  { name = "side", vertices = [[0.04, 0.0], [0.06, 0.0], [0.06, 0.04], [0.04, 0.04]], fixed = true },
+  { name = "plate", vertices = [[0.0, 0.0], [0.04, 0.0], [0.04, 0.04], [0.0, 0.04]] },
+]
+pairs = [{ between = ["side", "plate"], joint = "smooth" }]
+[scene.mesh]
+elements = [32, 10]
+order = 1
+[materials.steel]
+law = "elastic"
+young_modulus = 1.3e11
+poisson_ratio = 0.2
+density = 0.001
+[joints.rough]
+law = "coulomb"
+friction = 1.0
+[joints.smooth]
+law = "unilateral"
+tangential = "free"
+[solver]
+solver = "event_path"
+[[stages]]
+name = "pressures"
+loads = [
+  { kind = "pressure", block = "plate", edge = 3, value = 15e7 },
+  { kind = "pressure", block = "plate", edge = 2, value = 5e7 },
+]
+"#;
+    let case = first_case(text);
+    let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
+    let mut watch = Watch::new(false);
+    let answer = EventPath {}.trace(&problem, &settings(), &mut watch);
+    assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
+    let bottom = |x: f64| {
+        let at = |c: &Contact| c.position.y.abs() < 1e-12 && (c.position.x - x).abs() < 1e-9;
+        let k = problem.contacts.iter().position(at).expect("a contact point there");
+        let (contact, gap) = (&problem.contacts[k], answer.state.gap[k]);
+        // Displacement of the plate, whichever side it is on.
+        let sign = if problem.bodies[contact.plus.body].held { -1.0 } else { 1.0 };
+        sign * (contact.tangent.x * gap[1] + contact.normal.x * gap[0])
+    };
+    let published = [(0.0, 2.86e-5), (0.00125, 2.72e-5), (0.005, 2.28e-5), (0.0075, 1.98e-5), (0.01125, 1.50e-5)];
+    for (x, u) in published {
+        assert_close(bottom(x), u, 0.05);
+    }
+    for (name, value) in watch.worst.iter().filter(|(name, _)| **name != "path_energy") {
+        assert!(*value < 1e-8, "{name} {value:e}");
     }
 }

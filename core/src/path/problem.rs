@@ -459,25 +459,36 @@ impl PathProblem {
 }
 
 impl PathProblem {
-    /// Gaps of all contact points from motions, forces and loads of a state, small displacements
-    /// \[m\]; written into `gaps`.
-    pub fn small_gaps(&self, state: &super::PathState, gaps: &mut [[f64; 2]]) {
+    /// Contact forces and loads of a state on the points of every body, in axes that turn with the
+    /// body where displacements are `finite` \[N\]: there a contact's frame has the mean rotation of
+    /// its two bodies.
+    pub fn forces_on_points(&self, state: &super::PathState, finite: bool) -> Vec<Vec<Vec2>> {
         let mut forces: Vec<Vec<Vec2>> = self.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
+        let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
+        let angle = |body: usize| state.motion[body][2];
         for (contact, f) in self.contacts.iter().zip(&state.force) {
             let on_plus = contact.normal * f[0] + contact.tangent * f[1];
+            let mean = (angle(contact.minus.body) + angle(contact.plus.body)) / 2.0;
             for (side, sign) in [(contact.minus, -1.0), (contact.plus, 1.0)] {
                 if let Some(slot) = side.slot {
-                    forces[side.body][slot] += on_plus * sign;
+                    forces[side.body][slot] += turn(mean - angle(side.body), on_plus) * sign;
                 }
             }
         }
         for (drive, factor) in self.drives.iter().zip(self.applied(state.drive, state.factor)) {
             for (body, slot, _, f) in &drive.loading.forces {
                 if let Some(slot) = slot {
-                    forces[*body][*slot] += f * factor;
+                    forces[*body][*slot] += turn(-angle(*body), *f) * factor;
                 }
             }
         }
+        forces
+    }
+
+    /// Gaps of all contact points from motions, forces and loads of a state, small displacements
+    /// \[m\]; written into `gaps`.
+    pub fn small_gaps(&self, state: &super::PathState, gaps: &mut [[f64; 2]]) {
+        let forces = self.forces_on_points(state, false);
         let elastic: Vec<Vec<Vec2>> = self
             .bodies
             .iter()

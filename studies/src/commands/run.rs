@@ -151,6 +151,7 @@ fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
 fn write_results(study: &Study, results: &StudyResults, dir: &Path, options: &Options) -> Result<(), u8> {
     let assemblies: Vec<&Assembly> = results.cases.iter().map(|case| &study.cases[case.id].assembly).collect();
     let stages: Vec<&[Stage]> = results.cases.iter().map(|case| study.cases[case.id].stages.as_slice()).collect();
+    let kinematics: Vec<_> = results.cases.iter().map(|case| study.cases[case.id].solver.kinematics).collect();
     let sweep_keys: Vec<String> =
         study.cases.first().map(|case| case.parameters.keys().cloned().collect()).unwrap_or_default();
     let output = StudyOutput {
@@ -160,6 +161,7 @@ fn write_results(study: &Study, results: &StudyResults, dir: &Path, options: &Op
         stages: &stages,
         sweep_keys: &sweep_keys,
         figures: study.output.figures,
+        vtu: study.output.vtu.then_some(kinematics.as_slice()),
     };
     for entry in writers() {
         for (name, text) in entry.writer.files(&output) {

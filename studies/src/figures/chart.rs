@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::error::Error;
 
 /// One line of a chart.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
     /// For the legend.
     pub name: String,
@@ -15,6 +15,32 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// Points without an ordinate (unbounded), shown at the top edge; only abscissas count.
     pub open_points: Vec<(f64, f64)>,
+    /// What is marked instead of every point: the line is then drawn in the order of its points.
+    pub spots: Option<Vec<Spot>>,
+}
+
+/// How a place is marked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    /// A filled octagon.
+    Dot,
+    /// A filled square.
+    Square,
+    /// A circle around what else is there.
+    Ring,
+}
+
+/// A marked place of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spot {
+    /// Where.
+    pub at: (f64, f64),
+    /// What, for the legend: a kind has one marker.
+    pub kind: &'static str,
+    /// How it is drawn.
+    pub marker: Marker,
+    /// Written beside it.
+    pub label: String,
 }
 
 const WIDTH: u32 = 900;
@@ -67,6 +93,14 @@ fn mark(area: &Canvas, at: (i32, i32), corners: &[(i32, i32)], colour: RGBColor)
     Ok(())
 }
 
+fn symbol(area: &Canvas, at: (i32, i32), marker: Marker, colour: RGBColor) -> Result<(), Box<dyn Error>> {
+    match marker {
+        Marker::Dot => mark(area, at, &corners(0), colour),
+        Marker::Square => mark(area, at, &corners(1), colour),
+        Marker::Ring => Ok(area.draw(&Circle::new(at, 9, colour.stroke_width(2)))?),
+    }
+}
+
 fn write(area: &Canvas, at: (i32, i32), words: &str, size: u32, centred: bool) -> Result<(), Box<dyn Error>> {
     let place = Pos::new(if centred { HPos::Center } else { HPos::Left }, VPos::Center);
     area.draw(&Text::new(words.to_string(), at, ("sans-serif", size).into_font().color(&INK).pos(place)))?;
@@ -117,7 +151,14 @@ fn draw(
         y_high + if open { 0.12 * (y_high - y_low.min(0.0)) } else { 0.0 },
     );
 
-    let entries: Vec<(usize, bool, String)> = series
+    let mut kinds: Vec<(&str, Marker)> = Vec::new();
+    for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
+        if !kinds.contains(&(spot.kind, spot.marker)) {
+            kinds.push((spot.kind, spot.marker));
+        }
+    }
+    kinds.sort_unstable_by_key(|(kind, _)| *kind);
+    let mut entries: Vec<(usize, bool, String)> = series
         .iter()
         .enumerate()
         .map(|(i, s)| (i, false, s.name.clone()))
@@ -125,6 +166,8 @@ fn draw(
             (i, true, if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
         }))
         .collect();
+    let lines_end = entries.len();
+    entries.extend(kinds.iter().enumerate().map(|(kind, (words, _))| (kind, false, words.to_string())));
     let mut places = Vec::new();
     let (mut x, mut row) = (70, 0);
     for (_, _, words) in &entries {
@@ -183,7 +226,21 @@ fn draw(
     }
     for (i, s) in series.iter().enumerate() {
         let colour = PALETTE[i % PALETTE.len()];
-        for &(x, y) in s.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()) {
+        for spot in s.spots.iter().flatten().filter(|spot| spot.at.0.is_finite() && spot.at.1.is_finite()) {
+            let (x, y) = chart.backend_coord(&spot.at);
+            symbol(&root, (x, y), spot.marker, colour)?;
+            let width = text_width(&spot.label, 13.0) as i32;
+            let fits = x + 10 + width < WIDTH as i32 - 6;
+            write(
+                &root,
+                (if fits { x + 10 } else { x - 4 - width }, y + if fits { 9 } else { 16 }),
+                &spot.label,
+                13,
+                false,
+            )?;
+        }
+        let every = s.spots.is_none();
+        for &(x, y) in s.points.iter().filter(|(x, y)| every && x.is_finite() && y.is_finite()) {
             mark(&root, chart.backend_coord(&(x, y)), &corners(i), colour)?;
         }
         for &(x, _) in s.open_points.iter().filter(|(x, _)| x.is_finite()) {
@@ -192,9 +249,13 @@ fn draw(
         }
     }
     let base = (head + PLOT) as i32 + 14;
-    for ((i, is_open, words), (x, row)) in entries.iter().zip(&places) {
+    for (entry, ((i, is_open, words), (x, row))) in entries.iter().zip(&places).enumerate() {
         let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
-        if *is_open {
+        if entry >= lines_end {
+            symbol(&root, (x + 26, y), kinds[*i].1, INK)?;
+        } else if series[*i].spots.is_some() {
+            root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;
+        } else if *is_open {
             mark(&root, (x + 16, y - 10), &ARROW, colour)?;
         } else {
             root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;

@@ -167,7 +167,7 @@ fn contours(canvas: &mut Canvas, map: &MapAxes, ratios: &[Vec<Option<f64>>], x: 
     let (low, high) =
         known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high): (f64, f64), &r| (low.min(r), high.max(r)));
     // Ratios that differ by rounding have no contours.
-    if low > high || high - low <= 1e-6 * high {
+    if (high - low).is_nan() || high - low <= 1e-6 * high {
         return;
     }
     // Round values; of the level 1 only rounding would be drawn where the two loads agree.

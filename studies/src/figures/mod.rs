@@ -6,6 +6,7 @@ pub mod axes;
 pub mod chart;
 pub mod closure;
 pub mod comparison;
+pub mod curve;
 pub mod displaced;
 pub mod drawing;
 pub mod format;
@@ -23,7 +24,8 @@ pub(crate) mod sample;
 #[cfg(test)]
 mod tests;
 
-pub use chart::{Series, chart_svg};
+pub use chart::{Marker, Series, Spot, chart_svg};
+pub use curve::{curve_charts, curve_svg};
 pub use drawing::scene_svg;
 pub use mechanism::mechanism_svg;
 pub use sweep::{sweep_axis, sweep_chart};

@@ -76,7 +76,7 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
                 notes.push(format!("not shown, {name}: {shown}"));
             }
         }
-        series.push(Series { name: variant.unwrap_or("collapse").to_string(), points, open_points });
+        series.push(Series { name: variant.unwrap_or("collapse").to_string(), points, open_points, spots: None });
     }
     if series.iter().all(|s| s.points.is_empty() && s.open_points.is_empty()) {
         return None;

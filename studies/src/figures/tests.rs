@@ -202,7 +202,7 @@ fn special_characters_are_escaped() {
     scene.answer.variant = Some("μ < 0.6 & \"dry\"".into());
     let svg = scene_svg("a<b>&c", &scene.assembly, &scene.stages, &scene.answer);
     assert!(svg.contains("a&lt;b&gt;&amp;c") && svg.contains("μ &lt; 0.6 &amp;"));
-    let series = Series { name: "<&>".into(), points: vec![(1.0, 2.0), (2.0, 3.0)], open_points: vec![] };
+    let series = Series { name: "<&>".into(), points: vec![(1.0, 2.0), (2.0, 3.0)], ..Series::default() };
     let chart = chart_svg("a<b&c", "x", "y", &[series], &["<note>".into()]);
     assert_balanced(&chart, "chart");
     assert!(!chart.contains("<note>") && !chart.contains("a<b&c"));
@@ -244,6 +244,7 @@ fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
         stages: &stages,
         sweep_keys: &keys,
         figures,
+        vtu: None,
     })
 }
 
@@ -262,7 +263,7 @@ fn a_sweep_of_the_rise_is_drawn_over_span_by_rise() {
 fn a_chart_of_one_point_or_none() {
     let case = blank(0, Status::Stalled);
     assert!(sweep_chart("s", &[(&case, 1.0)], "x", None).is_none());
-    let one = Series { name: "a".into(), points: vec![(1.0, 5.0)], open_points: vec![] };
+    let one = Series { name: "a".into(), points: vec![(1.0, 5.0)], ..Series::default() };
     assert_balanced(&chart_svg("t", "x", "y", &[one], &[]), "one point");
     assert_balanced(&chart_svg("t", "x", "y", &[], &[]), "no point");
 }
@@ -271,7 +272,11 @@ fn a_chart_of_one_point_or_none() {
 fn every_writer_gives_its_files_and_they_need_nothing_else() {
     with_output(true, |study| {
         let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
+<<<<<<< HEAD
         assert_eq!(tags, ["comparison", "figures", "report", "results_csv", "results_json"]);
+=======
+        assert_eq!(tags, ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "vtu"]);
+>>>>>>> path
         for entry in writers() {
             for (name, text) in entry.writer.files(study) {
                 if name.ends_with("html") || name.ends_with("svg") {

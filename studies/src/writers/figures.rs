@@ -2,7 +2,7 @@
 
 use super::{StudyOutput, Writer, register};
 use crate::figures::sweep::study_chart;
-use crate::figures::{mechanism_svg, scene_svg};
+use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 
 /// Writes `figures/*.svg`.
 #[derive(Debug)]
@@ -15,11 +15,13 @@ impl Writer for Figures {
         }
         let mut files: Vec<_> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
+        files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         for (place, case) in study.results.cases.iter().enumerate() {
             let Some((assembly, stages)) = study.scene(place) else { continue };
             let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.id);
             files.push((name("scene"), scene_svg(study.name, assembly, stages, case)));
             files.extend(mechanism_svg(study.name, assembly, case).map(|svg| (name("mechanism"), svg)));
+            files.extend(curve_svg(study.name, assembly, stages, case).map(|svg| (name("curve"), svg)));
         }
         files
     }
@@ -28,7 +30,9 @@ impl Writer for Figures {
 register!(
     "figures",
     Figures,
-    "figures/*.svg: each case's scene and mechanism, and the chart of a sweep over one number",
+    "figures/*.svg: each case's scene, mechanism and path, and charts of sweeps",
     "# `figures`\n\nWrites `figures/case-NNNN-scene.svg`, `figures/case-NNNN-mechanism.svg` and, where exactly one \
-     number is swept, `figures/sweep.svg`. Displacements of mechanisms are exaggerated.\n"
+     number is swept, `figures/sweep.svg`. Displacements of mechanisms are exaggerated. Where `[output] curve = true`, the \
+     load over its displacement is in `figures/case-NNNN-curve.svg`, and two to seven cases together in `figures/curve.svg` \
+     (more cases: `figures/curve-N.svg` for the N-th variant), with the joints that become hinges or slide.\n"
 );

@@ -5,13 +5,16 @@
 
 pub mod comparison;
 pub mod csv;
+pub mod curve_csv;
 pub mod figures;
 mod page;
 pub mod report;
 pub mod results_json;
 pub mod table;
+pub mod vtu;
 
 use crate::results::StudyResults;
+use crate::study::Kinematics;
 use voussoir_core::assembly::{Assembly, Stage};
 
 /// What writers are given: the results and what they were computed from.
@@ -29,6 +32,8 @@ pub struct StudyOutput<'a> {
     pub sweep_keys: &'a [String],
     /// Whether figures are wanted.
     pub figures: bool,
+    /// Small or finite displacements, one per case, where files for ParaView are wanted.
+    pub vtu: Option<&'a [Kinematics]>,
 }
 
 impl StudyOutput<'_> {

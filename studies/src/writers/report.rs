@@ -5,12 +5,14 @@ use super::page::{self, STYLE};
 use super::table::{distinct_notes, id_list};
 use super::{StudyOutput, Writer, register};
 use crate::figures::format::{
-    case_title, escape, format_force, format_number, format_seconds, headline, key_with_unit, kind_words,
+    case_title, escape, format_force, format_number, format_seconds, format_short, headline, key_with_unit, kind_words,
     status_meaning, status_word, unit_load,
 };
 use crate::figures::sweep::study_chart;
-use crate::figures::{mechanism_svg, scene_svg};
+use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
+use crate::history::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
+use voussoir_core::assembly::Assembly;
 use voussoir_core::limit::Status;
 
 /// More cases than this are not drawn.
@@ -46,6 +48,7 @@ pub fn report_html(study: &StudyOutput) -> String {
     if study.figures {
         body += &figures(study);
     }
+    body += &paths(study);
     body += &certificates(cases);
     body += &format!(
         "<footer>Written by Voussoir {}. SI units; forces in N, kN or MN as marked. The numbers to the last bit are in \
@@ -198,7 +201,78 @@ fn figures(study: &StudyOutput) -> String {
                 "<figure>{svg}<figcaption>How it collapses; displacements are exaggerated.</figcaption></figure>\n"
             );
         }
+        if let Some(svg) = curve_svg(study.name, assembly, stages, case) {
+            text += &format!("<figure>{svg}<figcaption>{CURVE}</figcaption></figure>\n");
+        }
         text += "</details>\n";
+    }
+    text
+}
+
+/// What a load-displacement curve shows.
+const CURVE: &str = "The load over its displacement along itself (that of the rigid motion of the blocks that carry it), \
+counted from the scene without any load.";
+
+/// A change of a joint in words.
+fn what(assembly: &Assembly, event: &JointEvent) -> String {
+    let end = |end: usize| match (&assembly.arch, end) {
+        (Some(_), 0) => "at the intrados".to_string(),
+        (Some(_), _) => "at the extrados".to_string(),
+        (None, _) => format!("at ({}, {}) m", format_short(event.point[0], 4), format_short(event.point[1], 4)),
+    };
+    match event.became {
+        Some(JointState::Hinge(side)) => {
+            format!("becomes a hinge {}{}", end(side), if event.slides { ", its end slides" } else { "" })
+        }
+        Some(JointState::Slides) => "slides".into(),
+        Some(JointState::Open) => "opens over its whole height".into(),
+        Some(JointState::Closed) => "is no hinge any more and does not slide".into(),
+        None => "begins to crush".into(),
+    }
+}
+
+/// Paths: what happened in which order, and the work done.
+fn paths(study: &StudyOutput) -> String {
+    let cases = &study.results.cases;
+    let followed: Vec<usize> = (0..cases.len()).filter(|&i| cases[i].displacements.is_some()).collect();
+    if followed.is_empty() {
+        return String::new();
+    }
+    let mut text = "<h2>What happened in which order</h2>\n<p>A joint is a hinge when one of its ends is the only contact \
+                    point still closed, and slides when all its closed points slide the same way. What moves only in the \
+                    collapse mechanism stands last, at the collapse load.</p>\n"
+        .to_string();
+    if study.figures {
+        for (_, chart) in curve_charts(study) {
+            text += &format!("<figure>{chart}<figcaption>{CURVE}</figcaption></figure>\n");
+        }
+    }
+    for (place, &index) in followed.iter().take(DRAWN).enumerate() {
+        let (case, Some((assembly, _))) = (&cases[index], study.scene(index)) else { continue };
+        let events = joint_events(assembly, case);
+        let open = if place == 0 { " open" } else { "" };
+        text += &format!("<details{open}><summary>{}</summary>\n", escape(&case_title(study.name, case)));
+        if events.is_empty() {
+            text += "<p>No joint became a hinge or slid.</p>\n";
+        } else {
+            let header = ["order", "stage", "factor", "joint", "what"].map(String::from);
+            let rows = events.iter().enumerate().map(|(order, event)| {
+                let stage = if event.gravity { format!("{} (gravity)", event.stage) } else { event.stage.clone() };
+                let (factor, joint) = (format_number(event.factor, 7), event.joint.to_string());
+                vec![(order + 1).to_string(), stage, factor, joint, what(assembly, event)]
+            });
+            text += &page::table(&header, rows);
+        }
+        let points = case.events.len();
+        let counts = case.counters.iter().map(|(name, count)| format!("{}: {count}", name.replace('_', " ")));
+        text += &format!(
+            "<p class=\"quiet\">{points} event{} at contact points. Work done: {}.</p>\n</details>\n",
+            if points == 1 { "" } else { "s" },
+            escape(&counts.collect::<Vec<_>>().join(", "))
+        );
+    }
+    if followed.len() > DRAWN {
+        text += &format!("<p>{} paths: the first {DRAWN} are listed here.</p>\n", followed.len());
     }
     text
 }

@@ -36,7 +36,7 @@ impl Base {
     /// Assembles and factorises. `None` where the system is singular.
     pub fn new(system: &System, pieces: Vec<Piece>) -> Option<Self> {
         let nc = system.contacts;
-        let mut entries: Entries = Vec::new();
+        let (mut entries, mut sharing): (Entries, Entries) = (Vec::new(), Vec::new());
         let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
             entries.extend(system.flexibility[2 * c + i].iter().map(|&(j, v)| (row, j, factor * v)));
             entries.extend(system.kinematics[2 * c + i].iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
@@ -46,7 +46,7 @@ impl Base {
                 Piece::Stick => {
                     for i in 0..2 {
                         gap_row(c, i, 2 * c + i, 1.0, &mut entries);
-                        entries.push((2 * c + i, 2 * c + i, SHARING));
+                        sharing.push((2 * c + i, 2 * c + i, SHARING));
                     }
                 }
                 Piece::Free | Piece::Corner(..) => entries.extend((0..2).map(|i| (2 * c + i, 2 * c + i, 1.0))),
@@ -63,7 +63,7 @@ impl Base {
         for (row, kinematics) in system.kinematics.iter().enumerate() {
             entries.extend(kinematics.iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
-        let lu = SparseLu::new(system.size(), &entries)?;
+        let lu = SparseLu::shifted(system.size(), &entries, &sharing)?;
         Some(Base { pieces, lu, columns: BTreeMap::new(), drive: None })
     }
 

@@ -1,7 +1,7 @@
 //! `event_path`: elastic blocks with facet laws and small displacements, exactly from event to event.
 //!
 //! Between events everything is linear. At an event the points at the verge of a change pose a rate
-//! problem ([`rate`]); its solution is the direction of the next piece of the path. λ is no
+//! problem (`rate.rs`); its solution is the direction of the next piece of the path. λ is no
 //! parameter of the path: it may stand still (a mechanism) or fall.
 #![doc = include_str!("event_path.md")]
 

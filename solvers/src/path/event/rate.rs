@@ -218,7 +218,7 @@ const PIVOTING: f64 = 1e-7;
 /// Unknowns above which linear algebra is that of large systems.
 const LARGE: usize = 30;
 /// Combinations that are tried.
-const COMBINATIONS: usize = 40_000;
+const COMBINATIONS: usize = 140_000;
 
 /// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
 #[derive(Debug)]

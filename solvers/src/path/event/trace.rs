@@ -240,6 +240,10 @@ impl<'a> Tracer<'a> {
                 }
             }
         }
+        if self.limit_point.is_some() {
+            self.notes.push(format!("behind the limit point λ rose again to {}", self.factor));
+            return self.ended();
+        }
         let reached = self.factor;
         self.finish(Status::Stands, Some(reached), None, None)
     }

@@ -1,6 +1,7 @@
 //! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
+mod claims;
 mod kinematics;
 mod law;
 mod ledger;
@@ -29,7 +30,7 @@ impl PathSolver for NewtonPath {
         }
         let strategy = settings.continuation.clone();
         let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
-        trace::trace(problem, settings, strategy, observer)
+        claims::confirmed(problem, settings.finite, trace::trace(problem, settings, strategy, observer))
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {

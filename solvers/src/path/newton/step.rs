@@ -49,6 +49,19 @@ impl Model<'_> {
         self.iterate(start, guess.clone(), control, 8).or_else(|_| self.iterate(start, guess, control, 0))
     }
 
+    /// Newton's method from all points open.
+    pub fn tried_from_open(&mut self, start: &State, control: &Control) -> Result<(State, u64), Refusal> {
+        let mut guess = start.clone();
+        for c in 0..guess.regime.len() {
+            let Some(law) = self.law(c) else { continue };
+            let corners = (0..law.corners.len()).map(|k| Regime::Corner(k as u8));
+            if let Some(open) = corners.into_iter().find(|regime| law.opens(*regime)) {
+                guess.regime[c] = open;
+            }
+        }
+        self.newton(start, guess, control)
+    }
+
     /// Greatest relative residual: balance and yielding against forces, gaps against motions.
     fn error(&self, residual: &[f64], state: &State) -> f64 {
         let u = self.units;

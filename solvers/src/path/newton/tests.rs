@@ -302,10 +302,9 @@ fn one_solution_of_the_two_degree_example() {
     }
 }
 
-/// The same with μ = 1.1, where separation is the only solution too: NOT solved. The whole step cycles, and
-/// the steps from the unloaded state report a limit point that does not exist.
+/// The same with μ = 1.1, where separation is the only solution too: the step from the stuck state
+/// cycles, the one from the open state does not.
 #[test]
-#[ignore = "known to fail: a false limit point from the unloaded state"]
 fn separation_at_a_friction_close_to_the_load() {
     let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
     let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);

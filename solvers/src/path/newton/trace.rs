@@ -52,6 +52,8 @@ pub(super) struct Tracer<'a, 'o> {
     motion: Option<Vec<[f64; 3]>>,
     ray: Option<Vec<[f64; 2]>>,
     peak: Option<Peak>,
+    /// Why the first limit point is not proven to be one.
+    doubt: Option<String>,
 }
 
 /// Follows all drives.
@@ -84,6 +86,7 @@ pub(super) fn trace(
         motion: None,
         ray: None,
         peak: None,
+        doubt: None,
     };
     tracer.run(problem);
     tracer.answer()
@@ -135,7 +138,11 @@ impl<'a> Tracer<'a, '_> {
         self.status = if self.peak.is_some() { Status::LimitPoint } else { Status::Stands };
     }
 
-    fn answer(self) -> PathAnswer {
+    fn answer(mut self) -> PathAnswer {
+        if let (Status::LimitPoint, Some(why)) = (self.status, self.doubt.take()) {
+            self.peak = None;
+            self.end(Status::Stalled, format!("the limit point on the path is not proven: {why}"));
+        }
         let mut counters = self.model.counters.clone();
         for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
             counters.entry(name.into()).or_default();
@@ -240,7 +247,11 @@ impl<'a> Tracer<'a, '_> {
 
     /// To a factor: in one step where nothing irreversible happens in it, else in steps.
     fn reach(&mut self, drive: &Drive, factor: f64) -> Outcome {
-        let whole = self.model.newton(&self.state, self.state.clone(), &Control::Factor(factor));
+        let control = Control::Factor(factor);
+        let mut whole = self.model.newton(&self.state, self.state.clone(), &control);
+        if whole.is_err() && !self.model.finite() {
+            whole = self.model.tried_from_open(&self.state, &control);
+        }
         if let Ok((next, iterations)) = whole {
             let slips = (0..next.gap.len()).any(|c| {
                 let gap = self.model.step_gap(&self.state, &next, c);
@@ -363,6 +374,7 @@ impl<'a> Tracer<'a, '_> {
                             }
                             if falls && self.peak.is_none() {
                                 let motion = self.scaled_motion(&self.state, &other);
+                                self.doubt(&self.state.clone(), direction);
                                 self.peak =
                                     Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
                             }
@@ -543,6 +555,7 @@ impl<'a> Tracer<'a, '_> {
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
         let falls = rate.factor * direction <= 0.0;
         if !self.strategy.passes_limit_points() && (falls || self.turns_back(rate, direction)) {
+            self.doubt(&self.state.clone(), direction);
             self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
         } else {
             self.end(Status::Stalled, why);
@@ -565,6 +578,13 @@ impl<'a> Tracer<'a, '_> {
             }
         }
         false
+    }
+
+    /// Looks, with small displacements, for a rate with growing λ where there should be none.
+    fn doubt(&mut self, state: &State, direction: f64) {
+        if !self.model.finite() {
+            self.doubt = self.model.none_rises(state, direction).err();
+        }
     }
 
     /// Bisects the step from the present state for the point where λ stops growing.
@@ -600,6 +620,7 @@ impl<'a> Tracer<'a, '_> {
         self.model.keep(&start, &mut state);
         let recorded = ledger.recorded(&self.model, self.drive, &state, &slopes);
         let motion = self.scaled_motion(&state, &behind);
+        self.doubt(&state, direction);
         Some(Peak { factor: state.factor, state: recorded, motion })
     }
 

@@ -93,7 +93,7 @@ pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
                 notes.push(format!("{}: {}", name(result), result.notes.last().cloned().unwrap_or_default()));
             }
             let points = result.rows.iter().map(|row| (row[x.0] * x.1, row[y.0] * y.1)).collect();
-            Series { name: name(result), points, open_points: Vec::new() }
+            Series { name: name(result), points, ..Series::default() }
         })
         .collect();
     let title = format!("{}: {} over {}", study.name, labels[1], labels[0]);

@@ -1,0 +1,47 @@
+//! `curve.csv`: the points of load-displacement curves, where a study asks for them.
+
+use super::{StudyOutput, Writer, register};
+use crate::figures::format::{format_value, key_with_unit};
+
+/// Writes `curve.csv`.
+#[derive(Debug)]
+pub struct CurveCsv;
+
+impl Writer for CurveCsv {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+        let any = study.results.cases.iter().any(|case| case.curve.is_some());
+        if any { vec![("curve.csv".into(), curve_csv(study))] } else { Vec::new() }
+    }
+}
+
+/// One row per point of each case's curve, in the order of the path.
+pub fn curve_csv(study: &StudyOutput) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut header = vec!["id".to_string(), "variant".into()];
+    header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
+    header.extend(["stage", "displacement [m]", "load_factor [-]"].map(String::from));
+    writer.write_record(header).expect("writing to memory does not fail");
+    for case in &study.results.cases {
+        let stage = case.stages.last().map_or("", |stage| stage.name.as_str());
+        for [displacement, factor] in case.curve.iter().flatten() {
+            let mut row = vec![case.id.to_string(), case.variant.clone().unwrap_or_default()];
+            row.extend(
+                study.sweep_keys.iter().map(|key| case.parameters.get(key).map(format_value).unwrap_or_default()),
+            );
+            row.extend([stage.to_string(), displacement.to_string(), factor.to_string()]);
+            writer.write_record(row).expect("every row is as long as the header");
+        }
+    }
+    let bytes = writer.into_inner().expect("writing to memory does not fail");
+    String::from_utf8(bytes).expect("every cell is text")
+}
+
+register!(
+    "curve_csv",
+    CurveCsv,
+    "curve.csv: load over displacement along each path, on request",
+    "# `curve_csv`\n\nWrites `curve.csv` where `[output] curve = true` and a case was followed by a path solver: a row for each \
+     state of the last stage, in order. The displacement is that of the loads along themselves (work-conjugate: for one force, \
+     of its point in its direction) by the rigid motion of the blocks that carry them; elastic deformation of those blocks is \
+     left out. A case that is answered by limit analysis has no rows.\n"
+);
