@@ -272,11 +272,7 @@ fn a_chart_of_one_point_or_none() {
 fn every_writer_gives_its_files_and_they_need_nothing_else() {
     with_output(true, |study| {
         let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
-<<<<<<< HEAD
-        assert_eq!(tags, ["comparison", "figures", "report", "results_csv", "results_json"]);
-=======
         assert_eq!(tags, ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "vtu"]);
->>>>>>> path
         for entry in writers() {
             for (name, text) in entry.writer.files(study) {
                 if name.ends_with("html") || name.ends_with("svg") {
