@@ -17,6 +17,8 @@ pub fn paper_stone() -> DruckerPragerCap {
         hardening: Some(vec![[0.0, 10e6]]),
         uniaxial_strength: None,
         initial_compaction: 0.0,
+        crushing_fracture_energy: None,
+        residual_ratio: 0.1,
     }
 }
 

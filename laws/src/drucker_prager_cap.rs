@@ -8,7 +8,7 @@ use crate::meridian::Trial;
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use surface::Surface;
+use surface::{Piece, Surface, Table};
 use voussoir_core::card::{Capability, Card, check_as};
 use voussoir_core::material::{
     BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt,
@@ -42,6 +42,15 @@ pub struct DruckerPragerCap {
     /// ε_v of the undeformed material.
     #[serde(default)]
     pub initial_compaction: f64,
+    /// G_c \[J/m²\]: crushing softens.
+    pub crushing_fracture_energy: Option<f64>,
+    /// p_b of crushed material over p_b of intact material.
+    #[serde(default = "residual_ratio")]
+    pub residual_ratio: f64,
+}
+
+fn residual_ratio() -> f64 {
+    0.1
 }
 
 impl DruckerPragerCap {
@@ -59,7 +68,7 @@ impl DruckerPragerCap {
     /// D_0 = d + f tan β / 3 and x = f/3 − p_a, the root x ≥ 0 of
     /// x² + (R f / k)² = R² (D_0 − x tan β)². `None` where f > k D_0: it fails in shear before.
     pub fn hydrostatic_strength(&self, uniaxial: f64) -> Option<f64> {
-        let surface = self.surface_with(&[]);
+        let surface = self.surface();
         let Surface { friction, eccentricity: r, roundness: k, .. } = surface;
         let size = self.cap_cohesion + uniaxial * friction / 3.0;
         if uniaxial > k * size {
@@ -75,18 +84,61 @@ impl DruckerPragerCap {
 
     /// Yield surface and flow.
     pub fn surface(&self) -> Surface {
-        self.surface_with(&self.hardening())
-    }
-
-    fn surface_with(&self, hardening: &[[f64; 2]]) -> Surface {
         Surface::new(
             Isotropic::new(self.young_modulus, self.poisson_ratio),
             self.cap_friction_angle,
             self.cap_cohesion,
             self.cap_eccentricity,
             self.transition,
-            hardening,
         )
+    }
+
+    /// Drop of p_b by crushing \[Pa\], and the crushing w_c \[m\] over which it happens: the triangle
+    /// between them is G_c. `None` where crushing does not soften.
+    pub fn softening(&self) -> Option<[f64; 2]> {
+        let energy = self.crushing_fracture_energy?;
+        let drop = (1.0 - self.residual_ratio) * self.hardening().last()?[1];
+        Some([drop, 2.0 * energy / drop])
+    }
+
+    /// The steepest fall −dp_b/dε_v \[Pa\] by crushing that a point can follow (derived on the law's page).
+    pub fn steepest_softening(&self) -> f64 {
+        let surface = self.surface();
+        let Surface { friction, roundness: k, eccentricity: r, .. } = surface;
+        let Isotropic { bulk, shear } = surface.elastic;
+        let full = 1.0 + r * friction;
+        // Greatest h with h tan β < min over s of A s + B (1 − s²)/s, A = (K − h)/R, B = min(A, 3 G R/k²).
+        let follows = |h: f64| {
+            let a = (bulk - h) / r;
+            let b = a.min(3.0 * shear * r / (k * k));
+            h * friction < if b < 0.5 * a { 2.0 * (b * (a - b)).sqrt() } else { a }
+        };
+        let (mut low, mut high) = (0.0, bulk);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if follows(middle) { low = middle } else { high = middle }
+        }
+        let mut steepest = low * full;
+        // Uniaxial compression: df/dp_b per axial plastic strain must not exceed E.
+        let Some(&[_, intact]) = self.hardening().last() else { return steepest };
+        for share in 0..=16 {
+            let strength = intact * (self.residual_ratio + (1.0 - self.residual_ratio) * f64::from(share) / 16.0);
+            let centre = surface.centre_of(strength);
+            let size = self.cap_cohesion + centre * friction;
+            // (x/R)² + (f/k)² = D², x = f/3 − p_a ≥ 0.
+            let (a, b) = (1.0 / (9.0 * r * r) + 1.0 / (k * k), centre / (3.0 * r * r));
+            let c = (centre / r).powi(2) - size * size;
+            let uniaxial = (b + (b * b - a * c).max(0.0).sqrt()) / a;
+            let x = uniaxial / 3.0 - centre;
+            if x <= 0.0 {
+                continue;
+            }
+            let (along, across) = (x / (r * r), uniaxial / (k * k));
+            let by_strength = (along + size * friction) / (along / 3.0 + across) / full;
+            let axial = 1.0 / 3.0 + across / along;
+            steepest = steepest.min(self.young_modulus * axial / by_strength);
+        }
+        steepest
     }
 
     /// What is wrong with the parameters taken together.
@@ -144,6 +196,17 @@ impl DruckerPragerCap {
                 }
             }
         }
+        if self.crushing_fracture_energy.is_some() {
+            if self.hardening().len() > 1 {
+                say(
+                    "crushing_fracture_energy",
+                    "needs a constant strength: one entry of hardening, or uniaxial_strength".into(),
+                );
+            }
+            if self.initial_compaction != 0.0 {
+                say("initial_compaction", "has no meaning where crushing softens".into());
+            }
+        }
         if self.cap_cohesion == 0.0 && self.cap_friction_angle == 0.0 {
             say("cap_cohesion", "0 Pa without friction leaves no strength at all".into());
         }
@@ -152,7 +215,7 @@ impl DruckerPragerCap {
 
     /// The steepest dp_b/dε_v \[Pa\] for which every return is unique (derived on the law's page).
     pub fn steepest_hardening(&self) -> f64 {
-        let surface = self.surface_with(&[]);
+        let surface = self.surface();
         let Surface { friction, roundness, eccentricity, transition, tangency, .. } = surface;
         let Isotropic { bulk, shear } = surface.elastic;
         let sine = self.cap_friction_angle.to_radians().sin();
@@ -172,22 +235,82 @@ impl BulkMaterial for DruckerPragerCap {
     }
 
     fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
-        Some(Arc::new(CapUpdate { surface: self.surface(), initial_compaction: self.initial_compaction }))
+        let surface = self.surface();
+        let softening = self.softening();
+        let pieces = surface.pieces(&self.hardening());
+        Some(match softening {
+            None => Arc::new(CapUpdate { pieces, surface, initial_compaction: self.initial_compaction }),
+            Some([drop, crushing]) => Arc::new(CrushingUpdate {
+                intact: pieces[0].centre,
+                drop: drop / (1.0 + surface.eccentricity * surface.friction),
+                crushing,
+                largest_length: crushing * self.steepest_softening() / drop,
+                surface,
+            }),
+        })
     }
-}
-
-/// The law at a point. State: plastic strain (engineering shears) and compaction ε_v, which starts at
-/// `initial_compaction`.
-#[derive(Debug, Clone)]
-pub struct CapUpdate {
-    /// Yield surface and flow.
-    pub surface: Surface,
-    /// ε_v of the undeformed material.
-    pub initial_compaction: f64,
 }
 
 /// Index of ε_v in the state.
 pub const COMPACTION: usize = 6;
+
+/// Index of the crushing in the state of a law that softens.
+pub const CRUSHING: usize = 7;
+
+const STATE: [&str; 8] = [
+    "plastic_strain_xx [-]",
+    "plastic_strain_yy [-]",
+    "plastic_strain_zz [-]",
+    "plastic_strain_xy [-]",
+    "plastic_strain_yz [-]",
+    "plastic_strain_zx [-]",
+    "compaction [-]",
+    "crushing [-]",
+];
+
+/// The law with hardening at a point. State: plastic strain (engineering shears) and compaction ε_v,
+/// which starts at `initial_compaction`.
+#[derive(Debug, Clone)]
+pub struct CapUpdate {
+    surface: Surface,
+    pieces: Vec<Piece>,
+    initial_compaction: f64,
+}
+
+/// The law with softening at a point. State: plastic strain, compaction, and crushing: the compaction
+/// by flow on the cap, which never falls.
+#[derive(Debug, Clone)]
+pub struct CrushingUpdate {
+    surface: Surface,
+    /// p_a of intact material, and its fall by crushing \[Pa\].
+    intact: f64,
+    drop: f64,
+    /// w_c \[m\].
+    crushing: f64,
+    largest_length: f64,
+}
+
+/// The update by a table over one entry of the state.
+fn update(
+    surface: &Surface,
+    table: Table,
+    strain: &Voigt,
+    old: &[f64],
+    new: &mut [f64],
+    at: usize,
+) -> Result<StressPoint, UpdateFailure> {
+    let elastic = &surface.elastic;
+    let trial = Trial::new(elastic, strain, old)?;
+    new.copy_from_slice(old);
+    let Some(back) = surface.project(table, [trial.pressure, trial.mises], old[at])? else {
+        return Ok(trial.elastic(elastic));
+    };
+    new[COMPACTION] += back.compaction;
+    if at == CRUSHING {
+        new[CRUSHING] += back.compaction.max(0.0);
+    }
+    Ok(trial.returned(elastic, &back, new))
+}
 
 impl StressUpdate for CapUpdate {
     fn state_size(&self) -> usize {
@@ -200,15 +323,7 @@ impl StressUpdate for CapUpdate {
     }
 
     fn state_names(&self) -> &'static [&'static str] {
-        &[
-            "plastic_strain_xx [-]",
-            "plastic_strain_yy [-]",
-            "plastic_strain_zz [-]",
-            "plastic_strain_xy [-]",
-            "plastic_strain_yz [-]",
-            "plastic_strain_zx [-]",
-            "compaction [-]",
-        ]
+        &STATE[..7]
     }
 
     fn update_point(
@@ -218,16 +333,46 @@ impl StressUpdate for CapUpdate {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
-        let elastic = &self.surface.elastic;
-        let trial = Trial::new(elastic, strain, old)?;
-        new.copy_from_slice(old);
-        match self.surface.project(trial.pressure, trial.mises, old[COMPACTION])? {
-            None => Ok(trial.elastic(elastic)),
-            Some(back) => {
-                new[COMPACTION] += back.compaction;
-                Ok(trial.returned(elastic, &back, new))
-            }
+        let table = Table { pieces: &self.pieces, reversible: true };
+        update(&self.surface, table, strain, old, new, COMPACTION)
+    }
+}
+
+impl StressUpdate for CrushingUpdate {
+    fn state_size(&self) -> usize {
+        8
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &STATE
+    }
+
+    fn largest_length(&self) -> f64 {
+        self.largest_length
+    }
+
+    fn update_point(
+        &self,
+        strain: &Voigt,
+        length: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<StressPoint, UpdateFailure> {
+        // Also refuses a length that is no number.
+        if !(length > 0.0 && length <= self.largest_length) {
+            return Err(UpdateFailure::LengthTooLarge);
         }
+        let (intact, end) = (self.intact, self.crushing / length);
+        let pieces = [
+            Piece { strain: f64::NEG_INFINITY, centre: intact, slope: 0.0 },
+            Piece { strain: 0.0, centre: intact, slope: -self.drop / end },
+            Piece { strain: end, centre: intact - self.drop, slope: 0.0 },
+        ];
+        update(&self.surface, Table { pieces: &pieces, reversible: false }, strain, old, new, CRUSHING)
     }
 }
 
@@ -256,12 +401,15 @@ voussoir_core::inventory::submit! {
             },
             Parameter::number("uniaxial_strength", Quantity::Stress, Range::POSITIVE, "strength in uniaxial compression, which sets a constant p_b").optional("hardening is given"),
             Parameter::number("initial_compaction", Quantity::Ratio, Range::ANY, "compaction of the undeformed material, where the table is entered").default("0.0"),
+            Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "G_c: p_b falls as the material crushes, and a band that crushes under hydrostatic pressure takes this energy per area").optional("crushing does not soften"),
+            Parameter::number("residual_ratio", Quantity::Ratio, Range::new(0.0, true, 1.0, true), "p_b of crushed over p_b of intact material, with crushing_fracture_energy").default("0.1"),
         ],
         provides: &[Capability::StressUpdate],
         requires: &[],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",
             "Abaqus Theory Guide, Drucker-Prager/Cap model for geological materials (K = 1)",
+            "Bažant & Oh 1983, Mater. Struct. 16 (fracture energy over the width of the band)",
             "Moré & Sorensen 1983, SIAM J. Sci. Stat. Comput. 4 (rational form of the scalar equation)",
         ],
         file: file!(),

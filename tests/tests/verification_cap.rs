@@ -20,6 +20,8 @@ fn paper(strength: f64, poisson_ratio: f64) -> DruckerPragerCap {
         hardening: Some(vec![[0.0, strength]]),
         uniaxial_strength: None,
         initial_compaction: 0.0,
+        crushing_fracture_energy: None,
+        residual_ratio: 0.1,
     }
 }
 

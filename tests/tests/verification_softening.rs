@@ -4,6 +4,7 @@ use std::sync::Arc;
 use voussoir::core::interface::{Formulation, InterfaceLaw, InterfaceResponse};
 use voussoir::core::material::{BulkMaterial, UpdateFailure};
 use voussoir::laws::cohesive::Cohesive;
+use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 use voussoir::laws::drucker_prager_softening::DruckerPragerSoftening;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
 
@@ -87,6 +88,68 @@ fn crushing_takes_its_fracture_energy_at_any_length() {
     }
     let mut new = [0.0; 7];
     let refused = update.update_point(&[0.0; 6], largest * 1.001, &[0.0; 7], &mut new);
+    assert_eq!(refused, Err(UpdateFailure::LengthTooLarge));
+}
+
+/// The paper's cap with softening: under hydrostatic compression the work above the residual strength is
+/// G_c at any length, in uniaxial compression too (this cap is almost a wall), and a length above the
+/// largest is refused.
+#[test]
+fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
+    let energy = 20e3;
+    let law = DruckerPragerCap {
+        young_modulus: 5e9,
+        poisson_ratio: 0.2,
+        density: 2200.0,
+        cap_friction_angle: 70.0,
+        cap_cohesion: 1e9,
+        cap_eccentricity: 0.005,
+        transition: 0.03,
+        hardening: Some(vec![[0.0, 10.0 * MPA]]),
+        uniaxial_strength: None,
+        initial_compaction: 0.0,
+        crushing_fracture_energy: Some(energy),
+        residual_ratio: 0.2,
+    };
+    assert_eq!(law.validate(), vec![]);
+    let update = law.stress_update().unwrap();
+    let largest = update.largest_length();
+    for share in [1.0, 0.5, 0.1, 0.01] {
+        let length = share * largest;
+        let end = 2.0 * energy / (8.0 * MPA) / length;
+        let bulk = 5e9 / (3.0 * 0.6);
+        let steps = 4000;
+        // Hydrostatic, strain driven.
+        let (mut old, mut new) = ([0.0; 8], [0.0; 8]);
+        let (mut before, mut work) = ((0.0, 0.0), 0.0);
+        let last = 1.3 * end + 10.0 * MPA / bulk;
+        for step in 1..=steps {
+            let trace = last * f64::from(step) / f64::from(steps);
+            let e = -trace / 3.0;
+            let point = update.update_point(&[e, e, e, 0.0, 0.0, 0.0], length, &old, &mut new).unwrap();
+            old = new;
+            work += 0.5 * (before.1 - point.stress[0]) * (trace - before.0);
+            before = (trace, -point.stress[0]);
+        }
+        near(before.1, 2.0 * MPA, 1e-12);
+        let left = (2.0 * MPA).powi(2) / (2.0 * bulk) + 2.0 * MPA * old[7];
+        near((work - left) * length, energy, 1e-3);
+        // Uniaxial.
+        let mut point = DrivenPoint::new(PointLaw::Space(update.clone(), length)).unwrap();
+        let mut work = 0.0;
+        let last = -(1.3 * end / 3.0 + 30.0 * MPA / 5e9);
+        for step in 1..=steps {
+            let now = last * f64::from(step) / f64::from(steps);
+            let before = (point.response.strain[0], point.response.stress[0]);
+            point.step(&[Control::Strain(now), FREE, FREE, HELD, HELD, HELD]).unwrap();
+            work += 0.5 * (before.1 + point.response.stress[0]) * (now - before.0);
+        }
+        let residual = -point.response.stress[0];
+        near(residual, 6.0 * MPA, 1e-3);
+        let left = residual.powi(2) / (2.0 * 5e9) + residual * (-last - residual / 5e9);
+        near((work - left) * length, energy, 5e-3);
+    }
+    let refused = update.update_point(&[0.0; 6], largest * 1.001, &[0.0; 8], &mut [0.0; 8]);
     assert_eq!(refused, Err(UpdateFailure::LengthTooLarge));
 }
 

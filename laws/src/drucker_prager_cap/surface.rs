@@ -41,6 +41,16 @@ pub struct Piece {
     pub slope: f64,
 }
 
+/// How p_a moves as the cap yields.
+#[derive(Debug, Clone, Copy)]
+pub struct Table<'a> {
+    /// Pieces by growing `strain`; the first begins at −∞ with slope 0, the last has slope 0.
+    pub pieces: &'a [Piece],
+    /// Whether flow on shear and transition, which loosens the material, goes back along the table:
+    /// so for hardening. Crushed material does not heal.
+    pub reversible: bool,
+}
+
 /// Yield surface and flow.
 #[derive(Debug, Clone)]
 pub struct Surface {
@@ -60,8 +70,37 @@ pub struct Surface {
     pub middle: f64,
     /// Where transition meets shear: (x, q) / D.
     pub tangency: [f64; 2],
-    /// p_a over compaction; the first piece begins at −∞ with slope 0, the last has slope 0.
-    pub pieces: Vec<Piece>,
+}
+
+impl Table<'_> {
+    /// The piece at ε_v, its index, and p_a there. At a joint of two pieces the one ahead in the sense
+    /// of flow counts.
+    fn piece(&self, compaction: f64, side: Side) -> (usize, f64) {
+        let before = match side {
+            Side::Cap => self.pieces.partition_point(|piece| piece.strain <= compaction),
+            Side::Shear => self.pieces.partition_point(|piece| piece.strain < compaction),
+        };
+        let index = before.saturating_sub(1);
+        let Piece { strain, centre, slope } = self.pieces[index];
+        (index, if slope == 0.0 { centre } else { centre + slope * (compaction - strain) })
+    }
+
+    /// dp_a/dε_v of a piece for flow on a side.
+    fn slope(&self, index: usize, side: Side) -> f64 {
+        if side == Side::Shear && !self.reversible { 0.0 } else { self.pieces[index].slope }
+    }
+
+    /// How much flow on a side leads from ε_v to the next piece, its index, and p_a there.
+    fn next(&self, index: usize, side: Side, compaction: f64) -> Option<(f64, usize, f64)> {
+        match side {
+            Side::Cap => self.pieces.get(index + 1).map(|next| (next.strain - compaction, index + 1, next.centre)),
+            Side::Shear if self.reversible && index > 0 => {
+                let Piece { strain, centre, .. } = self.pieces[index];
+                Some((compaction - strain, index - 1, centre))
+            }
+            Side::Shear => None,
+        }
+    }
 }
 
 /// Which side of p_a a point returns on.
@@ -98,19 +137,12 @@ struct Way {
 }
 
 impl Surface {
-    /// From β \[deg\], d, R, α and (ε_v, p_b) pairs with growing ε_v.
-    pub fn new(
-        elastic: Isotropic,
-        angle: f64,
-        cohesion: f64,
-        eccentricity: f64,
-        transition: f64,
-        hardening: &[[f64; 2]],
-    ) -> Self {
+    /// From β \[deg\], d, R and α.
+    pub fn new(elastic: Isotropic, angle: f64, cohesion: f64, eccentricity: f64, transition: f64) -> Self {
         let (sine, cosine) = angle.to_radians().sin_cos();
         let friction = sine / cosine;
         let middle = 1.0 - transition / cosine;
-        let mut surface = Surface {
+        Surface {
             elastic,
             friction,
             cohesion,
@@ -119,9 +151,12 @@ impl Surface {
             roundness: 1.0 + transition - transition / cosine,
             middle,
             tangency: [transition * sine, middle + transition * cosine],
-            pieces: Vec::with_capacity(hardening.len() + 1),
-        };
-        let centre = |strength: f64| surface.centre_of(strength);
+        }
+    }
+
+    /// p_a over compaction from (ε_v, p_b) pairs with growing ε_v.
+    pub fn pieces(&self, hardening: &[[f64; 2]]) -> Vec<Piece> {
+        let centre = |strength: f64| self.centre_of(strength);
         let first = hardening.first().map_or(0.0, |[_, strength]| centre(*strength));
         let mut pieces = vec![Piece { strain: f64::NEG_INFINITY, centre: first, slope: 0.0 }];
         for (index, &[strain, strength]) in hardening.iter().enumerate() {
@@ -131,50 +166,12 @@ impl Surface {
             };
             pieces.push(Piece { strain, centre: centre(strength), slope });
         }
-        surface.pieces = pieces;
-        surface
+        pieces
     }
 
     /// p_a = (p_b − R d) / (1 + R tan β) \[Pa\].
     pub fn centre_of(&self, strength: f64) -> f64 {
         (strength - self.eccentricity * self.cohesion) / (1.0 + self.eccentricity * self.friction)
-    }
-
-    /// Index of the piece at a compaction, and p_a there. At a joint of two pieces the one ahead in
-    /// the sense of flow counts.
-    fn piece(&self, compaction: f64, side: Side) -> (usize, f64) {
-        let before = match side {
-            Side::Cap => self.pieces.partition_point(|piece| piece.strain <= compaction),
-            Side::Shear => self.pieces.partition_point(|piece| piece.strain < compaction),
-        };
-        let index = before.saturating_sub(1);
-        let Piece { strain, centre, slope } = self.pieces[index];
-        (index, if slope == 0.0 { centre } else { centre + slope * (compaction - strain) })
-    }
-
-    /// p_a \[Pa\] at a compaction.
-    pub fn centre(&self, compaction: f64) -> f64 {
-        self.piece(compaction, Side::Cap).1
-    }
-
-    /// p_b \[Pa\] at a compaction: where the cap meets the hydrostatic axis.
-    pub fn strength(&self, compaction: f64) -> f64 {
-        let centre = self.centre(compaction);
-        centre + self.eccentricity * (self.cohesion + centre * self.friction)
-    }
-
-    /// The active yield function \[Pa\] at (p, q) for a compaction: F_c, F_t or F_s as in the manual.
-    pub fn yield_function(&self, p: f64, q: f64, compaction: f64) -> f64 {
-        let centre = self.centre(compaction);
-        let size = self.cohesion + centre * self.friction;
-        let x = (p - centre).abs();
-        if p >= centre {
-            x.hypot(self.eccentricity * q / self.roundness) - self.eccentricity * size
-        } else if self.in_transition(x, q) {
-            x.hypot(q - self.middle * size) - self.transition * size
-        } else {
-            q - p * self.friction - self.cohesion
-        }
     }
 
     fn in_transition(&self, x: f64, q: f64) -> bool {
@@ -223,7 +220,7 @@ impl Surface {
     }
 
     /// Everything at some η.
-    fn way(&self, side: Side, trial: [f64; 2], compaction: f64, eta: f64) -> Way {
+    fn way(&self, table: Table, side: Side, trial: [f64; 2], compaction: f64, eta: f64) -> Way {
         let [p_trial, q_trial] = trial;
         let sign = if side == Side::Cap { 1.0 } else { -1.0 };
         let a = match side {
@@ -232,29 +229,23 @@ impl Surface {
         };
         let bulk = self.elastic.bulk;
         let along = eta * a;
-        let (mut index, mut centre) = self.piece(compaction, side);
+        let (mut index, mut centre) = table.piece(compaction, side);
         let mut done = 0.0;
         let (mut stiffening, mut x, mut w);
         loop {
-            let slope = self.pieces[index].slope;
+            let slope = table.slope(index, side);
             let distance = sign * (p_trial - centre);
             stiffening = 1.0 + along * (bulk + slope);
             x = (distance + slope * done) / stiffening;
             w = along * x;
-            // Where this piece ends, in w.
-            let end = match side {
-                Side::Cap => self.pieces.get(index + 1).map(|next| (next.strain - compaction, next.centre)),
-                Side::Shear => (index > 0).then(|| (compaction - self.pieces[index].strain, self.pieces[index].centre)),
-            };
-            match end {
-                Some((end, there)) if w > end && end.is_finite() => {
-                    (done, centre) = (end, there);
-                    index = if side == Side::Cap { index + 1 } else { index - 1 };
+            match table.next(index, side, compaction) {
+                Some((end, next, there)) if w > end && end.is_finite() => {
+                    (done, index, centre) = (end, next, there);
                 }
                 _ => break,
             }
         }
-        let slope = self.pieces[index].slope;
+        let slope = table.slope(index, side);
         let centre = centre + sign * slope * (w - done);
         let size = self.cohesion + centre * self.friction;
         let pull = 3.0 * self.elastic.shear / (self.roundness * self.roundness);
@@ -270,11 +261,10 @@ impl Surface {
         Way { x, q, ratio, w, centre, slope, gauge, stiffening, rates: [w_rate, q_rate, rate] }
     }
 
-    /// Returns a trial point; `None` where it is elastic.
-    pub fn project(&self, p_trial: f64, q_trial: f64, compaction: f64) -> Result<Option<Returned>, UpdateFailure> {
-        let side = if p_trial >= self.centre(compaction) { Side::Cap } else { Side::Shear };
-        let trial = [p_trial, q_trial];
-        let at = |eta: f64| self.way(side, trial, compaction, eta);
+    /// Returns a trial point (P, Q) at some ε_v of the table; `None` where it is elastic.
+    pub fn project(&self, table: Table, trial: [f64; 2], compaction: f64) -> Result<Option<Returned>, UpdateFailure> {
+        let side = if trial[0] >= table.piece(compaction, Side::Cap).1 { Side::Cap } else { Side::Shear };
+        let at = |eta: f64| self.way(table, side, trial, compaction, eta);
         let start = at(0.0);
         if start.gauge.factor >= 1.0 {
             return Ok(None);
