@@ -40,11 +40,11 @@ width = 0.1
 plane = "stress"
 material = "stone"
 joint = "mortar"
-pairs = [{{ between = ["ground", "left"], joint = "bonded" }}]
+pairs = [{{ between = ["ground", "a"], joint = "glue" }}]
 blocks = [
   {{ name = "ground", vertices = [[-0.1, 0.0], [0.0, 0.0], [0.0, 0.2], [-0.1, 0.2]], fixed = true }},
-  {{ name = "left", vertices = [[0.0, 0.0], [{half:?}, 0.0], [{half:?}, 0.2], [0.0, 0.2]] }},
-  {{ name = "right", vertices = [[{half:?}, 0.0], [{length:?}, 0.0], [{length:?}, 0.2], [{half:?}, 0.2]] }},
+  {{ name = "a", vertices = [[0.0, 0.0], [{half:?}, 0.0], [{half:?}, 0.2], [0.0, 0.2]] }},
+  {{ name = "b", vertices = [[{half:?}, 0.0], [{length:?}, 0.0], [{length:?}, 0.2], [{half:?}, 0.2]] }},
 ]
 [scene.mesh]
 elements = [2, 2]
@@ -54,6 +54,11 @@ law = "elastic"
 young_modulus = {young_modulus:?}
 poisson_ratio = 0.0
 density = 2000.0
+[joints.glue]
+law = "mohr_coulomb"
+friction = 0.6
+cohesion = 1e9
+tensile_strength = 1e9
 [joints.mortar]
 law = "cohesive"
 friction = 0.6
@@ -68,7 +73,7 @@ solver = "newton_path"
 [[stages]]
 name = "pull"
 until = "collapse"
-loads = [{{ kind = "pressure", block = "right", edge = 1, value = -1e3 }}]
+loads = [{{ kind = "pressure", block = "b", edge = 1, value = -1e3 }}]
 "#
     )
 }

@@ -111,7 +111,7 @@ impl PathProblem {
         let before = if before.len() == size { before } else { &untouched };
         let Some((points, after)) = self.updated(&state.gap, before) else { return Some((f64::INFINITY, untouched)) };
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
-        let rounding = 64.0 * f64::EPSILON * if finite { self.length } else { deformation };
+        let rounding = f64::EPSILON * if finite { 512.0 * self.length } else { 64.0 * deformation };
         let mut scale = largest;
         let mut worst: f64 = 0.0;
         for (contact, point) in points {

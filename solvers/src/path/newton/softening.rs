@@ -9,7 +9,29 @@ use super::model::{Rate, State};
 use super::response::Local;
 use super::trace::Tracer;
 
+/// Energy that the trapezoidal rule may lose in a step, as a share of all energy so far.
+const ENERGY: f64 = 1e-4;
+
+/// Times that a step is made shorter for the sake of its energy.
+pub(super) const MOST_REFINEMENTS: u32 = 6;
+
 impl Tracer<'_, '_> {
+    /// By how much a step may grow (below 1: must shrink) so that the work of its loads by the
+    /// trapezoidal rule misses the energy stored and dissipated by a small share; infinite without bonds that soften.
+    pub(super) fn softening_accuracy(&mut self, next: &State) -> f64 {
+        if self.model.responses.is_empty() {
+            return f64::INFINITY;
+        }
+        let slopes = self.model.slopes(next);
+        let mut ledger = self.ledger;
+        ledger.add(&self.model, &self.state, next, [&self.slopes, &slopes]);
+        let after = ledger.recorded(&self.model, self.drive, next, &slopes);
+        let of = |state: &voussoir_core::path::PathState| state.work - state.stored - state.dissipated;
+        let lost = (of(&after) - of(&self.recorded)).abs();
+        let whole = after.stored.abs() + after.dissipated.abs();
+        (ENERGY * whole / lost.max(1e-300)).sqrt()
+    }
+
     /// A step controlled by the gaps of the points that the rate softens. `None` where there are none
     /// or none is found.
     pub(super) fn softened(

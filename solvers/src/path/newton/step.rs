@@ -102,7 +102,13 @@ impl Model<'_> {
         state.gap = slopes.gap.clone();
         let refused = |why: String| Refusal { why, restless: Vec::new() };
         self.respond(start, &mut state).map_err(refused)?;
-        let rounding = 400.0 * f64::EPSILON * self.units.length / self.units.displacement;
+        // Small displacements round by their own size, which the residual is relative to; a law of
+        // tractions from gaps must hold to that.
+        let rounding = if self.finite() || self.responses.is_empty() {
+            400.0 * f64::EPSILON * self.units.length / self.units.displacement
+        } else {
+            400.0 * f64::EPSILON
+        };
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;

@@ -3,6 +3,7 @@
 use super::kinematics::Slopes;
 use super::law::Regime;
 use super::ledger::{Ledger, events};
+use super::softening::MOST_REFINEMENTS;
 use super::model::{Control, Loaded, Model, Rate, Refusal, State, load_size};
 use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
@@ -41,13 +42,13 @@ pub(super) struct Tracer<'a, 'o> {
     settings: &'a PathSettings,
     strategy: Arc<dyn Continuation>,
     observer: &'o mut dyn PathObserver,
-    ledger: Ledger,
-    slopes: Slopes,
+    pub(super) ledger: Ledger,
+    pub(super) slopes: Slopes,
     events: Vec<PathEvent>,
     pub(super) notes: Vec<String>,
     pub(super) state: State,
-    recorded: PathState,
-    drive: usize,
+    pub(super) recorded: PathState,
+    pub(super) drive: usize,
     status: Status,
     motion: Option<Vec<[f64; 3]>>,
     ray: Option<Vec<[f64; 2]>>,
@@ -157,7 +158,12 @@ impl<'a> Tracer<'a, '_> {
             ));
         }
         let (state, last, factor, motion) = match self.peak {
-            Some(peak) => (peak.state, Some(self.recorded), Some(peak.factor), peak.motion.or(self.motion)),
+            Some(peak) => {
+                // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
+                let of_peak = peak.motion.filter(|_| self.model.finite() || self.model.responses.is_empty());
+                let motion = if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
+                (peak.state, Some(self.recorded), Some(peak.factor), motion)
+            }
             None => {
                 let factor = matches!(
                     self.status,
@@ -309,6 +315,7 @@ impl<'a> Tracer<'a, '_> {
             / self.model.units.displacement;
         let mut switched_at: Option<u64> = None;
         let mut yielding: Option<Vec<Regime>> = None;
+        let mut inaccurate = 0;
         let mut before_peak_rate = rate.factor * direction;
         for _ in 0..MOST_STEPS {
             let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
@@ -404,6 +411,14 @@ impl<'a> Tracer<'a, '_> {
                     continue;
                 }
             };
+            let accuracy = self.softening_accuracy(&next);
+            if accuracy < 1.0 && inaccurate < MOST_REFINEMENTS {
+                self.model.count("cutbacks", 1);
+                inaccurate += 1;
+                length *= accuracy.max(0.25);
+                continue;
+            }
+            inaccurate = 0;
             let increment = self.model.increment(&self.state, &next);
             let next_rate = self.model.rate(&self.state, &next, &control);
             let Some(next_rate) = next_rate else {
@@ -452,6 +467,7 @@ impl<'a> Tracer<'a, '_> {
                 (_, 0..=12) => 1.0,
                 _ => 0.5,
             };
+            let growth = accuracy.clamp(0.25, growth);
             length = growth * strategy.constraint(&increment, previous.as_ref()).value;
         }
         self.end(
