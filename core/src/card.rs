@@ -13,6 +13,8 @@ pub enum Capability {
     Facets,
     /// The interface law is given by tractions from gaps, with state.
     Response,
+    /// The interface law is of either of these two forms. Asked for only: a law gives one of the forms.
+    FacetsOrResponse,
     /// The bulk material gives stresses from strains at a point, with state.
     StressUpdate,
     /// The material is linear elastic, or rigid.
@@ -31,6 +33,7 @@ impl Capability {
         match self {
             Capability::Facets => "facets",
             Capability::Response => "tractions from gaps",
+            Capability::FacetsOrResponse => "facets or tractions from gaps",
             Capability::StressUpdate => "stresses from strains at a point",
             Capability::Linear => "a linear law",
             Capability::RigidLimit => "a rigid limit",
@@ -64,6 +67,18 @@ pub struct Card {
     /// Checks of the whole table that single keys cannot show, for the concrete type:
     /// pairs of key and what is wrong with it. The table has passed the check of its keys.
     pub check: fn(&serde_json::Value) -> Vec<(String, String)>,
+}
+
+impl Card {
+    /// Whether it offers what a solver asks for.
+    pub fn gives(&self, need: Capability) -> bool {
+        match need {
+            Capability::FacetsOrResponse => {
+                self.provides.contains(&Capability::Facets) || self.provides.contains(&Capability::Response)
+            }
+            need => self.provides.contains(&need),
+        }
+    }
 }
 
 inventory::collect!(Card);

@@ -140,6 +140,12 @@ pub trait InterfaceResponse: Debug + Send + Sync {
     /// What each number of the state is, with its unit, such as `"damage [-]"`.
     fn state_names(&self) -> &'static [&'static str];
 
+    /// Tensile strength f_t \[Pa\] and the energy G_I that full opening dissipates \[J/m²\], where the law
+    /// softens in tension: what the spacing of contact points is compared with.
+    fn tensile_softening(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// The update of one point. `old` and `new` are as long as the state.
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure>;
 

@@ -140,6 +140,12 @@ impl InterfaceResponse for CohesiveResponse {
         &["damage [-]", "slip [m]"]
     }
 
+    fn tensile_softening(&self) -> Option<[f64; 2]> {
+        // 1 − η = f_t g_0 / (2 G_I), with f_t = k_n g_0.
+        let strength = self.normal.stiffness * self.normal.onset;
+        Some([strength, strength * self.normal.onset / (2.0 * (1.0 - self.normal.brittleness))])
+    }
+
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);

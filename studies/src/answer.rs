@@ -171,6 +171,7 @@ pub(crate) fn stalled(why: String) -> CaseResult {
         events: Vec::new(),
         curve: None,
         displacements: None,
+        joint_states: None,
     }
 }
 

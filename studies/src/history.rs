@@ -128,7 +128,7 @@ pub fn joint_events(assembly: &Assembly, result: &CaseResult) -> Vec<JointEvent>
                     points.crushed = true;
                     changes.push(event_of(None, event.point));
                 }
-                Happening::Crushes | Happening::Unloads => {}
+                Happening::Crushes | Happening::Unloads | Happening::Softens => {}
             }
             if !touched.contains(&event.joint) {
                 touched.push(event.joint);

@@ -207,4 +207,8 @@ pub struct CaseResult {
     /// Of a path: displacement of every body as a rigid motion at the state of `field`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacements: Option<Vec<DisplacementEntry>>,
+    /// Of a path with laws of tractions from gaps: their states (such as damage) at the start of the step
+    /// that ended at `field`, contact point after contact point, from which the laws give its forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_states: Option<Vec<f64>>,
 }

@@ -738,9 +738,9 @@ fn choose_solver(
                 continue;
             };
             let missing: Vec<_> =
-                asked.iter().filter(|need| concerns(**need) == kind && !card.provides.contains(need)).collect();
+                asked.iter().filter(|need| concerns(**need) == kind && !card.gives(**need)).collect();
             for need in missing {
-                let takes = |need: &Capability| concerns(*need) != kind || card.provides.contains(need);
+                let takes = |need: &Capability| concerns(*need) != kind || card.gives(*need);
                 let able = solvers_that(|solver| solver.requires.iter().all(takes));
                 let message = format!(
                     "solver \"{tag}\" needs {}, which {} \"{law}\" of [{table}.{name}] does not give",

@@ -136,6 +136,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
             compliance: [0.0; 2],
         }],
         facets: vec![std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect()],
+        responses: Vec::new(),
         drives: forces.iter().enumerate().map(drive).collect(),
         length: 1.0,
         counters: BTreeMap::new(),

@@ -6,6 +6,9 @@
 //! - `path_strength`: greatest excess of a facet over its bound, relative to the greatest contact force;
 //! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
 //! - `path_complementarity`: greatest force × gap of open contact points, relative to both;
+//! - `path_law`: difference between the force of a contact point and what its law of tractions from
+//!   gaps gives for the recorded gap and the history of gaps, relative to the greatest contact force.
+//!   Such a law has its own compliance: strength, penetration and complementarity say nothing there;
 //! - `path_dissipation`: energy that friction would have created, relative to the work;
 //! - `path_energy`: |work − stored − dissipated|, relative to the work.
 
@@ -26,6 +29,7 @@ pub struct Watch {
     /// apply.
     pub finite: bool,
     last: Option<(usize, f64)>,
+    memory: Option<Vec<f64>>,
 }
 
 impl Watch {
@@ -98,6 +102,12 @@ impl Watch {
                 }
             }
         }
+        // The history is that of the states seen, where all of them were.
+        let before = self.memory.as_deref().unwrap_or(&state.memory);
+        if let Some((worst, after)) = problem.law_residual(state, before, deformation, self.finite) {
+            self.note("path_law", worst);
+            self.memory = Some(after);
+        }
         let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());
         self.note("path_energy", (state.work - state.stored - state.dissipated).abs() / energy.max(1e-300));
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
@@ -118,7 +128,8 @@ impl PathObserver for Watch {
 }
 
 /// Checks a mechanism against a field: how far the jumps leave the flow of the facets that yield,
-/// relative to the greatest jump. Every contact point with slack in all facets must not move.
+/// relative to the greatest jump. Every contact point with slack in all facets must not move. Laws of
+/// tractions from gaps have no flow: see [`PathProblem::leaves_forces`].
 pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]]) -> f64 {
     let largest = force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
     let jumps: Vec<[f64; 2]> = problem
@@ -136,7 +147,10 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
         .collect();
     let size = jumps.iter().map(|j| j[0].hypot(j[1])).fold(1e-300, f64::max);
     let mut worst: f64 = 0.0;
-    for ((contact, force), jump) in problem.contacts.iter().zip(force).zip(&jumps) {
+    for (index, ((contact, force), jump)) in problem.contacts.iter().zip(force).zip(&jumps).enumerate() {
+        if problem.response(index).is_some() {
+            continue;
+        }
         let ContactLaw::Law(law) = contact.law else {
             worst = worst.max(jump[0].hypot(jump[1]) / size);
             continue;

@@ -10,8 +10,10 @@
 //! ```
 
 pub mod certificate;
+mod response;
 mod problem;
 
+pub use response::{SoftensOver, coarse_joints};
 pub use problem::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
 
 use crate::limit::{Counters, Status};
@@ -38,6 +40,9 @@ pub struct PathState {
     pub work: f64,
     /// Work-conjugate displacement of the present loads by the rigid motion of their blocks \[m\].
     pub displacement: f64,
+    /// State of the laws of tractions from gaps at the start of the step that ends here, contact point
+    /// after contact point: the update from it at the gap gives the force.
+    pub memory: Vec<f64>,
 }
 
 /// What happened at a contact point.
@@ -56,8 +61,10 @@ pub enum Happening {
     SlipsBackward,
     /// It started to crush.
     Crushes,
-    /// It stopped crushing or yielding in tension.
+    /// It stopped crushing, softening or yielding in tension.
     Unloads,
+    /// Its bond began to soften.
+    Softens,
 }
 
 /// An event of a path.

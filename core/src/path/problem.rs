@@ -3,7 +3,7 @@
 use crate::assembly::{Assembly, Bond, Stage, Target};
 use crate::elastic::{Condenser, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
 use crate::geometry::{Vec2, cross, turned};
-use crate::interface::Facet;
+use crate::interface::{Facet, Formulation, InterfaceResponse};
 use crate::limit::Counters;
 use crate::material::Deformability;
 use nalgebra::DMatrix;
@@ -119,6 +119,9 @@ pub struct PathProblem {
     pub contacts: Vec<Contact>,
     /// Facets of the laws, by index of the catalogue; empty where a law is none of facets.
     pub facets: Vec<Vec<Facet>>,
+    /// Laws of tractions from gaps, by index of the catalogue; `None`, or nothing, elsewhere. At their
+    /// points the gap holds the compliance of the joint too: it is part of the law.
+    pub responses: Vec<Option<Arc<dyn InterfaceResponse>>>,
     /// Load histories in order.
     pub drives: Vec<Drive>,
     /// Length scale \[m\].
@@ -189,6 +192,7 @@ impl PathProblem {
         }
         let mut problem = PathProblem {
             facets: Vec::new(),
+            responses: Vec::new(),
             contacts: Vec::new(),
             drives: Vec::new(),
             length: assembly.size(),
@@ -197,7 +201,12 @@ impl PathProblem {
             body_of,
         };
         for (_, law) in &assembly.catalogue.laws {
-            problem.facets.push(law.formulation().facets().unwrap_or_default());
+            let (facets, response) = match law.formulation() {
+                Formulation::Facets(facets) => (facets, None),
+                Formulation::Response(response) => (Vec::new(), Some(response)),
+            };
+            problem.facets.push(facets);
+            problem.responses.push(response);
         }
         problem.contact_points(assembly, &elastic)?;
         problem.drives(stages, &elastic)?;
@@ -265,6 +274,10 @@ impl PathProblem {
                     },
                     compliance: stiffness.map_or([0.0; 2], |k| k.map(|k| 1.0 / (k * area))),
                 });
+                let last = self.contacts.len() - 1;
+                if self.response(last).is_some() {
+                    self.contacts[last].compliance = [0.0; 2];
+                }
             }
         }
         self.bed(assembly, crowded);
@@ -284,7 +297,10 @@ impl PathProblem {
                 _ => _ = met.insert(key, contact.joint),
             }
         }
-        for contact in self.contacts.iter_mut().filter(|c| crowded.contains(&c.joint) && c.compliance == [0.0; 2]) {
+        let follows_gaps: Vec<bool> = (0..self.contacts.len()).map(|c| self.response(c).is_some()).collect();
+        let contacts = self.contacts.iter_mut().zip(follows_gaps);
+        let stiff = |c: &Contact| crowded.contains(&c.joint) && c.compliance == [0.0; 2];
+        for (contact, _) in contacts.filter(|(c, follows_gap)| stiff(c) && !follows_gap) {
             let joint = &assembly.joints[contact.joint];
             let sides = [joint.minus, joint.plus].into_iter();
             let softest = sides.filter_map(|side| modulus(assembly, side)).fold(f64::INFINITY, f64::min);
@@ -374,7 +390,16 @@ impl PathProblem {
     /// Whether anything can deform: a scene of rigid bodies without joint compliance has no path
     /// before its collapse.
     pub fn deforms(&self) -> bool {
-        self.bodies.iter().any(|body| body.flexibility.is_some()) || self.contacts.iter().any(|c| c.compliance[0] > 0.0)
+        self.bodies.iter().any(|body| body.flexibility.is_some())
+            || (0..self.contacts.len()).any(|c| self.contacts[c].compliance[0] > 0.0 || self.response(c).is_some())
+    }
+
+    /// The law of a contact point, where it gives tractions from gaps.
+    pub fn response(&self, contact: usize) -> Option<&dyn InterfaceResponse> {
+        match self.contacts[contact].law {
+            ContactLaw::Bonded => None,
+            ContactLaw::Law(law) => self.responses.get(law)?.as_deref(),
+        }
     }
 
     /// How much of each drive's loading is applied at a factor of one of them.

@@ -122,6 +122,7 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
         events: Vec::new(),
         curve: None,
         displacements: None,
+        joint_states: None,
         stages: vec![StageResult { name: "live".into(), status, factor: None, hinges: vec![] }],
     }
 }

@@ -35,6 +35,9 @@ impl PathSolver for EventPath {
         if settings.continuation.as_ref().is_some_and(|c| !c.exact_events()) {
             return Some("it goes from event to event and knows no other continuation than exact_events".into());
         }
+        if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
+            return Some("it takes laws of facets only; newton_path follows laws of tractions from gaps".into());
+        }
         if !problem.deforms() {
             return Some("all blocks are rigid and no joint is compliant: there is no path before the collapse; limit analysis answers this scene".into());
         }

@@ -740,6 +740,7 @@ impl<'a> Tracer<'a> {
             work: self.work,
             displacement: self.displacement(),
             force,
+            memory: Vec::new(),
         }
     }
 

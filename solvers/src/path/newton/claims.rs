@@ -15,12 +15,13 @@ use voussoir_core::path::certificate::{Watch, flow_residual};
 use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem};
 
 /// Residuals above which a field proves nothing.
-const FIELD: [(&str, f64); 5] = [
+const FIELD: [(&str, f64); 6] = [
     ("path_equilibrium", 1e-8),
     ("path_kinematics", 1e-7),
     ("path_strength", 1e-8),
     ("path_penetration", 1e-7),
     ("path_complementarity", 1e-7),
+    ("path_law", 1e-8),
 ];
 
 /// How far a mechanism may leave the laws' flow, and a ray its equations, relative to their size.
@@ -93,6 +94,10 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let flow = flow_residual(problem, &answer.state.force, motion);
     if flow.is_nan() || flow > MECHANISM {
         return Err(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
+    }
+    let changed = problem.leaves_forces(&answer.state, motion);
+    if changed.is_nan() || changed > MECHANISM {
+        return Err(format!("the mechanism changes the forces of laws of tractions from gaps by {changed:.2e}"));
     }
     let drive = &problem.drives[answer.drive];
     let load = problem.wrenches(&drive.loading);

@@ -42,6 +42,11 @@ fn doing(model: &Model, contact: usize, regime: Regime, gap: [f64; 2]) -> Doing 
 pub(super) fn events(model: &Model, drive: usize, start: &State, state: &State) -> Vec<PathEvent> {
     let mut events = Vec::new();
     for contact in 0..state.gap.len() {
+        if model.responses.is(contact) {
+            let what = model.response_event(start, state, contact);
+            events.extend(what.map(|what| PathEvent { drive, factor: state.factor, contact, what }));
+            continue;
+        }
         if start.regime[contact] == state.regime[contact] {
             continue;
         }
@@ -69,6 +74,7 @@ impl Ledger {
     /// Adds a step: work of loads and reactions of settled supports by the trapezoidal rule, exact
     /// where they change linearly during the step, and dissipation.
     pub fn add(&mut self, model: &Model, start: &State, state: &State, slopes: [&Slopes; 2]) {
+        self.dissipated += model.response_dissipated(state);
         for contact in 0..state.gap.len() {
             let Some(law) = model.law(contact) else { continue };
             let (kept, _) = law.irreversible(state.regime[contact], model.step_gap(start, state, contact));
@@ -112,7 +118,7 @@ impl Ledger {
 
     /// The state as others read it.
     pub fn recorded(&self, model: &Model, drive: usize, state: &State, slopes: &Slopes) -> PathState {
-        let mut stored = slopes.stored;
+        let mut stored = slopes.stored + model.response_stored(state);
         for contact in 0..state.gap.len() {
             let Some(law) = model.law(contact) else { continue };
             // A tensile strength that opens holds its force reversibly.
@@ -131,6 +137,7 @@ impl Ledger {
             dissipated: self.dissipated,
             work: self.work,
             displacement: model.displacement(&state.motion),
+            memory: state.answers.before.clone(),
         }
     }
 }

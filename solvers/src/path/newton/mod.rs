@@ -6,6 +6,8 @@ mod kinematics;
 mod law;
 mod ledger;
 mod model;
+mod response;
+mod softening;
 mod step;
 mod system;
 mod trace;
@@ -51,10 +53,10 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::PathSolver,
         tag: "newton_path",
-        summary: "steps by semismooth Newton: any facets, small or finite displacements, peaks and falling branches",
+        summary: "steps by semismooth Newton: any law of joints, small or finite displacements, peaks and falling branches",
         parameters: &[],
         provides: &[Capability::FiniteDisplacements, Capability::Settlement],
-        requires: &[Capability::Facets, Capability::Linear],
+        requires: &[Capability::FacetsOrResponse, Capability::Linear],
         sources: &[
             "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",

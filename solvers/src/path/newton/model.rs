@@ -5,6 +5,7 @@
 
 use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
 use super::law::{Polygon, Regime};
+use super::response::{Answers, Local, Responses};
 use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{ContactLaw, Continuation, Increment, Loading, PathProblem};
@@ -28,6 +29,8 @@ pub(super) struct State {
     pub regime: Vec<Regime>,
     /// s: irreversible gap.
     pub slip: Vec<[f64; 2]>,
+    /// What laws of tractions from gaps say, with their history.
+    pub answers: Answers,
 }
 
 /// Rate of a state per unit of its control.
@@ -56,6 +59,8 @@ pub(super) enum Control<'a> {
     Factor(f64),
     /// c(increment) = length.
     Strategy { strategy: &'a dyn Continuation, previous: Option<Increment>, length: f64 },
+    /// Weighted gaps.
+    Gaps { local: &'a Local, length: f64 },
 }
 
 /// The present drive on top of what earlier ones left.
@@ -78,6 +83,7 @@ pub(super) struct Model<'a> {
     pub problem: &'a PathProblem,
     pub kinematics: Kinematics<'a>,
     pub polygons: Vec<Polygon>,
+    pub responses: Responses,
     pub units: Units,
     /// Own compliance of every contact point, normal and tangential \[m/N\].
     pub compliance: Vec<[f64; 2]>,
@@ -116,6 +122,19 @@ impl<'a> Model<'a> {
                 own
             })
             .collect();
+        let responses = Responses::new(problem);
+        let untouched = responses.update(&vec![[0.0; 2]; problem.contacts.len()], &problem.untouched())?;
+        let compliance: Vec<[f64; 2]> = compliance
+            .into_iter()
+            .enumerate()
+            .map(|(c, own)| match untouched.points.get(c).filter(|_| responses.is(c)) {
+                Some(point) => [0, 1].map(|k| {
+                    let stiffness = -point.tangent[k][k] * problem.contacts[c].area;
+                    own[k] + if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+                }),
+                None => own,
+            })
+            .collect();
         for c in compliance.iter().flatten().filter(|c| **c > 0.0) {
             mean += c;
             count += 1;
@@ -147,6 +166,7 @@ impl<'a> Model<'a> {
             kinematics: Kinematics::new(problem, finite),
             problem,
             polygons,
+            responses,
             units,
             compliance,
             free,
@@ -190,19 +210,27 @@ impl<'a> Model<'a> {
     pub fn undeformed(&self) -> State {
         let points = self.problem.contacts.len();
         let motion = vec![[0.0; 3]; self.problem.bodies.len()];
-        State {
+        let mut state = State {
             force: vec![[0.0; 2]; points],
             gap: self.problem.contacts.iter().map(|c| [c.gap, 0.0]).collect(),
             motion,
             factor: 0.0,
             regime: vec![Regime::Stuck; points],
             slip: vec![[0.0; 2]; points],
+            answers: Answers { memory: self.problem.untouched(), ..Answers::default() },
+        };
+        // The update of untouched joints has succeeded in `new`.
+        if let Ok(answers) = self.responses.update(&state.gap, &state.answers.memory) {
+            state.answers = answers;
         }
+        state
     }
 
+    /// The facets of a contact point, where its law has that form.
     pub fn law(&self, contact: usize) -> Option<&Polygon> {
         match self.problem.contacts[contact].law {
             ContactLaw::Bonded => None,
+            ContactLaw::Law(_) if self.responses.is(contact) => None,
             ContactLaw::Law(law) => Some(&self.polygons[law]),
         }
     }
@@ -271,7 +299,7 @@ impl<'a> Model<'a> {
                 motion += ((state.motion[body][k] - start.motion[body][k]) / unit).powi(2) / self.bodies_free as f64;
             }
         }
-        let mut dissipation = 0.0;
+        let mut dissipation = self.response_dissipated(state);
         let points = state.gap.len() as f64;
         for c in 0..state.gap.len() {
             for k in 0..2 {
@@ -303,6 +331,8 @@ impl<'a> Model<'a> {
             (0..3).for_each(|k| q[k] += dq[k]);
         }
         moved.factor += step.factor;
+        // Where the law fails so close to a state, the rest of the rate still counts.
+        moved.answers = self.responses.update(&moved.gap, &state.answers.memory).unwrap_or_default();
         let mut base = state.clone();
         base.slip = base.gap.clone();
         let i = self.increment(&base, &moved);

@@ -69,7 +69,9 @@ impl Model<'_> {
         let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
         let whole = self.largest(state);
         let by_row = |(i, x): (usize, &f64)| {
-            let of_forces = if i < 2 * points {
+            let of_forces = if i < 2 * points && self.responses.is(i / 2) {
+                self.response_row(state, i / 2).0[i % 2] > 0.5
+            } else if i < 2 * points {
                 match state.regime[i / 2] {
                     Regime::Stuck => false,
                     Regime::Facet(_) => i % 2 == 0,
@@ -98,7 +100,15 @@ impl Model<'_> {
         state.motion = motion;
         let mut slopes = self.slopes(&state);
         state.gap = slopes.gap.clone();
-        let rounding = 400.0 * f64::EPSILON * self.units.length / self.units.displacement;
+        let refused = |why: String| Refusal { why, restless: Vec::new() };
+        self.respond(start, &mut state).map_err(refused)?;
+        // Small displacements round by their own size, which the residual is relative to; a law of
+        // tractions from gaps must hold to that.
+        let rounding = if self.finite() || self.responses.is_empty() {
+            400.0 * f64::EPSILON * self.units.length / self.units.displacement
+        } else {
+            400.0 * f64::EPSILON
+        };
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
@@ -118,11 +128,11 @@ impl Model<'_> {
             }
             last_norm = norm;
             let curvature = self.curvature(&state, &slopes);
-            let row = self.gradient(start, &state, &constraint, &curvature);
+            let row = self.gradient(start, &state, control, &constraint, &curvature);
             let right: Vec<f64> = residual.iter().map(|x| -x).collect();
             self.count("newton_iterations", 1);
             let why = "the regimes of the contact points leave no equilibrium";
-            let Some((step, solved)) = self.solve(&state.regime, &curvature, &row, &right) else {
+            let Some((step, solved)) = self.solve(&state, &curvature, &row, &right) else {
                 return Err(Refusal { why: why.into(), restless });
             };
             // Regimes without a solution may be on the way to ones that have one: with small
@@ -144,6 +154,7 @@ impl Model<'_> {
             self.apply(&mut state, &step, share);
             slopes = self.slopes(&state);
             state.gap = slopes.gap.clone();
+            self.respond(start, &mut state).map_err(refused)?;
             let wanted = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
             changed = !differ.is_empty();
@@ -173,7 +184,7 @@ impl Model<'_> {
         let slopes = self.slopes(state);
         let curvature = self.curvature(state, &slopes);
         let (_, constraint) = self.constraint(start, state, control);
-        let row = self.gradient(start, state, &constraint, &curvature);
+        let row = self.gradient(start, state, control, &constraint, &curvature);
         self.rate_of(state, &curvature, &row)
     }
 
@@ -208,7 +219,7 @@ impl Model<'_> {
     fn rate_of(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<Rate> {
         let mut right = vec![0.0; self.size()];
         right[self.size() - 1] = 1.0;
-        let (x, _) = self.solve(&state.regime, curvature, row, &right).filter(|(_, solved)| *solved)?;
+        let (x, _) = self.solve(state, curvature, row, &right).filter(|(_, solved)| *solved)?;
         let mut zero = State {
             force: vec![[0.0; 2]; state.force.len()],
             motion: vec![[0.0; 3]; state.motion.len()],
@@ -216,6 +227,7 @@ impl Model<'_> {
             gap: vec![[0.0; 2]; state.gap.len()],
             regime: Vec::new(),
             slip: Vec::new(),
+            answers: Default::default(),
         };
         self.apply(&mut zero, &x, 1.0);
         let factor = zero.factor;

@@ -5,6 +5,7 @@
 //! ```text
 //! stuck     g − s = 0                     facet   a·r = b A,  Δg × d = 0
 //! corner    r = corner A                  body    ∂Π/∂q = 0          control  c(increment) = length
+//! response  r − A t(g) = 0 (see `response`)
 //! ```
 //!
 //! The matrix that is factorised is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄
@@ -29,6 +30,7 @@ impl Model<'_> {
         &self,
         start: &State,
         state: &State,
+        control: &Control,
         constraint: &Constraint,
         curvature: &Curvature,
     ) -> Vec<f64> {
@@ -58,6 +60,8 @@ impl Model<'_> {
         }
         if by.dissipation != 0.0 {
             let energy = u.force * u.displacement;
+            let slopes = self.dissipation_slopes(start, state);
+            by_gap.iter_mut().zip(slopes).for_each(|(w, slope)| *w += by.dissipation * slope / energy);
             for c in 0..points {
                 let Some(law) = self.law(c) else { continue };
                 let (kept, _) = law.irreversible(state.regime[c], self.step_gap(start, state, c));
@@ -90,6 +94,9 @@ impl Model<'_> {
                     row[2 * points + 3 * free + k] += scale * wrench[body][k] * unit;
                 }
             }
+        }
+        if let Control::Gaps { local, .. } = control {
+            by_gap.iter_mut().zip(&local.by_gap).for_each(|(w, local)| *w += local);
         }
         self.add_gaps(&mut row, &by_gap, curvature);
         row
@@ -124,6 +131,7 @@ impl Model<'_> {
                 let c = strategy.constraint(&self.increment(start, state), previous.as_ref());
                 (c.value - length, c)
             }
+            Control::Gaps { local, length } => (local.value(start, state) - length, Constraint::default()),
         }
     }
 
@@ -133,6 +141,10 @@ impl Model<'_> {
         let points = state.gap.len();
         let mut out = vec![0.0; self.size()];
         for c in 0..points {
+            if self.responses.is(c) {
+                out[2 * c..2 * c + 2].copy_from_slice(&self.response_residual(state, c));
+                continue;
+            }
             let gap = self.step_gap(start, state, c).map(|g| g / u.displacement);
             let area = self.problem.contacts[c].area;
             let r = state.force[c];
@@ -166,14 +178,17 @@ impl Model<'_> {
     /// where the equations contradict each other, what comes back is the answer of the shifted ones.
     pub(super) fn solve(
         &mut self,
-        regimes: &[Regime],
+        state: &State,
         curvature: &Curvature,
         row: &[f64],
         right: &[f64],
     ) -> Option<(Vec<f64>, bool)> {
         let u = self.units;
+        let regimes = &state.regime;
         let (points, size) = (regimes.len(), self.size());
         let last = size - 1;
+        let rows: Vec<_> =
+            (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
         let mut entries: Vec<(usize, usize, f64)> = Vec::with_capacity(curvature.entries.len() + 4 * size);
         let mut shifts: Vec<(usize, usize, f64)> = Vec::new();
         let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
@@ -187,6 +202,13 @@ impl Model<'_> {
             }
             let (c, k) = (i / 2, i % 2);
             let value = value / u.displacement;
+            if let Some((_, stiffness)) = rows[c] {
+                for (row, s) in stiffness.iter().enumerate().filter(|(_, s)| s[k] != 0.0) {
+                    entries.push((2 * c + row, column, s[k] * value));
+                }
+                shifts.push((i, column, SHIFT * value));
+                return;
+            }
             match (regimes[c], self.law(c)) {
                 (Regime::Facet(f), Some(law)) => {
                     let d = law.facets[f as usize].flow;
@@ -209,6 +231,13 @@ impl Model<'_> {
             }
         }
         for (c, regime) in regimes.iter().enumerate() {
+            if let Some((own, _)) = rows[c] {
+                for k in 0..2 {
+                    entries.push((2 * c + k, 2 * c + k, own[k]));
+                    shifts.push((2 * c + k, 2 * c + k, SHIFT));
+                }
+                continue;
+            }
             match (*regime, self.law(c)) {
                 (Regime::Facet(f), Some(law)) => {
                     let a = law.facets[f as usize].normal;

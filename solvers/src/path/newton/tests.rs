@@ -71,6 +71,7 @@ fn chain() -> PathProblem {
         body_of: vec![0, 1, 2, 3],
         contacts,
         facets: vec![],
+        responses: Vec::new(),
         drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Factor(1.0) }],
         length: 3.0,
         counters: Counters::new(),
@@ -214,6 +215,7 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, Drive
         body_of: vec![0, 1],
         contacts: vec![contact],
         facets: vec![vec![Facet::opening(0.0), left, right]],
+        responses: Vec::new(),
         drives: drives
             .into_iter()
             .map(|(f, end)| Drive {
@@ -392,6 +394,7 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         body_of: vec![0, 1, 2],
         contacts,
         facets: vec![],
+        responses: Vec::new(),
         drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Collapse(f64::INFINITY) }],
         length: 2.0 * half_span,
         counters: Counters::new(),

@@ -3,6 +3,7 @@
 use super::kinematics::Slopes;
 use super::law::Regime;
 use super::ledger::{Ledger, events};
+use super::softening::MOST_REFINEMENTS;
 use super::model::{Control, Loaded, Model, Rate, Refusal, State, load_size};
 use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
@@ -30,28 +31,28 @@ enum Outcome {
 }
 
 /// A peak or limit point.
-struct Peak {
-    state: PathState,
-    factor: f64,
-    motion: Option<Vec<[f64; 3]>>,
+pub(super) struct Peak {
+    pub state: PathState,
+    pub factor: f64,
+    pub motion: Option<Vec<[f64; 3]>>,
 }
 
 pub(super) struct Tracer<'a, 'o> {
-    model: Model<'a>,
+    pub(super) model: Model<'a>,
     settings: &'a PathSettings,
     strategy: Arc<dyn Continuation>,
     observer: &'o mut dyn PathObserver,
-    ledger: Ledger,
-    slopes: Slopes,
+    pub(super) ledger: Ledger,
+    pub(super) slopes: Slopes,
     events: Vec<PathEvent>,
-    notes: Vec<String>,
-    state: State,
-    recorded: PathState,
-    drive: usize,
+    pub(super) notes: Vec<String>,
+    pub(super) state: State,
+    pub(super) recorded: PathState,
+    pub(super) drive: usize,
     status: Status,
     motion: Option<Vec<[f64; 3]>>,
     ray: Option<Vec<[f64; 2]>>,
-    peak: Option<Peak>,
+    pub(super) peak: Option<Peak>,
     /// Why the first limit point is not proven to be one.
     doubt: Option<String>,
 }
@@ -157,7 +158,12 @@ impl<'a> Tracer<'a, '_> {
             ));
         }
         let (state, last, factor, motion) = match self.peak {
-            Some(peak) => (peak.state, Some(self.recorded), Some(peak.factor), peak.motion.or(self.motion)),
+            Some(peak) => {
+                // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
+                let of_peak = peak.motion.filter(|_| self.model.finite() || self.model.responses.is_empty());
+                let motion = if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
+                (peak.state, Some(self.recorded), Some(peak.factor), motion)
+            }
             None => {
                 let factor = matches!(
                     self.status,
@@ -260,7 +266,7 @@ impl<'a> Tracer<'a, '_> {
                 })
             });
             let far = self.model.finite() && iterations > 12;
-            if !slips && !far {
+            if !slips && !far && !self.model.response_yields(&next) {
                 return if self.commit(next) { Outcome::Reached } else { Outcome::Ended };
             }
         }
@@ -276,6 +282,7 @@ impl<'a> Tracer<'a, '_> {
             return Outcome::Reached;
         }
         let to_factor = matches!(drive.end, DriveEnd::Factor(_));
+        self.model.rest(&mut self.state);
         let Some(first) = self.model.rate(&self.state, &self.state, &Control::Factor(target)) else {
             self.end(
                 Status::Stalled,
@@ -308,6 +315,7 @@ impl<'a> Tracer<'a, '_> {
             / self.model.units.displacement;
         let mut switched_at: Option<u64> = None;
         let mut yielding: Option<Vec<Regime>> = None;
+        let mut inaccurate = 0;
         let mut before_peak_rate = rate.factor * direction;
         for _ in 0..MOST_STEPS {
             let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
@@ -356,6 +364,15 @@ impl<'a> Tracer<'a, '_> {
                 let judged = self.judge(&rate, step, &next, target, direction, reaches);
                 judged.map(|()| (next, iterations))
             });
+            let (found, local) = match found {
+                Err(refusal) => match self.softened(&rate, step, target, direction) {
+                    Some((next, iterations, local)) => (Ok((next, iterations)), Some(local)),
+                    None => (Err(refusal), None),
+                },
+                found => (found, None),
+            };
+            let reaches = reaches && local.is_none();
+            let control = local.as_ref().map_or(control, |local| local.control(step));
             let (next, iterations) = match found {
                 Ok(found) => found,
                 Err(refusal) => {
@@ -394,6 +411,14 @@ impl<'a> Tracer<'a, '_> {
                     continue;
                 }
             };
+            let accuracy = self.softening_accuracy(&next);
+            if accuracy < 1.0 && inaccurate < MOST_REFINEMENTS {
+                self.model.count("cutbacks", 1);
+                inaccurate += 1;
+                length *= accuracy.max(0.25);
+                continue;
+            }
+            inaccurate = 0;
             let increment = self.model.increment(&self.state, &next);
             let next_rate = self.model.rate(&self.state, &next, &control);
             let Some(next_rate) = next_rate else {
@@ -406,15 +431,17 @@ impl<'a> Tracer<'a, '_> {
                 }
                 continue;
             };
-            let next_rate = if reaches { next_rate.scaled(direction) } else { next_rate };
+            let next_rate = if reaches { next_rate.scaled(direction) } else { self.onwards(&next, next_rate) };
             let size = next.factor.abs().max(unit * 1e-3);
             let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
             let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
-            if self.peak.is_none() && (fell || (falls && before_peak_rate > 0.0)) && !reaches {
+            if self.peak.is_none() && self.model.responses.is_empty() && (fell || (falls && before_peak_rate > 0.0)) && !reaches {
                 self.peak = self.locate_peak(&rate, previous, length, direction);
             }
+            self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
             before_peak_rate = next_rate.factor * direction;
             let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
+            let softening = self.model.response_changes(&self.state, &next);
             if !self.commit(next) {
                 return Outcome::Ended;
             }
@@ -434,11 +461,13 @@ impl<'a> Tracer<'a, '_> {
             }
             previous = Some(increment);
             let growth = match (changes, iterations) {
+                (0, 0..=5) if softening > 0 => 1.5,
                 (0, 0..=6) => 2.0,
                 (0..=2, 0..=6) => 1.5,
                 (_, 0..=12) => 1.0,
                 _ => 0.5,
             };
+            let growth = accuracy.clamp(0.25, growth);
             length = growth * strategy.constraint(&increment, previous.as_ref()).value;
         }
         self.end(
@@ -448,7 +477,7 @@ impl<'a> Tracer<'a, '_> {
         Outcome::Ended
     }
 
-    fn moved(&self, rate: &Rate, share: f64) -> State {
+    pub(super) fn moved(&self, rate: &Rate, share: f64) -> State {
         let mut guess = self.state.clone();
         for (r, dr) in guess.force.iter_mut().zip(&rate.force) {
             (0..2).for_each(|k| r[k] += share * dr[k]);
@@ -522,7 +551,7 @@ impl<'a> Tracer<'a, '_> {
             }
         }
         along += (next.factor - self.state.factor) * rate.factor / (u.factor * u.factor);
-        if along <= 0.0 {
+        if along <= 0.0 && !self.model.response_yields(next) {
             return no("the step turned back");
         }
         // Friction that is not associated: several states may belong to one load. A state far from
@@ -582,7 +611,7 @@ impl<'a> Tracer<'a, '_> {
 
     /// Looks, with small displacements, for a rate with growing λ where there should be none.
     fn doubt(&mut self, state: &State, direction: f64) {
-        if !self.model.finite() {
+        if !self.model.finite() && self.model.responses.is_empty() {
             self.doubt = self.model.none_rises(state, direction).err();
         }
     }
@@ -612,16 +641,20 @@ impl<'a> Tracer<'a, '_> {
                 break;
             }
         }
-        let (mut state, _) = best;
+        Some(self.peak_at(best.0, &behind, direction))
+    }
+
+    /// A peak at a state between the last one and the next, with the rate just behind it.
+    pub(super) fn peak_at(&mut self, mut state: State, behind: &Rate, direction: f64) -> Peak {
         let slopes = self.model.slopes(&state);
         let mut ledger = self.ledger;
         ledger.add(&self.model, &self.state, &state, [&self.slopes, &slopes]);
         let start = self.state.clone();
         self.model.keep(&start, &mut state);
         let recorded = ledger.recorded(&self.model, self.drive, &state, &slopes);
-        let motion = self.scaled_motion(&state, &behind);
+        let motion = self.scaled_motion(&state, behind);
         self.doubt(&state, direction);
-        Some(Peak { factor: state.factor, state: recorded, motion })
+        Peak { factor: state.factor, state: recorded, motion }
     }
 
     /// Velocities with p·q̇ = 1. `None` where the load does next to no work on them: rates are checked to
@@ -650,6 +683,9 @@ impl<'a> Tracer<'a, '_> {
             if law.ray_violation(self.state.regime[c], r, gap) > 1e-8 {
                 return false;
             }
+        }
+        if !self.model.responses_go_on(&self.state, rate) {
+            return false;
         }
         if still {
             self.motion = self.scaled_motion(&self.state, rate);
