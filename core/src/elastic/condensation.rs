@@ -51,13 +51,10 @@ pub struct Condensed {
     /// The points, as asked for \[m\].
     pub points: Vec<Vec2>,
     /// C, 2m × 2m with rows and columns (x, y) per point \[m/N\]: u = C f. Symmetric, positive
-    /// semi-definite; forces that are not in equilibrium are balanced by the body's inertia.
+    /// semi-definite; forces that are not in equilibrium are balanced by the body's inertia. The body
+    /// force of a uniform acceleration is the inertia force of a rigid motion and adds nothing
+    /// relative to the mean motion: the weight is in C f where contact forces carry it.
     pub flexibility: DMatrix<f64>,
-    /// u at the points from a uniform acceleration a_x, a_y of 1 m/s² as body force, 2m × 2
-    /// \[m per m/s²\]. It is zero: relative to the mean motion the body force of a uniform
-    /// acceleration is the inertia force of a rigid motion, so the weight is already in C f
-    /// where contact forces carry it.
-    pub gravity: DMatrix<f64>,
 }
 
 /// A placed polygon: vertex i of the shape is `origin` + Q × local vertex × `size`.
@@ -372,8 +369,7 @@ impl Condenser {
                 turned.fixed_view_mut::<2, 2>(2 * j, 2 * i).copy_from(&block.transpose());
             }
         }
-        let gravity = DMatrix::zeros(2 * points.len(), 2);
-        Ok(Condensed { points: points.to_vec(), flexibility: turned, gravity })
+        Ok(Condensed { points: points.to_vec(), flexibility: turned })
     }
 
     /// Displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform

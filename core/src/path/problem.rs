@@ -26,8 +26,6 @@ pub struct PathBody {
     /// Displacements (x, y per point) by forces (x, y per point) relative to the mean rigid motion
     /// \[m/N\]; `None` for rigid bodies.
     pub flexibility: Option<Arc<DMatrix<f64>>>,
-    /// Displacements by a uniform acceleration (a_x, a_y) of 1 m/s².
-    pub gravity: Option<Arc<DMatrix<f64>>>,
 }
 
 /// One side of a contact point.
@@ -175,7 +173,6 @@ impl PathProblem {
                     mass: 0.0,
                     points: Vec::new(),
                     flexibility: None,
-                    gravity: None,
                 });
             }
             body_of[block] = body_of[r];
@@ -381,7 +378,6 @@ impl PathProblem {
             let condensed =
                 condenser.condense(&assembly.bodies[block].vertices, elastic, &assembly.mesh, &body.points)?;
             body.flexibility = Some(Arc::new(condensed.flexibility));
-            body.gravity = Some(Arc::new(condensed.gravity));
         }
         self.counters.insert("condensation_factorisations".into(), condenser.factorisations());
         Ok(())
@@ -431,12 +427,8 @@ impl PathProblem {
     /// Displacement (x, y) of point `slot` of a body by the deformation that a loading causes, small
     /// displacements \[m\].
     pub fn deformation(&self, loading: &Loading, body: usize, slot: usize) -> Vec2 {
-        let PathBody { flexibility: Some(flexibility), gravity: Some(gravity), .. } = &self.bodies[body] else {
-            return Vec2::zeros();
-        };
-        let a = loading.acceleration;
-        let row = |i: usize| gravity[(i, 0)] * a.x + gravity[(i, 1)] * a.y;
-        let mut u = Vec2::new(row(2 * slot), row(2 * slot + 1));
+        let mut u = Vec2::zeros();
+        let Some(flexibility) = &self.bodies[body].flexibility else { return u };
         for &(on, at, _, force) in &loading.forces {
             if let (true, Some(at)) = (on == body, at) {
                 for (i, u) in u.iter_mut().enumerate() {

@@ -28,9 +28,7 @@ pub fn rigid(problem: &PathProblem, motion: &[[f64; 3]], body: usize, point: Vec
 /// drive.
 pub fn snapshot(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]], applied: &[f64]) -> Snapshot {
     let mut forces: Vec<Vec<Vec2>> = problem.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
-    let mut acceleration = Vec2::zeros();
     for (drive, factor) in problem.drives.iter().zip(applied) {
-        acceleration += drive.loading.acceleration * *factor;
         for (body, slot, _, f) in &drive.loading.forces {
             if let Some(slot) = slot {
                 forces[*body][*slot] += f * *factor;
@@ -49,12 +47,12 @@ pub fn snapshot(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]], 
     }
     let mut elastic: Vec<Vec<Vec2>> = Vec::with_capacity(problem.bodies.len());
     for (body, f) in problem.bodies.iter().zip(&forces) {
-        let (Some(flexibility), Some(gravity)) = (&body.flexibility, &body.gravity) else {
+        let Some(flexibility) = &body.flexibility else {
             elastic.push(Vec::new());
             continue;
         };
         let flat = nalgebra::DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
-        let u = &**flexibility * &flat + &**gravity * acceleration;
+        let u = &**flexibility * &flat;
         stored += 0.5 * flat.dot(&u);
         elastic.push((0..f.len()).map(|i| Vec2::new(u[2 * i], u[2 * i + 1])).collect());
     }

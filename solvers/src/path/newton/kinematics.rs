@@ -4,12 +4,12 @@
 //! of its bodies, e_i = R(θ_c) n, R(θ_c) t, the gaps are g_i = g_0 + e_i·(x⁺ − x⁻) and
 //!
 //! ```text
-//! Π(r, q) = Σ_c r·g_rigid(q) + ½ r·c r + Σ_b [½ fᵀ C f + fᵀ Γ R(θ_b)ᵀ a] + Σ F·x_rigid(q)
+//! Π(r, q) = Σ_c r·g_rigid(q) + ½ r·c r + Σ_b ½ fᵀ C f + Σ F·x_rigid(q)
 //! f = ±R(θ_c − θ_b) [n t] r at contact points, R(−θ_b) F at loads     (forces in the body's frame)
 //! ∂Π/∂r = g,   ∂Π/∂q = Gqᵀ r + w + λ p = 0 (the moments of v_b included)
 //! ```
 //!
-//! C, Γ: flexibility and gravity matrices of the body. Small displacements are the same potential to
+//! C: flexibility of the body, relative to its mean motion, so that the weight is part of w only. Small displacements are the same potential to
 //! second order at the undeformed place: R = 1 and no second derivatives of rotations.
 //! Source: the mixed form of Hellinger and Reissner with corotational frames (Wriggers 2006,
 //! Computational Contact Mechanics; Crisfield 1997, Non-linear Finite Element Analysis 2, ch. 17).
@@ -61,7 +61,7 @@ pub(super) struct Slopes {
     pub balance: Vec<[f64; 3]>,
     /// Elastic displacement of the points of every body in its frame \[m\].
     pub deformation: Vec<Vec<f64>>,
-    /// Elastic energy \[J\], weight's own deformation left out.
+    /// Elastic energy \[J\].
     pub stored: f64,
 }
 
@@ -166,15 +166,6 @@ impl<'a> Kinematics<'a> {
         v
     }
 
-    /// Γ a.
-    fn times_gravity(&self, body: usize, a: Vec2) -> Vec<f64> {
-        let points = self.problem.bodies[body].flexibility.as_ref().map_or(0, |c| c.nrows());
-        match &self.problem.bodies[body].gravity {
-            Some(gravity) => (0..points).map(|i| gravity[(i, 0)] * a.x + gravity[(i, 1)] * a.y).collect(),
-            None => vec![0.0; points],
-        }
-    }
-
     /// First derivatives of Π at contact forces and motions.
     pub fn slopes(&self, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Slopes {
         let problem = self.problem;
@@ -224,13 +215,8 @@ impl<'a> Kinematics<'a> {
     fn elastic_slopes(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads, out: &mut Slopes) {
         let f = self.body_forces(body, force, motion, loads);
         let back = self.turn(-motion[body][2]);
-        let a = back * loads.acceleration();
-        let weight = self.times_gravity(body, a);
-        let mut v = self.times_flexibility(body, &f);
-        for i in 0..v.len() {
-            out.stored += f[i] * (0.5 * v[i] + weight[i]);
-            v[i] += weight[i];
-        }
+        let v = self.times_flexibility(body, &f);
+        out.stored += 0.5 * f.iter().zip(&v).map(|(f, v)| f * v).sum::<f64>();
         for side in &self.sides[body] {
             let c = &self.problem.contacts[side.contact];
             let (r, turn) = self.carried(side, force, motion);
@@ -253,8 +239,6 @@ impl<'a> Kinematics<'a> {
                     }
                 }
             }
-            let turning = self.times_gravity(body, -turned(a));
-            out.balance[body][2] += f.iter().zip(&turning).map(|(f, w)| f * w).sum::<f64>();
         }
         out.deformation[body] = v;
     }
@@ -349,7 +333,6 @@ impl<'a> Kinematics<'a> {
         let v = &slopes.deformation[body];
         let at = |v: &[f64], slot: usize| Vec2::new(v[2 * slot], v[2 * slot + 1]);
         let back = self.turn(-motion[body][2]);
-        let a = back * loads.acceleration();
         // ∂f/∂r of every side.
         let moved: Vec<(Side, Matrix2<f64>, Matrix2<f64>)> = self.sides[body]
             .iter()
@@ -381,9 +364,7 @@ impl<'a> Kinematics<'a> {
                 pushed[2 * slot + 1] += on.y;
             }
         }
-        let grown = back * growing.acceleration;
-        let mut by_factor = self.times_flexibility(body, &pushed);
-        by_factor.iter_mut().zip(self.times_gravity(body, grown)).for_each(|(v, w)| *v += w);
+        let by_factor = self.times_flexibility(body, &pushed);
         for (side, m, _) in &moved {
             let gap = m.transpose() * at(&by_factor, side.slot);
             out.factor[2 * side.contact] += gap.x;
@@ -421,20 +402,7 @@ impl<'a> Kinematics<'a> {
                 }
             }
         }
-        let f = self.body_forces(body, force, motion, loads);
-        let turning = self.times_gravity(body, -turned(a));
-        let weight = self.times_gravity(body, a);
-        out.entries.push((theta(body), theta(body), -f.iter().zip(&weight).map(|(f, w)| f * w).sum::<f64>()));
-        let products: Vec<Vec<f64>> = columns
-            .iter()
-            .map(|(of, column)| {
-                let mut product = self.times_flexibility(body, column);
-                if *of == body {
-                    product.iter_mut().zip(&turning).for_each(|(p, w)| *p += w);
-                }
-                product
-            })
-            .collect();
+        let products: Vec<Vec<f64>> = columns.iter().map(|(_, column)| self.times_flexibility(body, column)).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         for (k, (of, column)) in columns.iter().enumerate() {
             for (side, m, frame) in &moved {
@@ -451,16 +419,10 @@ impl<'a> Kinematics<'a> {
                 }
             }
             for (l, (other, _)) in columns.iter().enumerate() {
-                let mut value = dot(column, &products[l]);
-                if *of == body {
-                    // The gravity term enters both factors of the product once.
-                    value += dot(&columns[l].1, &turning);
-                }
-                out.entries.push((theta(*of), theta(*other), value));
+                out.entries.push((theta(*of), theta(*other), dot(column, &products[l])));
             }
             out.factor[theta(*of)] += dot(column, &by_factor);
         }
-        out.factor[theta(body)] += dot(&pushed, &turning) + dot(&f, &self.times_gravity(body, -turned(grown)));
         for (_, slot, _, load) in growing.forces.iter().filter(|l| l.0 == body) {
             if let Some(slot) = slot {
                 out.factor[theta(body)] -= turned(back * *load).dot(&at(v, *slot));

@@ -21,10 +21,7 @@ fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
 }
 
 fn body(pole: Vec2, points: Vec<Vec2>, flexibility: Option<DMatrix<f64>>, held: bool) -> PathBody {
-    let rows = 2 * points.len();
-    let gravity =
-        flexibility.as_ref().map(|_| Arc::new(DMatrix::from_fn(rows, 2, |i, j| 1e-3 * ((3 * i + 5 * j) as f64).sin())));
-    PathBody { members: vec![0], pole, held, mass: 2.0, points, flexibility: flexibility.map(Arc::new), gravity }
+    PathBody { members: vec![0], pole, held, mass: 2.0, points, flexibility: flexibility.map(Arc::new) }
 }
 
 /// A symmetric positive definite matrix of plausible entries.
@@ -192,7 +189,6 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, Drive
         mass: 0.0,
         points,
         flexibility: Some(Arc::new(DMatrix::from_fn(4, 4, entry))),
-        gravity: None,
     };
     let mut ground = block.clone();
     ground.points.clear();
