@@ -3,6 +3,8 @@
 //! `tests/tests/verification_*.rs` holds other people's answers, `regression_*.rs` our own last
 //! ones, `invariance.rs` what must not matter, `mistakes.rs` the exact text of every error message.
 
+pub mod random;
+
 use voussoir::core::assembly::Assembly;
 use voussoir::core::geometry::Vec2;
 use voussoir::core::limit::Status;

@@ -86,7 +86,14 @@ fn a_bar_in_tension() {
         let (_, answer, states) = traced(&bar(length, modulus), &settings);
         println!("{:?} {:?} {:?} {:?}", answer.status, answer.factor, answer.notes, answer.counters);
         for s in &states {
-            println!("{:.9} {:.6e} {:.9e} {:.3e} gap {:?}", s.factor, s.displacement, s.dissipated, s.work - s.stored - s.dissipated, s.gap.last());
+            println!(
+                "{:.9} {:.6e} {:.9e} {:.3e} gap {:?}",
+                s.factor,
+                s.displacement,
+                s.dissipated,
+                s.work - s.stored - s.dissipated,
+                s.gap.last()
+            );
         }
     }
 }

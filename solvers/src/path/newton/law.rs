@@ -7,6 +7,7 @@
 //! Sources: Alart & Curnier 1991 (the return as a projection, ρ); Simo & Hughes 1998, ch. 5 (several
 //! facets, flow not along the normal); De Saxcé & Feng 1998 (the same law as a bi-potential).
 
+use super::cells::Cells;
 use voussoir_core::interface::{Facet, FacetMode};
 
 /// What a contact point does.
@@ -27,6 +28,8 @@ pub(super) struct Polygon {
     pub facets: Vec<Facet>,
     /// Place \[Pa\] and the pairs of facets that may be active there.
     pub corners: Vec<([f64; 2], Vec<[usize; 2]>)>,
+    /// Cells and their walls.
+    pub cells: Cells,
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -70,7 +73,27 @@ impl Polygon {
                 pairs.retain(opening);
             }
         }
-        Polygon { facets: facets.to_vec(), corners }
+        let cells = Cells::new(facets, &corners);
+        Polygon { facets: facets.to_vec(), corners, cells }
+    }
+
+    /// The cell of z = r − ρ Δg and its return r.
+    pub fn returned(&self, z: [f64; 2], rho: [f64; 2], area: f64) -> (usize, [f64; 2]) {
+        match self.regime(Regime::Stuck, z, rho, area, 0.0) {
+            Regime::Stuck => (0, z),
+            Regime::Facet(i) => {
+                let f = &self.facets[i as usize];
+                let d = [rho[0] * f.flow[0], rho[1] * f.flow[1]];
+                let gamma = (dot(f.normal, z) - f.bound * area) / dot(f.normal, d);
+                (1 + i as usize, [z[0] - gamma * d[0], z[1] - gamma * d[1]])
+            }
+            Regime::Corner(k) => {
+                let r = self.corners[k as usize].0.map(|x| x * area);
+                let gap = [(r[0] - z[0]) / rho[0], (r[1] - z[1]) / rho[1]];
+                let (pair, _) = self.pair(k, gap);
+                (self.cells.at(k as usize, pair), r)
+            }
+        }
     }
 
     /// Multipliers (γ_i, γ_j) of −Δg over a pair of facets.

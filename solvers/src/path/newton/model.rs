@@ -61,6 +61,8 @@ pub(super) enum Control<'a> {
     Strategy { strategy: &'a dyn Continuation, previous: Option<Increment>, length: f64 },
     /// Weighted gaps.
     Gaps { local: &'a Local, length: f64 },
+    /// weight × Δλ + the displacement that λ works on = length, in units (small displacements).
+    Spring { weight: f64, length: f64 },
 }
 
 /// The present drive on top of what earlier ones left.
@@ -93,7 +95,7 @@ pub(super) struct Model<'a> {
     pub counters: Counters,
     pub loaded: Loaded<'a>,
     /// Second derivatives with small displacements, of the present drive.
-    constant: Option<std::rc::Rc<Curvature>>,
+    pub(super) constant: Option<std::rc::Rc<Curvature>>,
 }
 
 /// Why a step was not found.
@@ -321,7 +323,14 @@ impl<'a> Model<'a> {
     /// Increment of a rate from a state.
     pub fn increment_of(&self, state: &State, rate: &Rate) -> Increment {
         let mut moved = state.clone();
-        let small = 1e-6 / self.rate_size(rate).max(1e-300);
+        let mut small = 1e-6 / self.rate_size(rate).max(1e-300);
+        if !self.finite() {
+            // Everything is linear: from nothing, without a difference of what may be large.
+            moved.gap.fill([0.0; 2]);
+            moved.motion.fill([0.0; 3]);
+            small = 1.0;
+        }
+        let origin = moved.clone();
         // Linear in a step that is small: displacement and dissipation may not be.
         let step = rate.scaled(small);
         for c in 0..moved.gap.len() {
@@ -333,7 +342,7 @@ impl<'a> Model<'a> {
         moved.factor += step.factor;
         // Where the law fails so close to a state, the rest of the rate still counts.
         moved.answers = self.responses.update(&moved.gap, &state.answers.memory).unwrap_or_default();
-        let mut base = state.clone();
+        let mut base = origin;
         base.slip = base.gap.clone();
         let i = self.increment(&base, &moved);
         Increment {

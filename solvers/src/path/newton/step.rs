@@ -28,6 +28,10 @@ impl Model<'_> {
         self.count("law_evaluations", state.gap.len() as u64);
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
         let mean = self.units.displacement / self.units.force;
+        let gaps = state.gap.iter().flatten().map(|g| g.abs());
+        let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * self.units.length));
+        // Gaps are differences of motions: beyond rounding of those a gap means nothing.
+        let rounding = 8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max);
         (0..state.gap.len())
             .map(|c| match self.law(c) {
                 None => Regime::Stuck,
@@ -35,7 +39,8 @@ impl Model<'_> {
                     let rho = self.compliance[c].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean });
                     let gap = self.step_gap(start, state, c);
                     let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
-                    law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, 1e-11 * largest)
+                    let tolerance = (1e-11 * largest).max(rounding * rho[0].max(rho[1]));
+                    law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, tolerance)
                 }
             })
             .collect()
@@ -44,22 +49,14 @@ impl Model<'_> {
     /// Newton's method from a guess. Regimes change all at once as long as their number falls, else
     /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
     /// Res. 21), so that regimes that flip for ever are seen. Where that fails, once more with one
-    /// change at a time from the beginning.
+    /// change at a time from the beginning, with small displacements and a given factor by pivoting.
     pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        self.iterate(start, guess.clone(), control, 8).or_else(|_| self.iterate(start, guess, control, 0))
-    }
-
-    /// Newton's method from all points open.
-    pub fn tried_from_open(&mut self, start: &State, control: &Control) -> Result<(State, u64), Refusal> {
-        let mut guess = start.clone();
-        for c in 0..guess.regime.len() {
-            let Some(law) = self.law(c) else { continue };
-            let corners = (0..law.corners.len()).map(|k| Regime::Corner(k as u8));
-            if let Some(open) = corners.into_iter().find(|regime| law.opens(*regime)) {
-                guess.regime[c] = open;
-            }
+        let found = self.iterate(start, guess.clone(), control, 8);
+        match (found, control) {
+            (Err(_), _) if self.finite() => self.iterate(start, guess, control, 0),
+            (Err(_), Control::Factor(factor)) => self.pivoted(start, &State { factor: *factor, ..guess }, control),
+            (found, _) => found,
         }
-        self.newton(start, guess, control)
     }
 
     /// Greatest relative residual: balance and yielding against forces, gaps against motions.
@@ -85,7 +82,7 @@ impl Model<'_> {
         residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
     }
 
-    fn iterate(
+    pub(super) fn iterate(
         &mut self,
         start: &State,
         guess: State,
@@ -104,16 +101,17 @@ impl Model<'_> {
         self.respond(start, &mut state).map_err(refused)?;
         // Small displacements round by their own size, which the residual is relative to; a law of
         // tractions from gaps must hold to that.
-        let rounding = if self.finite() || self.responses.is_empty() {
-            400.0 * f64::EPSILON * self.units.length / self.units.displacement
-        } else {
-            400.0 * f64::EPSILON
+        let rounding = match (self.finite(), self.responses.is_empty()) {
+            (true, _) => 400.0 * f64::EPSILON * self.units.length / self.units.displacement,
+            (false, true) => 0.0,
+            (false, false) => 400.0 * f64::EPSILON,
         };
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
         let mut last_norm = f64::INFINITY;
-        for iteration in 0..60 + (state.gap.len() as u64).min(200) {
+        let most = if self.finite() { 60 + (state.gap.len() as u64).min(200) } else { 30 };
+        for iteration in 0..most {
             let mut residual = self.residual(start, &state, &slopes);
             let (c, constraint) = self.constraint(start, &state, control);
             let last = residual.len() - 1;
@@ -128,7 +126,7 @@ impl Model<'_> {
             }
             last_norm = norm;
             let curvature = self.curvature(&state, &slopes);
-            let row = self.gradient(start, &state, control, &constraint, &curvature);
+            let row = self.control_row(start, &state, control, &constraint, &curvature);
             let right: Vec<f64> = residual.iter().map(|x| -x).collect();
             self.count("newton_iterations", 1);
             let why = "the regimes of the contact points leave no equilibrium";
@@ -184,7 +182,7 @@ impl Model<'_> {
         let slopes = self.slopes(state);
         let curvature = self.curvature(state, &slopes);
         let (_, constraint) = self.constraint(start, state, control);
-        let row = self.gradient(start, state, control, &constraint, &curvature);
+        let row = self.control_row(start, state, control, &constraint, &curvature);
         self.rate_of(state, &curvature, &row)
     }
 
@@ -220,6 +218,11 @@ impl Model<'_> {
         let mut right = vec![0.0; self.size()];
         right[self.size() - 1] = 1.0;
         let (x, _) = self.solve(state, curvature, row, &right).filter(|(_, solved)| *solved)?;
+        Some(self.rate_from(&x, state, curvature))
+    }
+
+    /// The rate of a solution of the linear equations.
+    pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
         let mut zero = State {
             force: vec![[0.0; 2]; state.force.len()],
             motion: vec![[0.0; 3]; state.motion.len()],
@@ -229,7 +232,7 @@ impl Model<'_> {
             slip: Vec::new(),
             answers: Default::default(),
         };
-        self.apply(&mut zero, &x, 1.0);
+        self.apply(&mut zero, x, 1.0);
         let factor = zero.factor;
         let mut motion = vec![[0.0; 3]; state.motion.len()];
         for (body, settlement) in &self.loaded.growing.settlements {
@@ -248,6 +251,6 @@ impl Model<'_> {
         for (c, gap) in gap.iter_mut().enumerate() {
             (0..2).for_each(|k| gap[k] += curvature.factor[2 * c + k] * factor);
         }
-        Some(Rate { force: zero.force, motion, factor, gap })
+        Rate { force: zero.force, motion, factor, gap }
     }
 }

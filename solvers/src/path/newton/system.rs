@@ -16,13 +16,13 @@
 
 use super::kinematics::{Curvature, Slopes};
 use super::law::Regime;
-use super::model::{Control, Model, State, load_size};
+use super::model::{Control, Model, Rate, State, load_size};
 use crate::lu::SparseLu;
 use voussoir_core::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
 /// The shift of the factorised matrix.
-const SHIFT: f64 = 1e-9;
+pub(super) const SHIFT: f64 = 1e-9;
 
 impl Model<'_> {
     /// Gradient of a constraint over the scaled unknowns.
@@ -132,7 +132,69 @@ impl Model<'_> {
                 (c.value - length, c)
             }
             Control::Gaps { local, length } => (local.value(start, state) - length, Constraint::default()),
+            Control::Spring { weight, length } => {
+                let derivative = Increment { factor: *weight, ..Increment::default() };
+                let value =
+                    weight * (state.factor - start.factor) / self.units.factor + self.work_between(start, state);
+                (value - length, Constraint { value, derivative })
+            }
         }
+    }
+
+    /// The row of a control over the scaled unknowns, at a state.
+    pub(super) fn control_row(
+        &self,
+        start: &State,
+        state: &State,
+        control: &Control,
+        constraint: &Constraint,
+        curvature: &Curvature,
+    ) -> Vec<f64> {
+        let mut row = self.gradient(start, state, control, constraint, curvature);
+        if matches!(control, Control::Spring { .. }) {
+            let unit = self.units.factor / (self.units.force * self.units.displacement);
+            for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+                if let Some((column, own)) = self.column(i) {
+                    row[column] += unit * value * own;
+                }
+            }
+        }
+        row
+    }
+
+    /// ∂Π/∂λ between two states, in units: p·Δq + g_p·Δr (small displacements).
+    fn work_between(&self, start: &State, state: &State) -> f64 {
+        let Some(curvature) = &self.constant else { return 0.0 };
+        let points = state.gap.len();
+        let mut sum = 0.0;
+        for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+            let by = if i < 2 * points {
+                state.force[i / 2][i % 2] - start.force[i / 2][i % 2]
+            } else {
+                let (body, k) = ((i - 2 * points) / 3, (i - 2 * points) % 3);
+                if self.free[body].is_none() {
+                    continue;
+                }
+                state.motion[body][k] - start.motion[body][k]
+            };
+            sum += value * by;
+        }
+        sum * self.units.factor / (self.units.force * self.units.displacement)
+    }
+
+    /// ∂Π/∂λ along a rate, in units.
+    pub(super) fn work_along(&self, rate: &Rate) -> f64 {
+        let none = State {
+            force: vec![[0.0; 2]; rate.force.len()],
+            motion: vec![[0.0; 3]; rate.motion.len()],
+            factor: 0.0,
+            gap: vec![[0.0; 2]; rate.gap.len()],
+            regime: Vec::new(),
+            slip: Vec::new(),
+            answers: Default::default(),
+        };
+        let moved = State { force: rate.force.clone(), motion: rate.motion.clone(), ..none.clone() };
+        self.work_between(&none, &moved)
     }
 
     /// Residual of the regimes' equations in units.
@@ -187,8 +249,7 @@ impl Model<'_> {
         let regimes = &state.regime;
         let (points, size) = (regimes.len(), self.size());
         let last = size - 1;
-        let rows: Vec<_> =
-            (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
+        let rows: Vec<_> = (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
         let mut entries: Vec<(usize, usize, f64)> = Vec::with_capacity(curvature.entries.len() + 4 * size);
         let mut shifts: Vec<(usize, usize, f64)> = Vec::new();
         let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };

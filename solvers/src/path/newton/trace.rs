@@ -3,8 +3,8 @@
 use super::kinematics::Slopes;
 use super::law::Regime;
 use super::ledger::{Ledger, events};
-use super::softening::MOST_REFINEMENTS;
 use super::model::{Control, Loaded, Model, Rate, Refusal, State, load_size};
+use super::softening::MOST_REFINEMENTS;
 use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
@@ -161,7 +161,8 @@ impl<'a> Tracer<'a, '_> {
             Some(peak) => {
                 // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
                 let of_peak = peak.motion.filter(|_| self.model.finite() || self.model.responses.is_empty());
-                let motion = if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
+                let motion =
+                    if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
                 (peak.state, Some(self.recorded), Some(peak.factor), motion)
             }
             None => {
@@ -254,11 +255,7 @@ impl<'a> Tracer<'a, '_> {
     /// To a factor: in one step where nothing irreversible happens in it, else in steps.
     fn reach(&mut self, drive: &Drive, factor: f64) -> Outcome {
         let control = Control::Factor(factor);
-        let mut whole = self.model.newton(&self.state, self.state.clone(), &control);
-        if whole.is_err() && !self.model.finite() {
-            whole = self.model.tried_from_open(&self.state, &control);
-        }
-        if let Ok((next, iterations)) = whole {
+        if let Ok((next, iterations)) = self.model.newton(&self.state, self.state.clone(), &control) {
             let slips = (0..next.gap.len()).any(|c| {
                 let gap = self.model.step_gap(&self.state, &next, c);
                 self.model.law(c).is_some_and(|law| {
@@ -296,6 +293,7 @@ impl<'a> Tracer<'a, '_> {
         let measure = |model: &Model, state: &State, rate: &Rate, previous: Option<&Increment>| {
             strategy.constraint(&model.increment_of(state, rate), previous).value
         };
+        let weight = self.spring();
         let one = measure(&self.model, &self.state, &rate, None);
         if one.is_nan() || one <= 1e-14 * self.model.rate_size(&rate) {
             self.end(Status::Stalled, "what the continuation strategy controls does not change under this load".into());
@@ -357,7 +355,16 @@ impl<'a> Tracer<'a, '_> {
             if let Some(regimes) = &yielding {
                 guess.regime = regimes.clone();
             }
-            let found = self.model.newton(&self.state, guess, &control).and_then(|(next, iterations)| {
+            let mut control = control;
+            let mut found = self.model.newton(&self.state, guess.clone(), &control);
+            if found.is_err() && !self.model.finite() && !reaches {
+                if strategy.passes_limit_points() {
+                    let along = weight * rate.factor / unit + self.model.work_along(&rate);
+                    control = Control::Spring { weight, length: step * along };
+                }
+                found = self.model.pivoted(&self.state, &guess, &control);
+            }
+            let found = found.and_then(|(next, iterations)| {
                 if yielding.is_some() && next.regime == self.state.regime {
                     return Err(Refusal { why: "the step went back the way it came".into(), restless: Vec::new() });
                 }
@@ -431,11 +438,19 @@ impl<'a> Tracer<'a, '_> {
                 }
                 continue;
             };
-            let next_rate = if reaches { next_rate.scaled(direction) } else { self.onwards(&next, next_rate) };
+            let next_rate = match control {
+                Control::Spring { length, .. } => next_rate.scaled(length.signum()),
+                _ if reaches => next_rate.scaled(direction),
+                _ => self.onwards(&next, next_rate),
+            };
             let size = next.factor.abs().max(unit * 1e-3);
             let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
             let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
-            if self.peak.is_none() && self.model.responses.is_empty() && (fell || (falls && before_peak_rate > 0.0)) && !reaches {
+            if self.peak.is_none()
+                && self.model.responses.is_empty()
+                && (fell || (falls && before_peak_rate > 0.0))
+                && !reaches
+            {
                 self.peak = self.locate_peak(&rate, previous, length, direction);
             }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
@@ -475,6 +490,18 @@ impl<'a> Tracer<'a, '_> {
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}", self.state.factor),
         );
         Outcome::Ended
+    }
+
+    /// Weight of the factor in a control by a spring: with it every step of associated flow is a
+    /// monotone problem. Between weight × λ + ∂Π/∂λ and λ there must be a growing relation even with
+    /// all points stuck, where ∂Π/∂λ may fall (a settlement pulls at its reaction).
+    fn spring(&mut self) -> f64 {
+        let mut stuck = self.state.clone();
+        stuck.regime.fill(Regime::Stuck);
+        let factor = stuck.factor;
+        let rate = self.model.rate(&self.state, &stuck, &Control::Factor(factor));
+        let work = rate.map_or(0.0, |rate| self.model.work_along(&rate) * self.model.units.factor / rate.factor);
+        (-2.0 * work).max(work).max(1e-3)
     }
 
     pub(super) fn moved(&self, rate: &Rate, share: f64) -> State {

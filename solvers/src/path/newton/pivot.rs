@@ -1,0 +1,219 @@
+//! A step by pivoting, where Newton's method does not find its regimes (small displacements).
+//!
+//! The step is piecewise linear: every contact point has a *cell* (stuck, on one facet, on two), and in
+//! each combination of cells the equations are linear. From any guess y_0 the residual F(y_0) is taken
+//! away in proportion,
+//!
+//! ```text
+//! F(y) = (1 − t) F(y_0),   t from 0 to 1,
+//! ```
+//!
+//! and y follows exactly, cell by cell: where a point reaches a wall of its cell it goes over into the
+//! neighbour, and t goes on in the sense that leads into it (forwards for ever where flow is
+//! associated: the equations are monotone; t may turn back otherwise). A random shift of the guess
+//! makes all walls be met one at a time, so that no combination of cells comes twice; it is part of
+//! F(y_0) and gone at t = 1. Sources: Eaves & Scarf (1976, Math. Operations Research 1) on piecewise
+//! linear paths; Robinson (1992, Math. Operations Research 17) on normal maps; Ralph (1994, ibid. 19)
+//! and Dirkse & Ferris (1995, Optim. Methods Software 5) on this path as a globally convergent Newton
+//! method for complementarity problems.
+
+use super::frame::Frame;
+use super::law::Regime;
+use super::model::{Control, Model, Refusal, State};
+
+/// Sizes of the shift of the guess that are tried, relative to forces.
+const SHIFTS: [f64; 3] = [1e-3, 0.03, 0.5];
+/// Values of t behind which a path that turned back is given up.
+const LOST: f64 = -30.0;
+
+/// Numbers in [−1, 1), the same in every run.
+struct Shuffle(u64);
+
+impl Shuffle {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A point of the path.
+struct Place {
+    state: State,
+    /// Δg less what of the residual is left of it \[m\].
+    step_gap: Vec<[f64; 2]>,
+    cells: Vec<Option<usize>>,
+    /// Residual of the gaps at t = 0 \[m\].
+    offset: Vec<[f64; 2]>,
+    t: f64,
+}
+
+impl Model<'_> {
+    /// A step by pivoting from a guess. The control must be linear.
+    pub fn pivoted(&mut self, start: &State, guess: &State, control: &Control) -> Result<(State, u64), Refusal> {
+        let mut refusal = Refusal { why: "pivoting does not apply".into(), restless: Vec::new() };
+        if !self.responses.is_empty() {
+            return Err(refusal);
+        }
+        for (attempt, shift) in SHIFTS.into_iter().enumerate() {
+            match self.walked(start, guess, control, shift, attempt as u64) {
+                Ok(state) => match self.polished(start, state, control) {
+                    Ok(found) => return Ok(found),
+                    Err(why) => refusal = why,
+                },
+                Err(why) => refusal.why = why,
+            }
+        }
+        Err(refusal)
+    }
+
+    /// The guess with every point in a cell, shifted.
+    fn placed(&mut self, start: &State, guess: &State, shift: f64, seed: u64) -> Place {
+        let points = guess.gap.len();
+        let mut state = guess.clone();
+        let mut motion = std::mem::take(&mut state.motion);
+        self.settle(&mut motion, state.factor);
+        state.motion = motion;
+        let gap = self.slopes(&state).gap;
+        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+        let mean = self.units.displacement / self.units.force;
+        let typical = largest.max(1e-3 * self.units.force) / (points as f64).sqrt();
+        let mut random = Shuffle(0x9E37_79B9 + 77 * seed);
+        let (mut cells, mut step_gap) = (vec![None; points], vec![[0.0; 2]; points]);
+        for c in 0..points {
+            let noise = [random.next(), random.next()];
+            let Some(law) = self.law(c) else { continue };
+            let rho = self.compliance[c].map(|own| 1.0 / own.max(1e-6 * mean));
+            let r = state.force[c];
+            let scale = shift * (r[0].hypot(r[1]) + 0.1 * typical);
+            let z = [0, 1].map(|k| r[k] - rho[k] * (gap[c][k] - start.slip[c][k]) + scale * noise[k]);
+            let area = self.problem.contacts[c].area;
+            let (cell, r) = law.returned(z, rho, area);
+            state.force[c] = r;
+            step_gap[c] = [0, 1].map(|k| (r[k] - z[k]) / rho[k]);
+            cells[c] = Some(cell);
+        }
+        state.gap = self.slopes(&state).gap;
+        let offset = (0..points).map(|c| [0, 1].map(|k| state.gap[c][k] - start.slip[c][k] - step_gap[c][k])).collect();
+        Place { state, step_gap, cells, offset, t: 0.0 }
+    }
+
+    fn walked(
+        &mut self,
+        start: &State,
+        guess: &State,
+        control: &Control,
+        shift: f64,
+        seed: u64,
+    ) -> Result<State, String> {
+        let mut place = self.placed(start, guess, shift, seed);
+        let points = place.cells.len();
+        let slopes = self.slopes(&place.state);
+        let residual = self.residual(start, &place.state, &slopes);
+        let (left, constraint) = self.constraint(start, &place.state, control);
+        let curvature = self.curvature(&place.state, &slopes);
+        let row = self.control_row(start, &place.state, control, &constraint, &curvature);
+        let size = self.size();
+        let mut frame = Frame::new(self, &curvature, &row);
+        let most = 400 + 20 * points;
+        // The wall by which a cell was entered, and the sense of t.
+        let mut entered: Option<(usize, usize)> = None;
+        let mut sense = 1.0;
+        for _ in 0..most {
+            for c in 0..points {
+                place.state.regime[c] = match (place.cells[c], self.law(c)) {
+                    (Some(cell), Some(law)) => law.cells.cells[cell].0,
+                    _ => Regime::Stuck,
+                };
+            }
+            let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
+            right[size - 1] = -left;
+            for c in 0..points {
+                let e = place.offset[c].map(|e| e / self.units.displacement);
+                let rows = match (place.state.regime[c], self.law(c)) {
+                    (Regime::Facet(i), Some(law)) => {
+                        let d = law.facets[i as usize].flow;
+                        [0.0, -(e[0] * d[1] - e[1] * d[0])]
+                    }
+                    (Regime::Corner(_), Some(_)) => [0.0; 2],
+                    _ => [-e[0], -e[1]],
+                };
+                right[2 * c] = rows[0];
+                right[2 * c + 1] = rows[1];
+            }
+            self.count("pivots", 1);
+            let Some((x, factorisations)) = frame.solve(self, &place.state.regime, &right) else {
+                return Err("a combination of cells has no direction".into());
+            };
+            self.count("factorisations", factorisations);
+            if x.iter().any(|x| !x.is_finite()) {
+                return Err("a combination of cells has no finite direction".into());
+            }
+            let rate = self.rate_from(&x, &place.state, &curvature);
+            let gap_rate: Vec<[f64; 2]> =
+                (0..points).map(|c| [0, 1].map(|k| rate.gap[c][k] + place.offset[c][k])).collect();
+            // Over walls without a change of equations the direction stays.
+            loop {
+                if let Some((c, wall)) = entered.take()
+                    && let (Some(cell), Some(law)) = (place.cells[c], self.law(c))
+                {
+                    let speed = law.cells.cells[cell].1[wall].speed(rate.force[c], gap_rate[c]);
+                    sense = if speed < 0.0 { -1.0 } else { 1.0 };
+                }
+                let mut next: Option<(f64, f64, usize, usize)> = None;
+                for c in 0..points {
+                    let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) else { continue };
+                    let area = self.problem.contacts[c].area;
+                    for (index, wall) in law.cells.cells[cell].1.iter().enumerate() {
+                        let speed = sense * wall.speed(rate.force[c], gap_rate[c]);
+                        if speed >= 0.0 {
+                            continue;
+                        }
+                        let slack = wall.slack(place.state.force[c], place.step_gap[c], area);
+                        let when = slack.max(0.0) / -speed;
+                        if next.is_none_or(|n| when < n.0 || (when == n.0 && -speed > n.1)) {
+                            next = Some((when, -speed, c, index));
+                        }
+                    }
+                }
+                let rest = if sense > 0.0 { 1.0 - place.t } else { f64::INFINITY };
+                let step = next.map_or(f64::INFINITY, |n| n.0);
+                if step.min(rest).is_infinite() {
+                    return Err("the path of pivoting leaves along a ray".into());
+                }
+                let along = sense * step.min(rest);
+                for c in 0..points {
+                    for k in 0..2 {
+                        place.state.force[c][k] += along * rate.force[c][k];
+                        place.step_gap[c][k] += along * gap_rate[c][k];
+                        place.state.gap[c][k] += along * rate.gap[c][k];
+                    }
+                }
+                for (q, dq) in place.state.motion.iter_mut().zip(&rate.motion) {
+                    (0..3).for_each(|k| q[k] += along * dq[k]);
+                }
+                place.state.factor += along * rate.factor;
+                place.t += along;
+                if rest <= step {
+                    return Ok(place.state);
+                }
+                if place.t < LOST {
+                    return Err("the path of pivoting turned back".into());
+                }
+                let Some((_, _, c, index)) = next else { continue };
+                let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) else { continue };
+                let (to, wall) = law.cells.cells[cell].1[index].behind;
+                place.cells[c] = Some(to);
+                entered = Some((c, wall));
+                if law.cells.cells[to].0 != place.state.regime[c] {
+                    break;
+                }
+            }
+        }
+        Err(format!("{most} pivots were not enough"))
+    }
+
+    /// Newton's method from what pivoting found.
+    fn polished(&mut self, start: &State, state: State, control: &Control) -> Result<(State, u64), Refusal> {
+        self.iterate(start, state, control, 8)
+    }
+}
