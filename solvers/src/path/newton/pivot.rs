@@ -118,7 +118,7 @@ impl Model<'_> {
         for _ in 0..most {
             for c in 0..points {
                 place.state.regime[c] = match (place.cells[c], self.law(c)) {
-                    (Some(cell), Some(law)) => law.cells.cells[cell].0,
+                    (Some(cell), Some(law)) => law.regime_of(cell),
                     _ => Regime::Stuck,
                 };
             }
@@ -201,7 +201,7 @@ impl Model<'_> {
                 let (to, wall) = law.cells.cells[cell].1[index].behind;
                 place.cells[c] = Some(to);
                 entered = Some((c, wall));
-                if law.cells.cells[to].0 != place.state.regime[c] {
+                if law.regime_of(to) != place.state.regime[c] {
                     break;
                 }
             }
