@@ -141,7 +141,7 @@ pub fn scene(numbers: Numbers) -> Option<RandomScene> {
     let joint = law.joint(10f64.powf(exponent));
     let is_wall = kind < 4;
     let history = match history {
-        0 => History::Unloading,
+        0 if law != Law::Strengths => History::Unloading,
         1 if kind < 8 && !is_wall => History::Settlement,
         _ => History::None,
     };

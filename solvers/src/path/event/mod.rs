@@ -7,6 +7,7 @@
 
 mod base;
 mod energy;
+mod homotopy;
 mod lcp;
 mod rate;
 mod system;

@@ -220,6 +220,14 @@ const LARGE: usize = 30;
 /// Combinations that are tried.
 const COMBINATIONS: usize = 140_000;
 
+/// Combinations up to which all are tried at once.
+const FEW: usize = 3000;
+/// Points up to which a rate problem is searched for other solutions, and guesses for that.
+const EXAMINED: usize = 16;
+const EXAMINATIONS: u64 = 2;
+/// Guesses from which a piecewise linear path is followed.
+const STARTS: u64 = 12;
+
 /// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
 #[derive(Debug)]
 pub struct RateProblem<'a> {
@@ -238,27 +246,45 @@ struct Attempt {
     singular: bool,
 }
 
+/// A direction at a point.
+type At = (usize, [f64; 2]);
+
 impl RateProblem<'_> {
-    /// Solves for the unknowns of a combination of pieces with λ̇ = `factor`; where the combination
-    /// is singular with one null vector, that vector.
-    fn attempt(&self, pieces: &[Piece], factor: f64) -> Option<Attempt> {
-        let mut flows = Vec::new();
-        let mut rows = Vec::new();
+    /// Directions of ġ and functionals of ṙ of a combination of pieces, in the points' own units.
+    fn flows_and_rows(&self, pieces: &[Piece]) -> (Vec<At>, Vec<At>) {
+        let (mut flows, mut rows) = (Vec::new(), Vec::new());
         for (k, (point, piece)) in self.points.iter().zip(pieces).enumerate() {
             let unit = point.stiffness.sqrt();
             flows.extend(point.flows(*piece).into_iter().map(|f| (k, f.map(|x| x / unit))));
             rows.extend(point.rows(*piece).into_iter().map(|r| (k, r.map(|x| x / unit))));
         }
+        (flows, rows)
+    }
+
+    fn matrix(&self, flows: &[At], rows: &[At]) -> DMatrix<f64> {
+        let entry = |(i, a): &At, (j, d): &At| {
+            a[0] * (self.s[(2 * i, 2 * j)] * d[0] + self.s[(2 * i, 2 * j + 1)] * d[1])
+                + a[1] * (self.s[(2 * i + 1, 2 * j)] * d[0] + self.s[(2 * i + 1, 2 * j + 1)] * d[1])
+        };
+        DMatrix::from_fn(flows.len(), flows.len(), |i, j| entry(&rows[i], &flows[j]))
+    }
+
+    fn system(&self, pieces: &[Piece]) -> (Vec<At>, DMatrix<f64>) {
+        let (flows, rows) = self.flows_and_rows(pieces);
+        let matrix = self.matrix(&flows, &rows);
+        (flows, matrix)
+    }
+
+    /// Solves for the unknowns of a combination of pieces with λ̇ = `factor`; where the combination
+    /// is singular with one null vector, that vector.
+    fn attempt(&self, pieces: &[Piece], factor: f64) -> Option<Attempt> {
+        let (flows, rows) = self.flows_and_rows(pieces);
         let n = flows.len();
         let mut singular = false;
         let scaled: Vec<f64> = if n == 0 {
             Vec::new()
         } else {
-            let entry = |(i, a): &(usize, [f64; 2]), (j, d): &(usize, [f64; 2])| {
-                a[0] * (self.s[(2 * i, 2 * j)] * d[0] + self.s[(2 * i, 2 * j + 1)] * d[1])
-                    + a[1] * (self.s[(2 * i + 1, 2 * j)] * d[0] + self.s[(2 * i + 1, 2 * j + 1)] * d[1])
-            };
-            let matrix = DMatrix::from_fn(n, n, |i, j| entry(&rows[i], &flows[j]));
+            let matrix = self.matrix(&flows, &rows);
             let right = DVector::from_fn(n, |i, _| {
                 let (k, a) = &rows[i];
                 -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) * factor
@@ -504,15 +530,87 @@ impl RateProblem<'_> {
         None
     }
 
+    /// By the piecewise linear path, from several guesses.
+    fn by_homotopy(&self, counters: &mut u64) -> Option<Rate> {
+        for number in 0..STARTS {
+            let Some(pieces) = self.followed(1.0, number, counters) else { continue };
+            if let Some(rate) = self.corrected(pieces.clone(), counters) {
+                return Some(rate);
+            }
+            if let Some(rate) = self.mechanism(&pieces) {
+                return Some(rate);
+            }
+        }
+        None
+    }
+
+    /// How many other solutions paths from random guesses find.
+    fn others(&self, rate: &Rate, counters: &mut u64) -> usize {
+        let mut found = vec![rate.clone()];
+        for number in 1..=EXAMINATIONS {
+            let Some(pieces) = self.followed(1.0, number, counters) else { continue };
+            let Some(other) = self.corrected(pieces, counters) else { continue };
+            let size = other.gaps.iter().flatten().fold(1e-300, |a: f64, g| a.max(g.abs()));
+            let same = |known: &Rate| {
+                let pairs = known.gaps.iter().flatten().zip(other.gaps.iter().flatten());
+                pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) <= 1e-6 * size
+            };
+            if !found.iter().any(same) {
+                found.push(other);
+            }
+        }
+        found.len() - 1
+    }
+
+    /// A motion without forces in which every point keeps its piece.
+    fn mechanism(&self, pieces: &[Piece]) -> Option<Rate> {
+        let (flows, matrix) = self.system(pieces);
+        let n = flows.len();
+        if n == 0 {
+            return None;
+        }
+        // Inverse iteration: the vector that the matrix makes least.
+        let shifted = &matrix + DMatrix::identity(n, n) * (1e-12 * matrix.amax().max(1e-300));
+        let lu = shifted.lu();
+        let mut v = DVector::from_fn(n, |i, _| 1.0 + 0.3 * ((i * 37 % 11) as f64 / 11.0 - 0.5));
+        for _ in 0..4 {
+            v = lu.solve(&v)?;
+            let size = v.amax();
+            if !size.is_finite() || size == 0.0 {
+                return None;
+            }
+            v /= size;
+        }
+        if (&matrix * &v).amax() > 1e-9 * matrix.amax() {
+            return None;
+        }
+        let v: Vec<f64> = v.iter().copied().collect();
+        let attempt = self.completed(&flows, &v, 1.0, true)?;
+        let sign = [1.0, -1.0].into_iter().find(|sign| self.violations(pieces, &attempt, *sign).is_empty())?;
+        Some(self.rate(pieces, &attempt, sign, 0.0))
+    }
+
     /// Solves the rate problem. `examine` asks for the number of other solutions where it is cheap.
     pub fn solve(&self, examine: bool, counters: &mut u64) -> Verdict {
         let combinations = self.combinations();
         let guess = self.points.iter().map(|p| p.guess).collect();
         let corrected = self.corrected(guess, counters);
         if let Some(rate) = corrected {
-            let others = (examine && combinations <= 64)
-                .then(|| self.enumerated(counters).iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1));
+            let others = match combinations {
+                _ if !examine => None,
+                0..=64 => {
+                    let all = self.enumerated(counters);
+                    Some(all.iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1))
+                }
+                _ if self.points.len() <= EXAMINED => Some(self.others(&rate, counters)),
+                _ => None,
+            };
             return Verdict::Found(rate, others);
+        }
+        if combinations > FEW
+            && let Some(rate) = self.by_homotopy(counters)
+        {
+            return Verdict::Found(rate, None);
         }
         if combinations > COMBINATIONS {
             match self.pivoted(false, counters) {

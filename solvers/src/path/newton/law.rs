@@ -7,12 +7,12 @@
 //! Sources: Alart & Curnier 1991 (the return as a projection, ρ); Simo & Hughes 1998, ch. 5 (several
 //! facets, flow not along the normal); De Saxcé & Feng 1998 (the same law as a bi-potential).
 
-use super::cells::Cells;
+use crate::path::cells::{Cell, Cells};
 use voussoir_core::interface::{Facet, FacetMode};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub(super) enum Regime {
+pub(in crate::path) enum Regime {
     /// No facet: Δg = 0.
     #[default]
     Stuck,
@@ -24,7 +24,7 @@ pub(super) enum Regime {
 
 /// Facets of a law and the corners at which two of them meet, for one unit of area.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Polygon {
+pub(in crate::path) struct Polygon {
     pub facets: Vec<Facet>,
     /// Place \[Pa\] and the pairs of facets that may be active there.
     pub corners: Vec<([f64; 2], Vec<[usize; 2]>)>,
@@ -75,6 +75,15 @@ impl Polygon {
         }
         let cells = Cells::new(facets, &corners);
         Polygon { facets: facets.to_vec(), corners, cells }
+    }
+
+    /// The regime of a cell.
+    pub fn regime_of(&self, cell: usize) -> Regime {
+        match self.cells.cells[cell].0 {
+            Cell::Inside => Regime::Stuck,
+            Cell::Facet(i) => Regime::Facet(i as u8),
+            Cell::Pair(k, _) => Regime::Corner(k as u8),
+        }
     }
 
     /// The cell of z = r − ρ Δg and its return r.

@@ -1,11 +1,10 @@
 //! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
-mod cells;
 mod claims;
 mod frame;
 mod kinematics;
-mod law;
+pub(super) mod law;
 mod ledger;
 mod model;
 mod pivot;

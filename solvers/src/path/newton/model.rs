@@ -7,6 +7,7 @@ use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
 use super::law::{Polygon, Regime};
 use super::response::{Answers, Local, Responses};
 use voussoir_core::geometry::Vec2;
+use voussoir_core::interface::Facet;
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{ContactLaw, Continuation, Increment, Loading, PathProblem};
 
@@ -207,6 +208,49 @@ impl<'a> Model<'a> {
 
     pub fn finite(&self) -> bool {
         self.kinematics.finite
+    }
+
+    /// Whether flow is associated everywhere: then every step is a monotone problem.
+    pub fn monotone(&self) -> bool {
+        self.piecewise_linear() && self.polygons.iter().all(|law| !law.has_other_flow())
+    }
+
+    /// Whether with small displacements every law is one of facets.
+    pub fn piecewise_linear(&self) -> bool {
+        self.responses.is_empty()
+    }
+
+    /// Takes slip to be associated; the laws as they were.
+    pub fn associated(&mut self) -> Vec<Polygon> {
+        let turned = |law: &Polygon| {
+            let facets: Vec<Facet> = law.facets.iter().map(|f| Facet { flow: f.normal, ..*f }).collect();
+            Polygon::new(&facets)
+        };
+        let associated = self.polygons.iter().map(turned).collect();
+        std::mem::replace(&mut self.polygons, associated)
+    }
+
+    /// A state reached from nothing, all of it times a share.
+    pub fn in_proportion(&self, state: &State, share: f64) -> State {
+        let mut state = state.clone();
+        state.force.iter_mut().flatten().for_each(|r| *r *= share);
+        state.motion.iter_mut().flatten().for_each(|q| *q *= share);
+        state.gap.iter_mut().flatten().for_each(|g| *g *= share);
+        state.factor *= share;
+        state
+    }
+
+    /// Forces and a factor that are rounding of the loads become nothing (small displacements).
+    pub fn clean(&self, state: &mut State, start: f64) {
+        let u = self.units;
+        let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+        if self.loaded.earlier.is_empty()
+            && largest <= 1e-10 * u.force
+            && (state.factor - start).abs() <= 1e-10 * u.factor
+        {
+            state.force.fill([0.0; 2]);
+            state.factor = start;
+        }
     }
 
     pub fn undeformed(&self) -> State {

@@ -51,7 +51,7 @@ impl Model<'_> {
     /// A step by pivoting from a guess. The control must be linear.
     pub fn pivoted(&mut self, start: &State, guess: &State, control: &Control) -> Result<(State, u64), Refusal> {
         let mut refusal = Refusal { why: "pivoting does not apply".into(), restless: Vec::new() };
-        if !self.responses.is_empty() {
+        if !self.piecewise_linear() {
             return Err(refusal);
         }
         for (attempt, shift) in SHIFTS.into_iter().enumerate() {
@@ -121,7 +121,7 @@ impl Model<'_> {
         for _ in 0..most {
             for c in 0..points {
                 place.state.regime[c] = match (place.cells[c], self.law(c)) {
-                    (Some(cell), Some(law)) => law.cells.cells[cell].0,
+                    (Some(cell), Some(law)) => law.regime_of(cell),
                     _ => Regime::Stuck,
                 };
             }
@@ -204,7 +204,7 @@ impl Model<'_> {
                 let (to, wall) = law.cells.cells[cell].1[index].behind;
                 place.cells[c] = Some(to);
                 entered = Some((c, wall));
-                if law.cells.cells[to].0 != place.state.regime[c] {
+                if law.regime_of(to) != place.state.regime[c] {
                     break;
                 }
             }

@@ -4,12 +4,22 @@
 //! facet), r = corner A (a pair of facets). Its walls are linear in (r, Δg): slack b A − a·r of other
 //! facets, multipliers γ of its own. The cells cover the plane of z = r − ρ Δg once.
 
-use super::law::Regime;
 use voussoir_core::interface::Facet;
+
+/// What a contact point does in a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::path) enum Cell {
+    /// No facet.
+    Inside,
+    /// On one facet.
+    Facet(usize),
+    /// On two facets at a corner.
+    Pair(usize, [usize; 2]),
+}
 
 /// A wall of a cell: slack = bound × area − force·r − gap·Δg ≥ 0 inside.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Wall {
+pub(in crate::path) struct Wall {
     bound: f64,
     force: [f64; 2],
     gap: [f64; 2],
@@ -39,9 +49,9 @@ impl Wall {
 
 /// All cells of a law: inside, one per facet, one per pair of facets at a corner.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Cells {
-    /// Regime and walls.
-    pub cells: Vec<(Regime, Vec<Wall>)>,
+pub(in crate::path) struct Cells {
+    /// Cells and walls.
+    pub cells: Vec<(Cell, Vec<Wall>)>,
     /// (corner, facets) of the cells of pairs.
     pairs: Vec<(usize, [usize; 2])>,
     facets: usize,
@@ -63,7 +73,7 @@ impl Cells {
         };
         let mut cells = Vec::with_capacity(1 + n + pairs.len());
         let inside = facets.iter().enumerate().map(|(i, f)| Wall { behind: (1 + i, 0), ..Wall::slack_of(f) });
-        cells.push((Regime::Stuck, inside.collect::<Vec<_>>()));
+        cells.push((Cell::Inside, inside.collect::<Vec<_>>()));
         for (i, f) in facets.iter().enumerate() {
             let square = f.flow[0] * f.flow[0] + f.flow[1] * f.flow[1];
             let own = Wall { behind: (0, i), ..Wall::multiplier(f.flow.map(|d| d / square)) };
@@ -72,7 +82,7 @@ impl Cells {
                 let place = usize::from(pairs[p].1[1] == j);
                 walls.push(Wall { behind: (1 + n + p, place), ..Wall::slack_of(&facets[j]) });
             }
-            cells.push((Regime::Facet(i as u8), walls));
+            cells.push((Cell::Facet(i), walls));
         }
         for (p, &(k, pair)) in pairs.iter().enumerate() {
             let (d, e) = (facets[pair[0]].flow, facets[pair[1]].flow);
@@ -94,9 +104,22 @@ impl Cells {
                 };
                 Wall { behind, ..Wall::multiplier(rows[side]) }
             });
-            cells.push((Regime::Corner(k as u8), walls.collect()));
+            cells.push((Cell::Pair(k, pair), walls.collect()));
         }
         Cells { cells, pairs, facets: n }
+    }
+
+    /// Takes the walls away at which a facet stops flowing: its multiplier may have any sign.
+    pub fn free(&mut self, facet: usize) {
+        for (cell, walls) in &mut self.cells {
+            match *cell {
+                Cell::Facet(i) if i == facet => walls[0].bound = f64::INFINITY,
+                Cell::Pair(_, pair) => {
+                    (0..2).filter(|k| pair[*k] == facet).for_each(|k| walls[k].bound = f64::INFINITY);
+                }
+                _ => {}
+            }
+        }
     }
 
     /// The cell of a pair of facets at a corner.
@@ -107,8 +130,8 @@ impl Cells {
 
 #[cfg(test)]
 mod tests {
-    use super::super::law::Polygon;
     use super::*;
+    use crate::path::newton::law::Polygon;
 
     /// From both sides of every wall the same slack is seen to vanish, and going there and back ends
     /// where it began.
