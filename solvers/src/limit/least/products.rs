@@ -26,6 +26,10 @@ const ROUNDING: f64 = 1e-13;
 const MARGIN: f64 = 1e4;
 /// Multipliers below this share of the greatest are zero; tried in turn.
 const SUPPORTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
+/// Regularisations of the interior-point method, tried in turn.
+const REGULARISATIONS: [f64; 2] = [1e-7, 1e-6];
+/// The bound of θ in the program lies so far above the known state.
+const ROOM: f64 = 0.05;
 /// The largest neighbourhood tried first.
 const NEAREST: usize = 3;
 
@@ -227,7 +231,7 @@ impl Program {
     }
 
     /// Multipliers by an interior-point method: of the equations, then of the rows (≥ 0).
-    fn multipliers(&self) -> Option<(Vec<f64>, u64)> {
+    fn multipliers(&self, regularisation: f64) -> Option<(Vec<f64>, u64)> {
         let (mut i, mut j, mut v, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let equations = self.equations.iter().map(|row| (row, 1.0));
         for ((form, h), sign) in equations.chain(self.rows.iter().map(|row| (row, -1.0))) {
@@ -249,7 +253,7 @@ impl Program {
             verbose: false,
             max_iter: 100,
             max_threads: 1,
-            static_regularization_constant: 1e-7,
+            static_regularization_constant: regularisation,
             ..DefaultSettings::default()
         };
         let mut solver = DefaultSolver::new(&p, &q, &a, &right, &cones, settings).ok()?;
@@ -325,10 +329,17 @@ impl Program {
 /// are at most `most`; with the iterations it took. `None` where even the smallest has more rows,
 /// or nothing was proved.
 pub fn lower_bound(systems: &Systems, problem: &LimitProblem, t: f64, most: usize) -> (Option<f64>, u64) {
-    let fits = |reach: usize| Program::new(systems, problem, t, reach, most);
+    // With room above the known state the program has an interior, which its method needs.
+    let room = t * (1.0 + ROOM);
+    let fits = |reach: usize| Program::new(systems, problem, room, reach, most);
     let Some(program) = (0..=NEAREST).rev().find_map(fits) else { return (None, 0) };
-    match program.multipliers() {
-        Some((z, iterations)) => (program.bound(&z).map(|bound| bound.clamp(0.0, t)), iterations),
-        None => (None, 0),
+    let mut work = 0;
+    for regularisation in REGULARISATIONS {
+        let Some((z, iterations)) = program.multipliers(regularisation) else { continue };
+        work += iterations;
+        if let Some(bound) = program.bound(&z) {
+            return (Some(bound.clamp(0.0, t)), work);
+        }
     }
+    (None, work)
 }
