@@ -162,6 +162,59 @@ fn no_friction_is_a_free_tangent() {
     assert_eq!(arch("law = \"coulomb\"\nfriction = 0.0"), free);
 }
 
+/// An arch with blocks that slide out between inclined joints: where rounding finds the known state again
+/// the proof ends a little further below it, and closes.
+#[test]
+fn a_flat_arch_closes() {
+    let study = study(include_str!("../../studies/cases/flow_rule_ten_scenes.toml"));
+    for name in ["flat arch on piers, friction 0.5", "arch on inclined springings, friction 0.3"] {
+        let mut cases = study.cases.iter().filter(|case| case.variant.as_deref() == Some("least"));
+        let case = cases.find(|case| case.scene.as_deref() == Some(name)).expect("a scene of the study");
+        let result = answer_case(case);
+        let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
+        assert!(low >= found * (1.0 - 2e-6), "{name}: [{low}, {found}] {:?}", result.notes);
+    }
+}
+
+/// Two rings without bond are many times redundant: the least load is well below the associated one, and
+/// nothing lies below it.
+#[test]
+fn two_rings_feel_the_flow_rule() {
+    let study = study(include_str!("../../studies/cases/flow_rule_rings.toml"));
+    let mut ratios = Vec::new();
+    for case in study.cases.iter().filter(|case| case.variant.as_deref() == Some("least")) {
+        let result = answer_case(case);
+        let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
+        assert!(result.certificate.passed && low >= found * (1.0 - 2e-6), "[{low}, {found}] {:?}", result.notes);
+        ratios.push(found / result.associated_load_factor.expect("an upper bound"));
+    }
+    assert_eq!(ratios.len(), 4);
+    assert!(ratios.is_sorted_by(|a, b| a > b) && ratios[3] < 0.9, "{ratios:?}");
+}
+
+/// A brick above an opening that only friction in its upright joints can hold: an admissible field
+/// exists, so the associated load is positive; but with slip that does not dilate dead load alone is
+/// at a limit state, and no state with p·q̇ = 1 lies below. The elastic path, which starts without
+/// compression in the joints, finds no equilibrium.
+#[test]
+fn a_brick_held_by_wedging_alone_is_reported() {
+    let rows: Vec<&[f64]> = vec![&[1.0, -1.0, 1.0], &[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
+    let (factor, result) = collapse(&wall(&rows, "law = \"coulomb\"\nfriction = 0.4", "solver = \"limit_least\""));
+    // 25/164, by a linear program of another code.
+    assert_close(factor, 0.152_439_024_390_243_9, 1e-9);
+    assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
+    assert!(result.notes.iter().any(|note| note.contains("wedging alone")), "{:?}", result.notes);
+}
+
+/// A wall that slides as a whole has many fields and one factor, that of friction: the sequence ends
+/// there also where the scene is too large for the simplex method.
+#[test]
+fn a_wall_that_slides_as_a_whole_ends_the_sequence() {
+    let text = wall(&[FIVE], "law = \"coulomb\"\nfriction = 0.3", "solver = \"limit_sequential\"")
+        .replace(&format!("rows = {:?}", [FIVE]), "courses = 12\nbricks = 12");
+    assert_close(collapse(&text).0, 0.3, 1e-6);
+}
+
 /// A segmental ring: four yielding joints determine the three redundants and the factor, whatever
 /// the flow, so the least load is the associated one, and the search proves it.
 #[test]

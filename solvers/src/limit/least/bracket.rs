@@ -8,17 +8,20 @@ use super::dictionary::{Dictionary, Feasibility};
 use super::search::{Ending, Search};
 use crate::limit::systems::Systems;
 
-/// A range ends this far below a known state, relative to it.
+/// A range ends this far below a known state, relative to it; where rounding finds that state again, up
+/// to [`WIDEST`].
 pub const GAP: f64 = 1e-8;
-/// Ends of the ranges as shares of the known factor; they close at about equal cost.
+/// A bracket no wider than this is closed.
+pub const WIDEST: f64 = 1e-6;
+/// Ends of the ranges as shares of what is open; they close at about equal cost.
 const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
 
 /// What the search found in a range.
 pub enum Range {
     /// No state: proved.
     Closed,
-    /// A state at this θ, with the pairs that move.
-    State(f64, Vec<usize>),
+    /// A state in which these pairs move.
+    State(Vec<usize>),
     /// Neither, with the work allowed.
     Open,
 }
@@ -34,6 +37,8 @@ pub struct Work {
     pub refusals: u64,
     /// Matrix entries swept.
     pub entries: u64,
+    /// Iterations of the program of products.
+    pub iterations: u64,
 }
 
 /// The bounds of the dissipation d_i·r on each pair where it yields, and the pairs that cannot.
@@ -103,7 +108,7 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
             moving.iter().for_each(|&i| search.statics.fix(i, true));
             match search.statics.feasible() {
                 Feasibility::Point => match search.statics.minimise(&[(systems.theta(), 1.0)], 5000) {
-                    Some((least, _)) => Range::State(a + least, moving),
+                    Some(_) => Range::State(moving),
                     None => Range::Open,
                 },
                 _ => Range::Open,
@@ -117,28 +122,40 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
     found
 }
 
-/// The greatest θ below which no state is, given a state at `known`; a lesser state where one
-/// appears. At most `most` matrix entries are swept.
-pub fn bracket(systems: &Systems, known: f64, most: u64, work: &mut Work) -> (f64, Option<(f64, Vec<usize>)>) {
-    let top = known * (1.0 - GAP);
-    if known <= 0.0 {
-        return (known, None);
+/// Whether there is a state at this θ.
+pub fn state_at(systems: &Systems, theta: f64, most: u64, work: &mut Work) -> bool {
+    matches!(search(systems, [theta, theta], most, work), Range::State(..))
+}
+
+/// Where a proof below a known state ends, or a lesser state.
+pub enum Proof {
+    /// No state is below this.
+    Below(f64),
+    /// None is below this; the pairs that move in a state found above it.
+    State(f64, Vec<usize>),
+    /// None is below this; the work is used up.
+    Open(f64),
+}
+
+/// The whole range below a known state at once, where that is cheap.
+pub fn at_once(systems: &Systems, top: f64, most: u64, work: &mut Work) -> Proof {
+    match search(systems, [0.0, top], (most / 50).min(200_000_000), work) {
+        Range::Closed => Proof::Below(top),
+        Range::State(moving) => Proof::State(0.0, moving),
+        Range::Open => Proof::Open(0.0),
     }
-    // All at once where that is cheap.
-    let trial = (most / 50).min(200_000_000);
-    match search(systems, [0.0, top], trial, work) {
-        Range::Closed => return (top, None),
-        Range::State(theta, moving) => return (0.0, Some((theta, moving))),
-        Range::Open => {}
-    }
-    let mut proved = 0.0;
+}
+
+/// The range from `proved` to `top` in parts from below. At most `most` matrix entries are swept.
+pub fn in_parts(systems: &Systems, [mut proved, top]: [f64; 2], most: u64, work: &mut Work) -> Proof {
+    let first = proved;
     for share in SHARES {
-        let end = if share == 1.0 { top } else { share * known };
+        let end = if share == 1.0 { top } else { first + share * (top - first) };
         match search(systems, [proved, end], most.saturating_sub(work.entries), work) {
             Range::Closed => proved = end,
-            Range::State(theta, moving) => return (proved, Some((theta, moving))),
-            Range::Open => break,
+            Range::State(moving) => return Proof::State(proved, moving),
+            Range::Open => return Proof::Open(proved),
         }
     }
-    (proved, None)
+    Proof::Below(proved)
 }

@@ -4,23 +4,26 @@
 mod bracket;
 mod descent;
 pub(super) mod dictionary;
+mod products;
 mod search;
 
 use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
 use super::systems::{LARGEST, Systems};
 use super::{associated, combined};
-use bracket::{GAP, Work, bracket, dissipations};
+use bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
 use descent::{Descent, State};
 use dictionary::Feasibility;
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::Wrenches;
 use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
-use voussoir_core::schema::{Parameter, PluginKind, Range};
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
 use voussoir_core::units::Quantity;
 
 /// Work of the search where it is not given.
 const SEARCH_LIMIT: f64 = 4.0;
+/// Rows of the program of products where they are not given.
+const PRODUCT_ROWS: usize = 12_000;
 /// Starts of the local search.
 const STARTS: usize = 24;
 /// A state counts when its field and multipliers are right to this.
@@ -33,15 +36,22 @@ pub struct LimitLeast {
     /// Work that the proof may take, in 10⁹ matrix entries swept.
     #[serde(default = "search_limit")]
     pub search_limit: f64,
+    /// Greatest number of rows of the program of products.
+    #[serde(default = "product_rows")]
+    pub product_rows: usize,
 }
 
 fn search_limit() -> f64 {
     SEARCH_LIMIT
 }
 
+fn product_rows() -> usize {
+    PRODUCT_ROWS
+}
+
 impl Default for LimitLeast {
     fn default() -> Self {
-        LimitLeast { search_limit: SEARCH_LIMIT }
+        LimitLeast { search_limit: SEARCH_LIMIT, product_rows: PRODUCT_ROWS }
     }
 }
 
@@ -58,18 +68,29 @@ voussoir_core::inventory::submit! {
                 "work that the proof of the lower bound may take, in 10⁹ matrix entries swept (about a second each)",
             )
             .default("4.0"),
+            Parameter {
+                name: "product_rows",
+                doc: "greatest number of rows of the linear program of products, which bounds the least load from below where the search does not; 0 for none (10 000: seconds, 40 000: minutes)",
+                shape: Shape::Integer { min: 0, max: 1_000_000 },
+                need: Need::Default("12000"),
+            },
         ],
         provides: &[Capability::RigidLimit],
         requires: &[Capability::Facets, Capability::RigidLimit],
         sources: &[
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
+            "Sherali & Adams 1990, SIAM J. Discrete Math. 3",
         ],
         file: file!(),
         page: include_str!("limit_least.md"),
         check: no_further_check,
     }
 }
+
+/// Said where the loads before the stage are at a limit state.
+const MOVES_ALREADY: &str = "the loads present before this stage are at a limit state of the laws' own flow, with a mechanism \
+     on which they do work: blocks stand by wedging alone, and whether they do depends on how the joints were compressed";
 
 /// A reproducible sequence of numbers in [0, 1) (xorshift, Marsaglia 2003).
 struct Irregular(u64);
@@ -215,11 +236,11 @@ impl LimitSolver for LimitLeast {
                     let found = least.local(most, from);
                     least.take(found.map(|state| state.moving), &mut best);
                 }
-                lower = least.prove(self.search_limit, most, &mut best);
+                lower = least.prove(self, most, &mut best);
             }
         }
         // Where something lower is not excluded, the sequence may know it.
-        if best.as_ref().is_none_or(|b| lower < b.0 * (1.0 - 2.0 * GAP)) {
+        if best.as_ref().is_none_or(|b| lower < b.0 * (1.0 - WIDEST)) {
             let from = answer.field.clone().unwrap_or_default();
             match sequence(problem, &base, &from, &mut answer.counters) {
                 Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
@@ -229,10 +250,14 @@ impl LimitSolver for LimitLeast {
                 Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
             }
         }
+        if best.is_none() && least.searchable().is_ok() && least.moves_already(&base, self.search_limit) {
+            answer.notes.push(MOVES_ALREADY.into());
+        }
         for (name, count) in [
             ("pivots", least.work.pivots),
             ("search_programs", least.work.programs),
             ("search_refusals", least.work.refusals),
+            ("product_iterations", least.work.iterations),
         ] {
             *answer.counters.entry(name.into()).or_default() += count;
         }
@@ -254,6 +279,17 @@ impl Least<'_> {
         (!slides && answer.status == Status::Collapse).then_some(((factor - start) / self.systems.unit, state))
     }
 
+    /// Whether the base loads alone are at a limit state with a mechanism on which they do work.
+    fn moves_already(&mut self, base: &Wrenches, limit: f64) -> bool {
+        let none: Wrenches = vec![[0.0; 3]; base.len()];
+        if self.problem.magnitude(base) == 0.0 {
+            return false;
+        }
+        let alone = LimitProblem { varying: base.clone(), fixed: none.clone(), ..self.problem.clone() };
+        let entries = (limit * 1e9 / 10.0).min(1e18) as u64;
+        state_at(&Systems::new(&alone, &none), 1.0, entries, &mut self.work)
+    }
+
     /// Keeps a state where it is less than the best one.
     fn take(&self, moving: Option<Vec<usize>>, best: &mut Option<(f64, FlowState)>) -> bool {
         let Some(found) = moving.and_then(|moving| self.state(&moving)) else { return false };
@@ -264,21 +300,50 @@ impl Least<'_> {
         better
     }
 
-    /// Raises the lower bound as far as the work allows, taking lesser states on the way.
-    fn prove(&mut self, limit: f64, most: f64, best: &mut Option<(f64, FlowState)>) -> f64 {
-        let entries = (limit * 1e9).min(1e18) as u64;
-        let mut lower = 0.0f64;
+    /// Raises the lower bound as far as the limits allow, taking lesser states on the way.
+    fn prove(&mut self, limits: &LimitLeast, most: f64, best: &mut Option<(f64, FlowState)>) -> f64 {
+        let entries = (limits.search_limit * 1e9).min(1e18) as u64;
+        let (mut lower, mut gap) = (0.0f64, GAP);
+        let mut whole = true;
         loop {
             let known = best.as_ref().map_or(most, |b| b.0);
-            if !known.is_finite() {
-                return 0.0;
+            if !known.is_finite() || known <= 0.0 {
+                return lower;
+            }
+            let top = known * (1.0 - gap);
+            if lower >= known * (1.0 - WIDEST) {
+                return lower;
             }
             let left = entries.saturating_sub(self.work.entries);
-            let (proved, found) = bracket(&self.systems, known, left, &mut self.work);
-            lower = lower.max(proved);
-            match found {
-                Some((_, moving)) if self.take(Some(moving.clone()), best) => {}
-                _ => return lower,
+            let proof = if whole {
+                at_once(&self.systems, top, left, &mut self.work)
+            } else {
+                in_parts(&self.systems, [lower, top], left, &mut self.work)
+            };
+            match proof {
+                Proof::Below(proved) => return lower.max(proved),
+                Proof::Open(proved) if !whole => return lower.max(proved),
+                Proof::Open(_) => {
+                    whole = false;
+                    let (bound, iterations) =
+                        products::lower_bound(&self.systems, self.problem, known, limits.product_rows);
+                    self.work.iterations += iterations;
+                    lower = lower.max(bound.unwrap_or(0.0)).min(known);
+                }
+                Proof::State(proved, moving) => {
+                    lower = lower.max(proved);
+                    if self.take(Some(moving), best) {
+                        continue;
+                    }
+                    // The known state itself, to rounding: the proof ends further below it.
+                    if gap < WIDEST {
+                        gap *= 10.0;
+                    } else if whole {
+                        whole = false;
+                    } else {
+                        return lower;
+                    }
+                }
             }
         }
     }
@@ -297,7 +362,7 @@ fn finish(
         Some((_, state)) if start + state.factor <= max => {
             let factor = start + state.factor;
             own.proved_lower = Some(proved.min(factor));
-            if lower * unit < state.factor * (1.0 - 2.0 * GAP) {
+            if lower * unit < state.factor * (1.0 - 2.0 * WIDEST) {
                 answer.notes.push(format!(
                     "the least load factor of the laws' own flow lies between {proved:.9} (proved) and {factor:.9} (found): the search ended at its limit"
                 ));

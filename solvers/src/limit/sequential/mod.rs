@@ -139,6 +139,12 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
             return Sequence::Converged(FlowState { factor, field, motion });
         }
+        if steady
+            && step % 8 == 7
+            && let Some((field, factor)) = field_yielding(&systems, problem, base, &moving, counters)
+        {
+            return Sequence::Converged(FlowState { factor, field, motion });
+        }
         // Half way where full steps have not settled, then a quarter.
         let share = if step < 12 {
             1.0
@@ -188,6 +194,45 @@ fn field_at(
     let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
     let near = violation.max(idle) <= ADMISSIBLE && (z[systems.forces] - theta).abs() <= 2.0 * TOLERANCE * theta.abs();
     near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+}
+
+/// The same in scenes too large for the simplex method: the greatest factor with equality in the
+/// moving rows. With the mechanism that moves only there, any such field is a state.
+fn field_yielding(
+    systems: &Systems,
+    problem: &LimitProblem,
+    base: &Wrenches,
+    moving: &[usize],
+    counters: &mut Counters,
+) -> Option<(Vec<JointForce>, f64)> {
+    let mut yielding = problem.clone();
+    let mut pair = 0;
+    for (joint, &(_, shear)) in yielding.joints.iter_mut().zip(&systems.joints) {
+        let count = if shear { 3 } else { 2 };
+        for index in 0..joint.strength.rows.len() {
+            let mut row = joint.strength.rows[index];
+            if row.normal[..count].iter().all(|a| *a == 0.0) {
+                continue;
+            }
+            if moving.contains(&pair) {
+                row.normal.iter_mut().for_each(|a| *a = -*a);
+                row.flow = row.normal;
+                row.bound = -row.bound;
+                joint.strength.rows.push(row);
+            }
+            pair += 1;
+        }
+    }
+    let mut engine = conic::engine(&yielding);
+    let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+    for (name, count) in engine.counters() {
+        *counters.entry(name).or_default() += count;
+    }
+    let Greatest::Collapse { factor, field, .. } = greatest else { return None };
+    let mut z = systems.force_variables(&field);
+    z.push(factor / systems.unit);
+    let (z, violation) = systems.field(moving, z)?;
+    (violation <= ADMISSIBLE).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
 /// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.

@@ -1,0 +1,345 @@
+//! A lower bound of θ from products of statics with kinematics: one linear program, no search.
+//!
+//! At a state, X = γ rᵀ, X_θ = γ θ, Q = q̇ rᵀ and Q_θ = q̇ θ obey linear rows: equilibrium times each γ_i
+//! and each component of q̇, yield times γ_i ≥ 0 (with equality for the same pair: γ_i s_i = 0), the flow
+//! rule times each force, p·q̇ = 1 times each force, θ γ_i ≤ t γ_i. Their least θ is a linear program:
+//! the reformulation-linearisation of Sherali & Adams (1990). No bound on γ is assumed.
+//!
+//! Products of all joints with all would be too many. Kept are those of joints whose blocks are
+//! near, and of joints cut by one layer around the ground, with the equilibrium of all that lies
+//! above the cut: that what slides must carry is known only from there. Leaving out products leaves
+//! out rows, so the bound stays valid.
+
+use crate::limit::systems::Systems;
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SupportedConeT};
+use std::collections::HashMap;
+use voussoir_core::limit::LimitProblem;
+use voussoir_core::sparse::{Entries, Factorised};
+
+/// Linear form: (index, coefficient).
+type Form = Vec<(usize, f64)>;
+
+/// Residual of the multipliers that is rounding, relative to the greatest of them.
+const ROUNDING: f64 = 1e-13;
+/// Taken off the bound, in units of the loads, per residual: products of this size in sum.
+const MARGIN: f64 = 1e4;
+/// Multipliers below this share of the greatest are zero; tried in turn.
+const SUPPORTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
+/// Regularisations of the interior-point method, tried in turn.
+const REGULARISATIONS: [f64; 2] = [1e-7, 1e-6];
+/// The bound of θ in the program lies so far above the known state.
+const ROOM: f64 = 0.05;
+/// The largest neighbourhood tried first.
+const NEAREST: usize = 3;
+
+/// Minimise x_0 subject to equations row·x = h and rows row·x ≥ h.
+struct Program {
+    columns: usize,
+    equations: Vec<(Form, f64)>,
+    rows: Vec<(Form, f64)>,
+}
+
+/// Which products are kept.
+struct Kept {
+    /// Joint with joint.
+    joints: Vec<Vec<bool>>,
+    /// Motion of a group with joint.
+    groups: Vec<Vec<bool>>,
+    /// Groups above a cut, with the joints that are cut.
+    cuts: Vec<(Vec<usize>, Vec<usize>)>,
+}
+
+impl Kept {
+    fn new(problem: &LimitProblem, reach: usize) -> Self {
+        let (n, m) = (problem.groups, problem.joints.len());
+        let of = |k: usize| [problem.joints[k].minus, problem.joints[k].plus].into_iter().flatten();
+        let both = |k: usize| problem.joints[k].minus.zip(problem.joints[k].plus);
+        let mut distance = vec![vec![usize::MAX / 4; n]; n];
+        let mut layer = vec![usize::MAX / 4; n];
+        for k in 0..m {
+            match both(k) {
+                Some((a, b)) => (distance[a][b], distance[b][a]) = (1, 1),
+                None => of(k).for_each(|a| layer[a] = 1),
+            }
+        }
+        (0..n).for_each(|a| distance[a][a] = 0);
+        for via in 0..n {
+            for a in 0..n {
+                for b in 0..n {
+                    distance[a][b] = distance[a][b].min(distance[a][via] + distance[via][b]);
+                }
+            }
+        }
+        let ground: Vec<usize> = (0..n).filter(|&a| layer[a] == 1).collect();
+        let depth = |a: usize| ground.iter().map(|&g| distance[a][g] + 1).min().unwrap_or(usize::MAX / 4);
+        let depths: Vec<usize> = (0..n).map(depth).collect();
+        let mut cuts = Vec::new();
+        for d in 1..=n {
+            let mut left: Vec<usize> = (0..n).filter(|&a| depths[a] >= d).collect();
+            while let Some(first) = left.pop() {
+                let mut above = vec![first];
+                let mut at = 0;
+                while at < above.len() {
+                    let here = above[at];
+                    at += 1;
+                    let (near, far): (Vec<usize>, Vec<usize>) = left.iter().partition(|&&a| distance[here][a] == 1);
+                    above.extend(near);
+                    left = far;
+                }
+                let cut: Vec<usize> = (0..m).filter(|&k| of(k).filter(|a| above.contains(a)).count() == 1).collect();
+                if above.len() > 1 {
+                    above.sort_unstable();
+                    cuts.push((above, cut));
+                }
+            }
+        }
+        let mut joints: Vec<Vec<bool>> =
+            (0..m).map(|k| (0..m).map(|l| of(k).any(|a| of(l).any(|b| distance[a][b] <= reach))).collect()).collect();
+        for (_, cut) in &cuts {
+            for &k in cut {
+                cut.iter().for_each(|&l| joints[k][l] = true);
+            }
+        }
+        let mut groups = vec![vec![false; m]; n];
+        for k in 0..m {
+            for a in of(k) {
+                (0..m).for_each(|l| groups[a][l] |= joints[k][l]);
+            }
+        }
+        Kept { joints, groups, cuts }
+    }
+}
+
+/// Columns of the products, numbered as they appear.
+struct Columns {
+    of: HashMap<(usize, usize), usize>,
+    one: (usize, usize),
+}
+
+impl Columns {
+    /// The form Σ v (first × second) as a row over columns, and the constant moved to the right.
+    fn row(&mut self, terms: impl IntoIterator<Item = ((usize, usize), f64)>) -> (Form, f64) {
+        let (mut row, mut right) = (Form::new(), 0.0);
+        for (key, v) in terms {
+            if key == self.one {
+                right -= v;
+            } else {
+                let next = self.of.len();
+                row.push((*self.of.entry(key).or_insert(next), v));
+            }
+        }
+        (row, right)
+    }
+}
+
+impl Program {
+    /// The rows for θ ≤ t with products up to `reach`; `None` where they are more than `most`.
+    fn new(systems: &Systems, problem: &LimitProblem, t: f64, reach: usize, most: usize) -> Option<Self> {
+        let kept = Kept::new(problem, reach);
+        let (pairs, forces, groups) = (systems.pairs.len(), systems.forces, problem.groups);
+        // Second factors: forces, then θ and 1. First factors: 1, then γ_i, then q̇.
+        let (theta, one) = (forces, forces + 1);
+        let (gamma, velocity) = (|i: usize| 1 + i, |q: usize| 1 + pairs + q);
+        let mut joint_of = vec![0; forces];
+        for (k, &(first, shear)) in systems.joints.iter().enumerate() {
+            (first..first + if shear { 3 } else { 2 }).for_each(|j| joint_of[j] = k);
+        }
+        let joint_of_pair = |i: usize| joint_of[systems.pairs[i].normal[0].0];
+        let mut columns = Columns { of: HashMap::from([((0, theta), 0)]), one: (0, one) };
+        let mut program = Program { columns: 0, equations: Vec::new(), rows: Vec::new() };
+
+        // Equilibrium of each group and of all above each cut, with the joints it needs.
+        let mut balances: Vec<(Form, Vec<usize>)> = Vec::new();
+        for q in 0..3 * groups {
+            let mut form = systems.equilibrium[q].clone();
+            let joints = form.iter().map(|&(j, _)| joint_of[j]).collect();
+            form.extend([(theta, systems.varying[q]), (one, systems.fixed[q])]);
+            balances.push((form, joints));
+        }
+        for (above, cut) in &kept.cuts {
+            for x in 0..3 {
+                let mut sum = vec![0.0f64; forces + 2];
+                for &group in above {
+                    systems.equilibrium[3 * group + x].iter().for_each(|&(j, v)| sum[j] += v);
+                    sum[theta] += systems.varying[3 * group + x];
+                    sum[one] += systems.fixed[3 * group + x];
+                }
+                // What acts between two groups above the cut cancels, but for rounding.
+                (0..forces).filter(|&j| !cut.contains(&joint_of[j])).for_each(|j| sum[j] = 0.0);
+                balances.push((sum.into_iter().enumerate().collect(), cut.clone()));
+            }
+        }
+        for (index, (form, joints)) in balances.iter_mut().enumerate() {
+            form.retain(|&(_, v)| v != 0.0);
+            let times = |first: usize| form.iter().map(move |&(l, v)| ((first, l), v));
+            if index < 3 * groups {
+                program.equations.push(columns.row(times(0)));
+            }
+            for i in (0..pairs).filter(|&i| joints.iter().all(|&k| kept.joints[joint_of_pair(i)][k])) {
+                program.equations.push(columns.row(times(gamma(i))));
+            }
+            for q in (0..3 * groups).filter(|&q| joints.iter().all(|&k| kept.groups[q / 3][k])) {
+                program.equations.push(columns.row(times(velocity(q))));
+            }
+            if program.equations.len() > most {
+                return None;
+            }
+        }
+        for i in 0..pairs {
+            program.rows.push(columns.row([((gamma(i), one), 1.0)]));
+            program.rows.push(columns.row([((gamma(i), theta), 1.0)]));
+            program.rows.push(columns.row([((gamma(i), one), t), ((gamma(i), theta), -1.0)]));
+        }
+        program.rows.push(columns.row([((0, theta), 1.0)]));
+        for (j, pair) in systems.pairs.iter().enumerate() {
+            let slack = |first: usize| {
+                let forces = pair.normal.iter().map(move |&(l, v)| ((first, l), -v));
+                forces.chain((pair.bound != 0.0).then_some(((first, one), pair.bound)))
+            };
+            program.rows.push(columns.row(slack(0)));
+            for i in (0..pairs).filter(|&i| kept.joints[joint_of_pair(i)][joint_of_pair(j)]) {
+                let row = columns.row(slack(gamma(i)));
+                if i == j { program.equations.push(row) } else { program.rows.push(row) }
+            }
+        }
+        // The flow rule of each force variable, Eᵀ q̇ + Dᵀ γ = 0.
+        let mut flow: Vec<(Form, usize)> = (0..forces).map(|j| (Form::new(), joint_of[j])).collect();
+        for (q, entries) in systems.equilibrium.iter().enumerate() {
+            entries.iter().for_each(|&(j, v)| flow[j].0.push((velocity(q), v)));
+        }
+        for (i, pair) in systems.pairs.iter().enumerate() {
+            pair.flow.iter().for_each(|&(j, v)| flow[j].0.push((gamma(i), v)));
+        }
+        for l in 0..forces + 2 {
+            for (form, k) in &flow {
+                if l >= forces || kept.joints[*k][joint_of[l]] {
+                    program.equations.push(columns.row(form.iter().map(|&(first, v)| ((first, l), v))));
+                }
+            }
+            let driven = |q: &usize| systems.varying[*q] != 0.0;
+            if l >= forces || (0..3 * groups).filter(driven).all(|q| kept.groups[q / 3][joint_of[l]]) {
+                let power = (0..3 * groups).filter(driven).map(|q| ((velocity(q), l), systems.varying[q]));
+                program.equations.push(columns.row(power.chain([((0, l), -1.0)])));
+            }
+            if program.equations.len() + program.rows.len() > most {
+                return None;
+            }
+        }
+        program.columns = columns.of.len();
+        Some(program)
+    }
+
+    /// Multipliers by an interior-point method: of the equations, then of the rows (≥ 0).
+    fn multipliers(&self, regularisation: f64) -> Option<(Vec<f64>, u64)> {
+        let (mut i, mut j, mut v, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let equations = self.equations.iter().map(|row| (row, 1.0));
+        for ((form, h), sign) in equations.chain(self.rows.iter().map(|row| (row, -1.0))) {
+            for &(column, value) in form {
+                i.push(right.len());
+                j.push(column);
+                v.push(sign * value);
+            }
+            right.push(sign * h);
+        }
+        let a = CscMatrix::new_from_triplets(right.len(), self.columns, i, j, v);
+        let p = CscMatrix::<f64>::zeros((self.columns, self.columns));
+        let mut q = vec![0.0; self.columns];
+        q[0] = 1.0;
+        let cones =
+            [SupportedConeT::ZeroConeT(self.equations.len()), SupportedConeT::NonnegativeConeT(self.rows.len())];
+        // The rows depend on each other: more regularisation than usual keeps the factors apart.
+        let settings = DefaultSettings::<f64> {
+            verbose: false,
+            max_iter: 100,
+            max_threads: 1,
+            static_regularization_constant: regularisation,
+            ..DefaultSettings::default()
+        };
+        let mut solver = DefaultSolver::new(&p, &q, &a, &right, &cones, settings).ok()?;
+        solver.solve();
+        // Whatever it calls its end: the multipliers are made right, and their bound recomputed.
+        let z = &solver.solution.z;
+        z.iter().all(|v| v.is_finite()).then(|| (z.clone(), u64::from(solver.solution.iterations)))
+    }
+
+    /// A row as Clarabel sees it: form, right-hand side and sign.
+    fn signed(&self, k: usize) -> (&Form, f64, f64) {
+        match self.equations.get(k) {
+            Some((form, h)) => (form, *h, 1.0),
+            None => {
+                let (form, h) = &self.rows[k - self.equations.len()];
+                (form, -h, -1.0)
+            }
+        }
+    }
+
+    /// x_0 + (signed rows)ᵀ z, which is zero for multipliers that prove a bound.
+    fn residual(&self, z: &[f64]) -> Vec<f64> {
+        let mut r = vec![0.0; self.columns];
+        r[0] = 1.0;
+        for (k, z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
+            let (form, _, sign) = self.signed(k);
+            form.iter().for_each(|&(j, v)| r[j] += sign * v * z);
+        }
+        r
+    }
+
+    /// The bound that multipliers prove: x_0 ≥ −Σ h z where x_0 + (signed rows)ᵀ z = 0 and z ≥ 0 on rows.
+    /// Those below one of several thresholds are zero, the others are moved there to rounding.
+    fn bound(&self, z: &[f64]) -> Option<f64> {
+        SUPPORTS.into_iter().find_map(|least| self.bound_on(least, z.to_vec()))
+    }
+
+    fn bound_on(&self, least: f64, mut z: Vec<f64>) -> Option<f64> {
+        let (e, m, n) = (self.equations.len(), z.len(), self.columns);
+        let scale = z.iter().fold(1.0f64, |m, z| m.max(z.abs()));
+        z[e..].iter_mut().filter(|z| **z < least * scale).for_each(|z| *z = 0.0);
+        let support: Vec<usize> = (0..m).filter(|&k| k < e || z[k] > 0.0).collect();
+        let sizes: Vec<f64> = support.iter().map(|&k| if k < e { scale } else { z[k] }.sqrt()).collect();
+        let mut entries: Entries = (0..support.len()).map(|k| (k, k, 1.0)).collect();
+        let first = support.len();
+        entries.extend((0..n).map(|j| (first + j, first + j, -1e-9)));
+        for (k, (&row, size)) in support.iter().zip(&sizes).enumerate() {
+            let (form, _, sign) = self.signed(row);
+            for &(j, v) in form {
+                entries.push((first + j, k, sign * v * size));
+                entries.push((k, first + j, sign * v * size));
+            }
+        }
+        let factorised = Factorised::new(first + n, first, &entries)?;
+        for _ in 0..8 {
+            let r = self.residual(&z);
+            let worst = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+            if worst <= ROUNDING * scale {
+                let proved: f64 = -support.iter().map(|&k| self.signed(k).1 * z[k]).sum::<f64>();
+                let positive = z[e..].iter().all(|z| *z >= 0.0);
+                return positive.then_some(proved - MARGIN * worst);
+            }
+            let mut load = vec![0.0; first];
+            load.extend(r.iter().map(|r| -r));
+            let step = factorised.solve(&load)?;
+            support.iter().zip(&sizes).zip(&step).for_each(|((&k, size), step)| z[k] += size * step);
+        }
+        None
+    }
+}
+
+/// The greatest lower bound of θ, for states with θ ≤ t, from the widest neighbourhood whose rows
+/// are at most `most`; with the iterations it took. `None` where even the smallest has more rows,
+/// or nothing was proved.
+pub fn lower_bound(systems: &Systems, problem: &LimitProblem, t: f64, most: usize) -> (Option<f64>, u64) {
+    // With room above the known state the program has an interior, which its method needs.
+    let room = t * (1.0 + ROOM);
+    let fits = |reach: usize| Program::new(systems, problem, room, reach, most);
+    let Some(program) = (0..=NEAREST).rev().find_map(fits) else { return (None, 0) };
+    let mut work = 0;
+    for regularisation in REGULARISATIONS {
+        let Some((z, iterations)) = program.multipliers(regularisation) else { continue };
+        work += iterations;
+        if let Some(bound) = program.bound(&z) {
+            return (Some(bound.clamp(0.0, t)), work);
+        }
+    }
+    (None, work)
+}
