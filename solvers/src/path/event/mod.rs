@@ -6,9 +6,13 @@
 #![doc = include_str!("event_path.md")]
 
 mod base;
+mod direction;
 mod energy;
 mod lcp;
+mod local;
+mod point;
 mod rate;
+mod step;
 mod system;
 mod trace;
 

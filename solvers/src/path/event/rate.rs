@@ -62,7 +62,7 @@ pub fn dilatancy(facets: &[PointFacet]) -> f64 {
 
 impl Verge<'_> {
     /// The pieces it may take.
-    fn candidates(&self) -> Vec<Piece> {
+    pub fn candidates(&self) -> Vec<Piece> {
         if let Some(open) = self.open {
             let corners = self.active.iter().filter(|f| **f != open).map(|f| Piece::Corner(open, *f));
             return std::iter::once(Piece::Facet(open)).chain(corners).collect();
@@ -337,7 +337,7 @@ impl RateProblem<'_> {
     }
 
     /// Guess and correction with λ̇ = 1.
-    fn corrected(&self, mut pieces: Vec<Piece>, counters: &mut u64) -> Option<Rate> {
+    pub fn corrected(&self, mut pieces: Vec<Piece>, counters: &mut u64) -> Option<Rate> {
         let mut seen = Vec::new();
         for round in 0..60 + self.points.len() {
             *counters += 1;
@@ -470,14 +470,15 @@ impl RateProblem<'_> {
     /// Pieces from which facets (point, index) flow.
     fn read(&self, facets: &[(usize, usize)], flows: impl Fn(usize) -> bool) -> Vec<Piece> {
         let mut pieces = vec![Piece::Stick; self.points.len()];
-        for (_, (k, f)) in facets.iter().enumerate().filter(|(i, _)| flows(*i)) {
-            let point = &self.points[*k];
-            let opens = point.facets[*f].mode == FacetMode::Opening;
-            pieces[*k] = match pieces[*k] {
+        for i in (0..facets.len()).filter(|i| flows(*i)) {
+            let (k, f) = facets[i];
+            let point = &self.points[k];
+            let opens = point.facets[f].mode == FacetMode::Opening;
+            pieces[k] = match pieces[k] {
                 Piece::Stick if point.apex && opens => Piece::Free,
-                Piece::Stick => Piece::Facet(*f),
+                Piece::Stick => Piece::Facet(f),
                 _ if point.apex => Piece::Free,
-                Piece::Facet(other) => Piece::Corner(other, *f),
+                Piece::Facet(other) => Piece::Corner(other, f),
                 kept => kept,
             };
         }
@@ -510,7 +511,7 @@ impl RateProblem<'_> {
         let guess = self.points.iter().map(|p| p.guess).collect();
         let corrected = self.corrected(guess, counters);
         if let Some(rate) = corrected {
-            let others = (examine && combinations <= 64)
+            let others = (examine && combinations <= super::direction::EXAMINED)
                 .then(|| self.enumerated(counters).iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1));
             return Verdict::Found(rate, others);
         }

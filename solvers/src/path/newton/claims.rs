@@ -11,20 +11,8 @@
 use super::law::Regime;
 use super::model::{Control, Model, State};
 use voussoir_core::limit::Status;
-use voussoir_core::path::certificate::{Watch, flow_residual};
-use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem};
-
-/// Residuals above which a field proves nothing.
-const FIELD: [(&str, f64); 5] = [
-    ("path_equilibrium", 1e-8),
-    ("path_kinematics", 1e-7),
-    ("path_strength", 1e-8),
-    ("path_penetration", 1e-7),
-    ("path_complementarity", 1e-7),
-];
-
-/// How far a mechanism may leave the laws' flow, and a ray its equations, relative to their size.
-const MECHANISM: f64 = 1e-6;
+use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
+use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
 const VERGE: f64 = 1e-8;
@@ -60,7 +48,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let applied = problem.applied(answer.state.drive, answer.state.factor);
     let parts = problem.drives.iter().zip(applied);
     let load: f64 = parts.map(|(d, factor)| (factor * super::model::load_size(problem, &d.loading)).abs()).sum();
-    for (name, bound) in FIELD {
+    for (name, value) in watch.worst {
         if still && !matches!(name, "path_equilibrium" | "path_strength") {
             continue;
         }
@@ -68,11 +56,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
         if name == "path_strength" && force <= 1e-12 * load {
             continue;
         }
-        let value = watch.worst.get(name).copied().unwrap_or(0.0);
-        // Written so that NaN fails.
-        if !matches!(value.partial_cmp(&bound), Some(std::cmp::Ordering::Less | std::cmp::Ordering::Equal)) {
-            return Err(format!("{name} is {value:.2e}"));
-        }
+        small(name, value)?;
     }
     match answer.status {
         Status::NoEquilibrium if answer.motion.is_none() => Err("there is no mechanism under the dead load".into()),
@@ -84,22 +68,20 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     }
 }
 
+/// An error where a residual is above its bound for claims, or NaN where it has one.
+fn small(name: &str, value: f64) -> Result<(), String> {
+    let bound = tolerance(name).claim;
+    if value <= bound || bound.is_infinite() { Ok(()) } else { Err(format!("{name} is {value:.2e}")) }
+}
+
 /// Whether the motion is one that goes on for ever under the present forces.
 fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(motion) = &answer.motion else { return Err("there is no mechanism".into()) };
     if problem.bodies.iter().zip(motion).any(|(body, q)| body.held && *q != [0.0; 3]) {
         return Err("the mechanism moves the ground".into());
     }
-    let flow = flow_residual(problem, &answer.state.force, motion);
-    if flow.is_nan() || flow > MECHANISM {
-        return Err(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
-    }
-    let drive = &problem.drives[answer.drive];
-    let load = problem.wrenches(&drive.loading);
-    let power: f64 = load.iter().flatten().zip(motion.iter().flatten()).map(|(p, v)| p * v).sum();
-    if power.is_nan() || (power - 1.0).abs() > MECHANISM {
-        return Err(format!("the load does the work {power:.6} on the mechanism, not 1"));
-    }
+    small("path_flow", flow_residual(problem, &answer.state.force, motion))?;
+    small("path_power", power_residual(problem, &problem.drives[answer.drive].loading, motion))?;
     if answer.status == Status::NoEquilibrium && answer.state.factor >= 1.0 - 1e-9 {
         return Err("all of the dead load is carried".into());
     }
@@ -109,27 +91,7 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
 /// Whether rates of forces carry any amount of the load.
 fn ray(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(ray) = &answer.ray else { return Err("there is no ray".into()) };
-    let mut sum = problem.wrenches(&problem.drives[answer.drive].loading);
-    let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
-    let mut excess: f64 = 0.0;
-    for (contact, r) in problem.contacts.iter().zip(ray) {
-        for plus in [false, true] {
-            let rows = problem.kinematics(contact, plus);
-            let body = if plus { contact.plus.body } else { contact.minus.body };
-            (0..3).for_each(|i| sum[body][i] += rows[0][i] * r[0] + rows[1][i] * r[1]);
-        }
-        if let ContactLaw::Law(law) = contact.law {
-            for f in &problem.facets[law] {
-                excess = excess.max(f.normal[0] * r[0] + f.normal[1] * r[1]);
-            }
-        }
-    }
-    let free = sum.iter().zip(&problem.bodies).filter(|(_, body)| !body.held);
-    let left = free.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
-    if size.is_finite() && left <= MECHANISM * size && excess <= MECHANISM * size {
-        return Ok(());
-    }
-    Err(format!("the ray leaves {left:.2e} of the load and exceeds a facet by {excess:.2e}, of forces of {size:.2e}"))
+    small("path_ray", ray_residual(problem, &problem.drives[answer.drive].loading, ray))
 }
 
 impl Model<'_> {
