@@ -19,8 +19,20 @@ fn small(name: &str, value: f64) -> bool {
     value <= bound || bound.is_infinite()
 }
 
-/// Answers a case along its path.
-pub fn answer(question: &Question, tag: &str, solver: &dyn PathSolver) -> CaseResult {
+/// A path's certificate, with somebody else who looks on.
+struct Watched<'a> {
+    watch: Watch,
+    observer: &'a mut dyn PathObserver,
+}
+
+impl PathObserver for Watched<'_> {
+    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.watch.state(problem, state) && self.observer.state(problem, state)
+    }
+}
+
+/// Answers a case along its path; `observer` sees every state.
+pub fn answer(question: &Question, tag: &str, solver: &dyn PathSolver, observer: &mut dyn PathObserver) -> CaseResult {
     let assembly = question.assembly;
     let problem = match PathProblem::new(assembly, question.stages) {
         Ok(problem) => problem,
@@ -29,9 +41,9 @@ pub fn answer(question: &Question, tag: &str, solver: &dyn PathSolver) -> CaseRe
     if let Some(why) = solver.refuses(&problem, question.settings) {
         return failed(tag, format!("{tag}: {why}"));
     }
-    let mut watch = Watch::new(question.settings.finite);
-    let solved = solver.trace(&problem, question.settings, &mut watch);
-    result(question, tag, &problem, solved, watch)
+    let mut watched = Watched { watch: Watch::new(question.settings.finite), observer };
+    let solved = solver.trace(&problem, question.settings, &mut watched);
+    result(question, tag, &problem, solved, watched.watch)
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

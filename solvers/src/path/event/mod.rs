@@ -15,6 +15,7 @@ mod rate;
 mod step;
 mod system;
 mod trace;
+mod unique;
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::card::{Capability, Card, no_further_check};

@@ -5,6 +5,7 @@ use super::direction::{Direction, Next};
 use super::energy::{Snapshot, load_displacement, snapshot, work};
 use super::point::Point;
 use super::system::{Load, System};
+use super::unique::unique;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
@@ -266,10 +267,12 @@ impl<'a> Tracer<'a> {
         let status = if gravity { Status::NoEquilibrium } else { Status::Collapse };
         let factor = (!gravity).then_some(self.factor);
         let limit = self.limit_point.is_some();
+        let unique = unique(&self.system, &self.points, &direction.gaps);
         let mut answer = self.finish(if limit { Status::LimitPoint } else { status }, factor, Some(motion), None);
         if limit {
             answer.notes.push("behind the limit point the path ends in a mechanism".into());
         }
+        answer.unique = unique;
         answer
     }
 

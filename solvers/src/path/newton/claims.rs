@@ -17,6 +17,9 @@ use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
 const VERGE: f64 = 1e-8;
 
+/// How close the factor of a claim and of its state are, relative to them.
+const SAME: f64 = 1e-9;
+
 /// Combinations of regimes that are tried.
 const COMBINATIONS: usize = 3000;
 
@@ -37,6 +40,10 @@ pub(super) fn confirmed(problem: &PathProblem, finite: bool, mut answer: PathAns
 }
 
 fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(), String> {
+    let own = answer.state.factor;
+    if let Some(factor) = answer.factor.filter(|f| f.is_nan() || (f - own).abs() > SAME * f.abs().max(own.abs())) {
+        return Err(format!("the factor {factor} is not that of the state"));
+    }
     let mut watch = Watch::new(finite);
     watch.state(problem, &answer.state);
     // Gaps that are rounding of what the forces deform have no size to compare with.
@@ -151,5 +158,123 @@ impl Model<'_> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::newton::NewtonPath;
+    use voussoir_core::geometry::Vec2;
+    use voussoir_core::interface::Facet;
+    use voussoir_core::limit::Counters;
+    use voussoir_core::path::{
+        Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathSettings, PathSolver, Unobserved,
+    };
+
+    /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N
+    /// and then a force λ f at its pole, half as high as the points are apart.
+    fn pushed(force: Vec2) -> PathProblem {
+        let body =
+            |held, pole, mass| PathBody { members: vec![0], pole, held, mass, points: vec![], flexibility: None };
+        let contact = |x: f64| Contact {
+            joint: 0,
+            position: Vec2::new(x, 0.0),
+            normal: Vec2::new(0.0, 1.0),
+            tangent: Vec2::new(-1.0, 0.0),
+            minus: Attachment { body: 0, slot: None },
+            plus: Attachment { body: 1, slot: None },
+            area: 1.0,
+            gap: 0.0,
+            law: ContactLaw::Law(0),
+            compliance: [1e-6, 2e-6],
+        };
+        let drive = |stage, gravity, loading, end| Drive { stage, gravity, loading, start: 0.0, end };
+        let pole = Vec2::new(0.0, 0.5);
+        let live = Loading { forces: vec![(1, None, pole, force)], ..Loading::default() };
+        let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
+        let [left, right] = Facet::friction(0.5, 0.0, 0.0);
+        PathProblem {
+            bodies: vec![body(true, Vec2::zeros(), 0.0), body(false, pole, 1.0)],
+            body_of: vec![0, 1],
+            contacts: vec![contact(-1.0), contact(1.0)],
+            facets: vec![vec![Facet::opening(0.0), left, right]],
+            drives: vec![
+                drive(0, true, dead, DriveEnd::Factor(1.0)),
+                drive(1, false, live, DriveEnd::Collapse(f64::INFINITY)),
+            ],
+            length: 2.0,
+            counters: Counters::new(),
+        }
+    }
+
+    fn answer(problem: &PathProblem) -> PathAnswer {
+        let settings = PathSettings {
+            finite: false,
+            tolerance: 1e-9,
+            stop_displacement: None,
+            stop_factor: None,
+            continuation: None,
+        };
+        NewtonPath {}.trace(problem, &settings, &mut Unobserved)
+    }
+
+    /// The answer with something changed is a stall that says what is wrong, and claims nothing.
+    fn refused(problem: &PathProblem, honest: &PathAnswer, says: &str, change: impl Fn(&mut PathAnswer)) {
+        let mut tampered = honest.clone();
+        change(&mut tampered);
+        let found = confirmed(problem, false, tampered);
+        assert_eq!(found.status, Status::Stalled, "{says}");
+        assert!(found.factor.is_none() && found.motion.is_none() && found.ray.is_none());
+        assert!(found.notes.last().is_some_and(|note| note.contains(says)), "{says}: {:?}", found.notes);
+    }
+
+    #[test]
+    fn a_tampered_collapse_is_refused() {
+        let problem = pushed(Vec2::new(1.0, 0.0));
+        let honest = answer(&problem);
+        assert_eq!(honest.status, Status::Collapse, "{:?}", honest.notes);
+        assert!(honest.factor.is_some_and(|factor| (factor - 5.0).abs() < 1e-8), "{:?}", honest.factor);
+        assert_eq!(confirmed(&problem, false, honest.clone()).status, Status::Collapse);
+        refused(&problem, &honest, "not that of the state", |a| a.factor = Some(5.001));
+        refused(&problem, &honest, "not that of the state", |a| a.factor = Some(f64::NAN));
+        refused(&problem, &honest, "path_equilibrium", |a| {
+            a.factor = Some(5.001);
+            a.state.factor = 5.001;
+        });
+        refused(&problem, &honest, "path_equilibrium", |a| a.state.force[0][0] *= 1.001);
+        refused(&problem, &honest, "path_equilibrium", |a| a.state.force[0][0] = f64::NAN);
+        refused(&problem, &honest, "path_kinematics", |a| a.state.motion[1][1] *= 1.01);
+        refused(&problem, &honest, "no mechanism", |a| a.motion = None);
+        refused(&problem, &honest, "moves the ground", |a| a.motion.as_mut().expect("a motion")[0][0] = 1.0);
+        refused(&problem, &honest, "path_power", |a| {
+            a.motion.as_mut().expect("a motion").iter_mut().flatten().for_each(|v| *v *= 1.01);
+        });
+        // Lifts off points that are pressed.
+        refused(&problem, &honest, "path_flow", |a| a.motion.as_mut().expect("a motion")[1][1] += 0.1);
+    }
+
+    #[test]
+    fn a_tampered_ray_is_refused() {
+        let problem = pushed(Vec2::new(0.0, -1.0));
+        let honest = answer(&problem);
+        assert_eq!(honest.status, Status::Unbounded, "{:?}", honest.notes);
+        assert_eq!(confirmed(&problem, false, honest.clone()).status, Status::Unbounded);
+        refused(&problem, &honest, "no ray", |a| a.ray = None);
+        // Does not carry the load; carries it beyond friction.
+        refused(&problem, &honest, "path_ray", |a| a.ray.as_mut().expect("a ray")[0][0] *= 1.01);
+        refused(&problem, &honest, "path_ray", |a| {
+            let ray = a.ray.as_mut().expect("a ray");
+            (ray[0][1], ray[1][1]) = (1.0, -1.0);
+        });
+    }
+
+    /// A collapse dressed up as a failure of the dead load, which is carried whole.
+    #[test]
+    fn another_status_is_refused() {
+        let problem = pushed(Vec2::new(1.0, 0.0));
+        let honest = answer(&problem);
+        refused(&problem, &honest, "all of the dead load", |a| a.status = Status::NoEquilibrium);
+        refused(&problem, &honest, "no ray", |a| a.status = Status::Unbounded);
     }
 }
