@@ -215,13 +215,6 @@ impl Assembly {
     /// of its free group, or `None` where the group is held by the ground. Also the number of groups.
     pub fn rigid_groups(&self) -> (Vec<Option<usize>>, usize) {
         let mut parent: Vec<usize> = (0..self.bodies.len()).collect();
-        fn root(parent: &mut [usize], mut i: usize) -> usize {
-            while parent[i] != i {
-                parent[i] = parent[parent[i]];
-                i = parent[i];
-            }
-            i
-        }
         for joint in self.joints.iter().filter(|joint| joint.bond == Bond::Bonded) {
             let (a, b) = (root(&mut parent, joint.minus), root(&mut parent, joint.plus));
             parent[a] = b;
@@ -245,6 +238,15 @@ impl Assembly {
             .collect();
         (groups, count)
     }
+}
+
+/// The root of i in a forest of groups (union–find), paths halved on the way.
+pub(crate) fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
 }
 
 /// A force on a body.

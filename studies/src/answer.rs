@@ -10,7 +10,7 @@ use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
 };
 use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
-use voussoir_core::path::{PathSettings, PathSolver};
+use voussoir_core::path::{PathObserver, PathSettings, PathSolver};
 
 /// A choice of solver for the problems of a case.
 #[derive(Debug, Clone)]
@@ -92,11 +92,12 @@ pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)>
     }
 }
 
-/// Answers a case. `id`, `variant`, `parameters` and `seconds` are left for the caller to fill.
-pub fn answer(question: &Question) -> CaseResult {
+/// Answers a case; an observer sees the states of a path. `id`, `variant`, `parameters` and `seconds`
+/// are left for the caller to fill.
+pub fn answer(question: &Question, observer: &mut dyn PathObserver) -> CaseResult {
     let Question { assembly, stages, .. } = *question;
     if let Some((tag, solver)) = path_solver(question) {
-        return crate::path::answer(question, &tag, &*solver);
+        return crate::path::answer(question, &tag, &*solver, observer);
     }
     let loads = stage_loads(assembly, stages);
     let mut done: Vec<StageResult> = Vec::new();

@@ -10,6 +10,7 @@ use voussoir::core::path::{
     PathSettings, PathSolver, PathState, certificate::Watch,
 };
 use voussoir::solvers::path::event::EventPath;
+use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
 
 fn settings() -> PathSettings {
@@ -51,7 +52,9 @@ fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
             assert_close(result.load_factor.unwrap(), 698.0226652123788, 1e-9);
             let hinges = |r: &voussoir::results::CaseResult| r.stages.last().unwrap().hinges.clone();
             assert_eq!(hinges(&result), hinges(&limit));
-            assert_eq!(result.mechanism.as_ref().unwrap().kind, limit.mechanism.as_ref().unwrap().kind);
+            let (own, other) = (result.mechanism.as_ref().unwrap(), limit.mechanism.as_ref().unwrap());
+            assert_eq!(own.kind, other.kind);
+            assert_eq!((own.unique, other.unique), (Some(true), Some(true)));
         }
     }
 }
@@ -172,6 +175,46 @@ fn separation_where_it_is_the_only_solution() {
         // K u = f without contact force: u_t = 2·1.2 − 1, u_n = 1.2 − 1.
         assert_close(end.gap[0][1], 1.4, 1e-12);
         assert_close(end.gap[0][0], 0.2, 1e-12);
+    }
+}
+
+/// f = (1.2, −1) with more friction has several solutions: slip (u_t = 0.2, r = (−1.0, 0.8) for
+/// μ = 1.25; 0.6 for 1.5; 0.8 for 2.0), stick with r = (−1.2, 1), and separation. Each satisfies the
+/// system; growing the load from zero, in proportion or the pressure first, both solvers reach stick.
+#[test]
+fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
+    for (mu, slip) in [(1.25f64, 0.2f64), (1.5, 0.6), (2.0, 0.8)] {
+        let problem = two_degrees(mu, &[([1.2, -1.0], DriveEnd::Factor(1.0))]);
+        // u_t and (r_t, r_n): K u = f + r.
+        let slides = [slip, slip - 1.2, 1.0 - slip];
+        let sticks = [0.0, -1.2, 1.0];
+        let residuals = |[u, r_t, r_n]: [f64; 3], u_n: f64| {
+            let motion = vec![[0.0; 3]; 2];
+            let (force, gap) = (vec![[r_n, r_t]], vec![[u_n, u]]);
+            let state = PathState { factor: 1.0, force, gap, motion, ..PathState::default() };
+            let mut watch = Watch::new(false);
+            watch.state(&problem, &state);
+            let names = ["path_kinematics", "path_strength", "path_penetration", "path_complementarity"];
+            let dissipated = -r_t * u;
+            assert!(dissipated >= 0.0);
+            names.iter().map(|name| watch.worst.get(name).copied().unwrap_or(0.0)).fold(0.0, f64::max)
+        };
+        assert!((slides[1].abs() - mu * slides[2]).abs() < 1e-14, "slip at the limit of friction");
+        for (solution, opening) in [(slides, 0.0), (sticks, 0.0), ([1.4, 0.0, 0.0], 0.2)] {
+            assert!(residuals(solution, opening) < 1e-14, "{mu} {solution:?} {:e}", residuals(solution, opening));
+        }
+        // What is no solution is seen: another slip.
+        assert!(residuals([slip + 0.1, slip - 1.1, 0.9 - slip], 0.0) > 0.01);
+        let in_turn = [([0.0, -1.0], DriveEnd::Factor(1.0)), ([1.2, 0.0], DriveEnd::Factor(1.0))];
+        for problem in [problem, two_degrees(mu, &in_turn)] {
+            for solver in [&EventPath {} as &dyn PathSolver, &NewtonPath {}] {
+                let answer = solver.trace(&problem, &settings(), &mut Record::default());
+                assert_eq!(answer.status, Status::Stands, "{mu} {:?}", answer.notes);
+                let ([r_n, r_t], [u_n, u_t]) = (answer.state.force[0], answer.state.gap[0]);
+                let found = [u_t, r_t, r_n];
+                assert!(u_n.abs() < 1e-9 && (0..3).all(|i| (found[i] - sticks[i]).abs() < 1e-9), "{mu} {found:?}");
+            }
+        }
     }
 }
 

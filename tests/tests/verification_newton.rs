@@ -134,8 +134,8 @@ fn random_scenes_agree_with_limit_analysis() {
         compared += usize::from(answer.status == Status::Collapse);
         if (!same && answer.status != Status::Stalled) || difference > 1e-8 {
             wrong.push(format!(
-                "{index}: {:?} {:?} against {:?} {:?}: {:?}",
-                answer.status, answer.factor, limit.status, limit.load_factor, answer.notes
+                "{index}: {:?} {:?} against {:?} {:?}: {:?} {:?}",
+                answer.status, answer.factor, limit.status, limit.load_factor, answer.notes, limit.notes
             ));
         }
     }

@@ -3,14 +3,19 @@
 use voussoir::core::geometry::Vec2;
 use voussoir::deformed::{DeformedBlock, deformed_blocks};
 use voussoir::history::{JointState, joint_events};
-use voussoir::kinds::run::answer_case;
+use voussoir::kinds::run::{answer_case, answer_cases};
+use voussoir::kinds::{Observer, OnPath};
 use voussoir::results::CaseResult;
 use voussoir::study::{Case, Kinematics};
 use voussoir::writers::vtu::vtu_text;
-use voussoir_tests::first_case;
+use voussoir_tests::{first_case, study};
 
 fn arch(live: &str, solver: &str) -> Case {
-    first_case(&format!(
+    first_case(&text(live, solver))
+}
+
+fn text(live: &str, solver: &str) -> String {
+    format!(
         r#"
 name = "arch"
 scene = {{ scene = "arch", profile = {{ shape = "segmental", span = 9.42, rise = 2.99 }}, thickness = 0.60, width = 5.81, voussoirs = 15, ends = "bonded", material = "stone", joint = "dry", mesh = {{ elements = [4, 6], order = 2 }} }}
@@ -23,7 +28,7 @@ name = "dead"
 gravity = 9.81
 {live}
 "#
-    ))
+    )
 }
 
 const LIVE: &str = r#"
@@ -217,4 +222,28 @@ fn files_for_paraview_are_well_formed() {
     let result = answer_case(&limit);
     let none = deformed_blocks(&limit.assembly, &limit.stages, &result, Kinematics::Small);
     assert_eq!(none.err().as_deref(), Some("limit analysis leaves no deformed state"));
+}
+
+/// Who follows a study sees its path: every state, stage after stage; what is answered is the same.
+#[test]
+fn a_path_is_followed_while_it_is_traced() {
+    #[derive(Default)]
+    struct Seen(std::sync::Mutex<Vec<(String, bool, f64, u64)>>);
+    impl Observer for Seen {
+        fn answered(&self, _case: &CaseResult) {}
+        fn on_path(&self, at: &OnPath) {
+            self.0.lock().unwrap().push((at.stage.into(), at.gravity, at.factor, at.states));
+        }
+    }
+    let followed = study(&text(LIVE, "{ solver = \"event_path\" }"));
+    let seen = Seen::default();
+    let mut result = answer_cases(&followed, &[0], 1, &seen).swap_remove(0);
+    let mut unseen = answer_case(&followed.cases[0]);
+    (result.seconds, unseen.seconds) = (0.0, 0.0);
+    assert_eq!(serde_json::to_string(&result).unwrap(), serde_json::to_string(&unseen).unwrap());
+    let seen = seen.0.into_inner().unwrap();
+    assert_eq!(seen.len() as u64, result.counters["states"]);
+    assert!(seen.iter().enumerate().all(|(k, at)| at.3 == k as u64 + 1));
+    assert!(seen.first().is_some_and(|at| at.0 == "dead" && at.1));
+    assert!(seen.last().is_some_and(|at| at.0 == "live" && !at.1 && Some(at.2) == result.load_factor));
 }

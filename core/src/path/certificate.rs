@@ -10,11 +10,51 @@
 //!   gaps gives for the recorded gap and the history of gaps, relative to the greatest contact force.
 //!   Such a law has its own compliance: strength, penetration and complementarity say nothing there;
 //! - `path_dissipation`: energy that friction would have created, relative to the work;
-//! - `path_energy`: |work − stored − dissipated|, relative to the work.
+//! - `path_energy`: |work − stored − dissipated|, relative to the work (a step's error: no bound);
+//!
+//! and of what is claimed at a path's end:
+//!
+//! - `path_flow`: how far a mechanism's jumps leave the flow of the facets that yield;
+//! - `path_power`: |p·q̇ − 1| of a mechanism;
+//! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
 
-use super::{ContactLaw, PathObserver, PathProblem, PathState};
+use super::{ContactLaw, Loading, PathObserver, PathProblem, PathState};
 use crate::interface::FacetMode;
 use std::collections::BTreeMap;
+
+/// How large a residual may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Name of the residual.
+    pub name: &'static str,
+    /// In a result.
+    pub result: f64,
+    /// Where a solver checks what it is about to claim: infinite where the claim's one state does not
+    /// show it.
+    pub claim: f64,
+}
+
+/// The tolerances of all residuals of paths that have one.
+#[rustfmt::skip]
+pub const TOLERANCES: &[Tolerance] = &[
+    Tolerance { name: "path_equilibrium", result: 1e-9, claim: 1e-8 },
+    Tolerance { name: "path_kinematics", result: 1e-8, claim: 1e-7 },
+    Tolerance { name: "path_strength", result: 1e-8, claim: 1e-8 },
+    Tolerance { name: "path_penetration", result: 1e-8, claim: 1e-7 },
+    Tolerance { name: "path_complementarity", result: 1e-8, claim: 1e-7 },
+    Tolerance { name: "path_law", result: 1e-8, claim: 1e-8 },
+    Tolerance { name: "path_forces", result: 1e-6, claim: 1e-6 },
+    Tolerance { name: "path_dissipation", result: 1e-8, claim: f64::INFINITY },
+    Tolerance { name: "path_flow", result: 1e-6, claim: 1e-6 },
+    Tolerance { name: "path_power", result: 1e-6, claim: 1e-6 },
+    Tolerance { name: "path_ray", result: 1e-9, claim: 1e-6 },
+];
+
+/// The tolerance of a residual: infinite where it has none.
+pub fn tolerance(name: &str) -> Tolerance {
+    let free = Tolerance { name: "", result: f64::INFINITY, claim: f64::INFINITY };
+    TOLERANCES.iter().copied().find(|t| t.name == name).unwrap_or(free)
+}
 
 /// Watches a path and keeps the worst of each residual.
 #[derive(Debug, Default)]
@@ -125,6 +165,38 @@ impl PathObserver for Watch {
         }
         true
     }
+}
+
+/// `path_power`: |p·q̇ − 1|, p the loading and q̇ the velocities of all bodies about their poles.
+pub fn power_residual(problem: &PathProblem, loading: &Loading, motion: &[[f64; 3]]) -> f64 {
+    let load = problem.wrenches(loading);
+    let power: f64 = load.iter().flatten().zip(motion.iter().flatten()).map(|(p, v)| p * v).sum();
+    (power - 1.0).abs()
+}
+
+/// `path_ray`: whether rates of contact forces carry any amount of a loading: what they leave of it
+/// on a free body (moments divided by the scene's length), or their greatest excess over a facet of
+/// the recession cone, relative to the sum of all of them; NaN where there are none.
+pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) -> f64 {
+    let mut sum = problem.wrenches(loading);
+    let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
+    let mut worst: f64 = 0.0;
+    for (contact, r) in problem.contacts.iter().zip(ray) {
+        for plus in [false, true] {
+            let rows = problem.kinematics(contact, plus);
+            let body = if plus { contact.plus.body } else { contact.minus.body };
+            (0..3).for_each(|i| sum[body][i] += rows[0][i] * r[0] + rows[1][i] * r[1]);
+        }
+        if let ContactLaw::Law(law) = contact.law {
+            for facet in &problem.facets[law] {
+                worst = worst.max(facet.normal[0] * r[0] + facet.normal[1] * r[1]);
+            }
+        }
+    }
+    for (w, _) in sum.iter().zip(&problem.bodies).filter(|(_, body)| !body.held) {
+        worst = worst.max(w[0].hypot(w[1])).max(w[2].abs() / problem.length);
+    }
+    if size.is_finite() { worst / size } else { f64::NAN }
 }
 
 /// Checks a mechanism against a field: how far the jumps leave the flow of the facets that yield,

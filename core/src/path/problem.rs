@@ -1,6 +1,6 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, drives.
 
-use crate::assembly::{Assembly, Bond, Stage, Target};
+use crate::assembly::{Assembly, Bond, Stage, Target, root};
 use crate::elastic::{Condenser, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
 use crate::geometry::{Vec2, cross, turned};
 use crate::interface::{Facet, Formulation, InterfaceResponse};
@@ -126,14 +126,6 @@ pub struct PathProblem {
     pub length: f64,
     /// Work done to build it.
     pub counters: Counters,
-}
-
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
 }
 
 /// Stiffness of the bedding between meshes that do not match, relative to that of a block as high as

@@ -6,9 +6,11 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 use voussoir::core::assembly::{Assembly, Stage};
 use voussoir::core::limit::Status;
-use voussoir::kinds::{Observer, kind};
+use voussoir::kinds::{Observer, OnPath, kind};
 use voussoir::results::{CaseResult, StudyResults};
 use voussoir::study::Study;
 use voussoir::writers::{StudyOutput, writers};
@@ -62,8 +64,15 @@ pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
 /// Shows progress on a terminal and keeps finished cases for `--resume`.
 struct Progress {
     bar: ProgressBar,
+    name: String,
+    started: Instant,
+    /// When a path was last shown, in tenths of a second since the start.
+    shown: AtomicU64,
     journal: Mutex<Option<std::fs::File>>,
 }
+
+/// Tenths of a second after which a path counts as long and is shown.
+const LONG: u64 = 10;
 
 impl Observer for Progress {
     fn answered(&self, case: &CaseResult) {
@@ -73,6 +82,17 @@ impl Observer for Progress {
         if let (Some(file), Ok(line)) = (journal.as_mut(), serde_json::to_string(case)) {
             let _ = writeln!(file, "{line}");
         }
+    }
+
+    fn on_path(&self, at: &OnPath) {
+        let now = self.started.elapsed().as_millis() as u64 / 100;
+        if self.bar.is_hidden() || now < LONG || self.shown.swap(now, Ordering::Relaxed) == now {
+            return;
+        }
+        let OnPath { case, stage, gravity, factor, states } = at;
+        let what = if *gravity { " (gravity)" } else { "" };
+        self.bar.set_message(format!("{}: case {case}, {stage}{what}, factor {factor:.6}, {states} states", self.name));
+        self.bar.tick();
     }
 }
 
@@ -121,16 +141,23 @@ fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
         let _ = std::fs::remove_file(&journal);
     }
     let bar = ProgressBar::with_draw_target(Some(rest.len() as u64), ProgressDrawTarget::stderr());
-    if options.quiet || rest.len() < 2 {
+    if options.quiet || rest.is_empty() {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
-    bar.set_style(
-        ProgressStyle::with_template("{msg} {bar:30} {pos}/{len} {eta}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
-    bar.set_message(study.name.clone());
+    // One case is no share of anything: what shows is where its path has come to, once that is long.
+    let template = if rest.len() < 2 { "{msg}" } else { "{msg} {bar:30} {pos}/{len} {eta}" };
+    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    if rest.len() > 1 {
+        bar.set_message(study.name.clone());
+    }
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&journal).ok();
-    let progress = Progress { bar, journal: Mutex::new(file) };
+    let progress = Progress {
+        bar,
+        name: study.name.clone(),
+        started: Instant::now(),
+        shown: AtomicU64::new(0),
+        journal: Mutex::new(file),
+    };
     for case in kind.answer(study, &rest, options.jobs, &progress) {
         done.insert(case.id, case);
     }

@@ -9,10 +9,30 @@ use crate::results::{CaseResult, Comparison};
 use crate::study::{Outline, Study};
 use voussoir_core::issue::Issue;
 
+/// Where the path of a case has come to.
+#[derive(Debug, Clone, Copy)]
+pub struct OnPath<'a> {
+    /// Id of the case.
+    pub case: usize,
+    /// Name of the stage.
+    pub stage: &'a str,
+    /// Whether the stage's change of gravity grows, not its loads.
+    pub gravity: bool,
+    /// Factor of what grows.
+    pub factor: f64,
+    /// States in equilibrium so far: events of an exact path, steps of others.
+    pub states: u64,
+}
+
 /// Follows a study while it is worked on; libraries never print.
 pub trait Observer: Sync {
     /// A case is answered.
     fn answered(&self, case: &CaseResult);
+
+    /// A path has reached its next state; called often. Changes nothing.
+    fn on_path(&self, at: &OnPath) {
+        let _ = at;
+    }
 }
 
 /// A kind of study, chosen by `kind = …`. Instances register with

@@ -1,6 +1,6 @@
 //! `run`: every case of the study is answered on its own.
 
-use super::{KindEntry, Observer, StudyKind};
+use super::{KindEntry, Observer, OnPath, StudyKind};
 use crate::answer::{Choice, Question, answer};
 use crate::results::CaseResult;
 use crate::study::{Case, Kinematics, Study};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use voussoir_core::card::{Card, card, no_further_check};
 use voussoir_core::limit::LimitSolver;
-use voussoir_core::path::{Continuation, PathSettings, PathSolver};
+use voussoir_core::path::{Continuation, PathObserver, PathProblem, PathSettings, PathSolver, PathState, Unobserved};
 use voussoir_core::schema::PluginKind;
 
 struct Run;
@@ -58,8 +58,34 @@ pub fn settings(case: &Case) -> PathSettings {
     }
 }
 
+/// Tells an observer of a study how far the path of a case has come.
+struct Followed<'a> {
+    case: &'a Case,
+    observer: &'a dyn Observer,
+    states: u64,
+}
+
+impl PathObserver for Followed<'_> {
+    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.states += 1;
+        let drive = &problem.drives[state.drive];
+        self.observer.on_path(&OnPath {
+            case: self.case.id,
+            stage: &self.case.stages[drive.stage].name,
+            gravity: drive.gravity,
+            factor: state.factor,
+            states: self.states,
+        });
+        true
+    }
+}
+
 /// Answers one case.
 pub fn answer_case(case: &Case) -> CaseResult {
+    answer_followed(case, &mut Unobserved)
+}
+
+fn answer_followed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
     let question = Question {
         assembly: &case.assembly,
@@ -68,7 +94,7 @@ pub fn answer_case(case: &Case) -> CaseResult {
         tolerance: case.solver.tolerance,
         settings: &settings(case),
     };
-    let mut result = answer(&question);
+    let mut result = answer(&question, observer);
     result.id = case.id;
     result.variant = case.variant.clone();
     result.scene = case.scene.clone();
@@ -84,7 +110,8 @@ pub fn answer_case(case: &Case) -> CaseResult {
 /// Answers cases, `jobs` of them side by side.
 pub fn answer_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
     let one = |id: &usize| {
-        let result = answer_case(&study.cases[*id]);
+        let case = &study.cases[*id];
+        let result = answer_followed(case, &mut Followed { case, observer, states: 0 });
         observer.answered(&result);
         result
     };

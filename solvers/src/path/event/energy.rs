@@ -5,7 +5,7 @@
 //! the work of gravity on the elastic displacements vanishes, since their mean does.
 
 use voussoir_core::geometry::{Vec2, turned};
-use voussoir_core::path::{Loading, PathProblem};
+use voussoir_core::path::{Contact, Loading, PathProblem, PathState};
 
 /// Displacements of all points that loads act on, and the energy stored, at one state.
 #[derive(Debug, Clone)]
@@ -24,27 +24,14 @@ pub fn rigid(problem: &PathProblem, motion: &[[f64; 3]], body: usize, point: Vec
     Vec2::new(x, y) + turned(point - problem.bodies[body].pole) * theta
 }
 
-/// Energies at a state: forces \[N\] of contact points, motions of bodies, factors applied of each
-/// drive.
-pub fn snapshot(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]], applied: &[f64]) -> Snapshot {
-    let mut forces: Vec<Vec<Vec2>> = problem.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
-    for (drive, factor) in problem.drives.iter().zip(applied) {
-        for (body, slot, _, f) in &drive.loading.forces {
-            if let Some(slot) = slot {
-                forces[*body][*slot] += f * *factor;
-            }
-        }
-    }
-    let mut stored = 0.0;
-    for (contact, f) in problem.contacts.iter().zip(force) {
-        let on_plus = contact.normal * f[0] + contact.tangent * f[1];
-        for (side, sign) in [(contact.minus, -1.0), (contact.plus, 1.0)] {
-            if let Some(slot) = side.slot {
-                forces[side.body][slot] += on_plus * sign;
-            }
-        }
-        stored += 0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1]);
-    }
+/// Energies at a state.
+pub fn snapshot(problem: &PathProblem, state: &PathState) -> Snapshot {
+    let (force, motion) = (&state.force, &state.motion);
+    let forces = problem.forces_on_points(state, false);
+    let of_joint = |(contact, f): (&Contact, &[f64; 2])| {
+        0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1])
+    };
+    let mut stored: f64 = problem.contacts.iter().zip(force).map(of_joint).sum();
     let mut elastic: Vec<Vec<Vec2>> = Vec::with_capacity(problem.bodies.len());
     for (body, f) in problem.bodies.iter().zip(&forces) {
         let Some(flexibility) = &body.flexibility else {

@@ -6,12 +6,17 @@
 #![doc = include_str!("event_path.md")]
 
 mod base;
+mod direction;
 mod energy;
 mod homotopy;
 mod lcp;
+mod local;
+mod point;
 mod rate;
+mod step;
 mod system;
 mod trace;
+mod unique;
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::card::{Capability, Card, no_further_check};

@@ -62,7 +62,7 @@ pub fn dilatancy(facets: &[PointFacet]) -> f64 {
 
 impl Verge<'_> {
     /// The pieces it may take.
-    fn candidates(&self) -> Vec<Piece> {
+    pub fn candidates(&self) -> Vec<Piece> {
         if let Some(open) = self.open {
             let corners = self.active.iter().filter(|f| **f != open).map(|f| Piece::Corner(open, *f));
             return std::iter::once(Piece::Facet(open)).chain(corners).collect();
@@ -363,7 +363,7 @@ impl RateProblem<'_> {
     }
 
     /// Guess and correction with λ̇ = 1.
-    fn corrected(&self, mut pieces: Vec<Piece>, counters: &mut u64) -> Option<Rate> {
+    pub fn corrected(&self, mut pieces: Vec<Piece>, counters: &mut u64) -> Option<Rate> {
         let mut seen = Vec::new();
         for round in 0..60 + self.points.len() {
             *counters += 1;
@@ -496,14 +496,15 @@ impl RateProblem<'_> {
     /// Pieces from which facets (point, index) flow.
     fn read(&self, facets: &[(usize, usize)], flows: impl Fn(usize) -> bool) -> Vec<Piece> {
         let mut pieces = vec![Piece::Stick; self.points.len()];
-        for (_, (k, f)) in facets.iter().enumerate().filter(|(i, _)| flows(*i)) {
-            let point = &self.points[*k];
-            let opens = point.facets[*f].mode == FacetMode::Opening;
-            pieces[*k] = match pieces[*k] {
+        for i in (0..facets.len()).filter(|i| flows(*i)) {
+            let (k, f) = facets[i];
+            let point = &self.points[k];
+            let opens = point.facets[f].mode == FacetMode::Opening;
+            pieces[k] = match pieces[k] {
                 Piece::Stick if point.apex && opens => Piece::Free,
-                Piece::Stick => Piece::Facet(*f),
+                Piece::Stick => Piece::Facet(f),
                 _ if point.apex => Piece::Free,
-                Piece::Facet(other) => Piece::Corner(other, *f),
+                Piece::Facet(other) => Piece::Corner(other, f),
                 kept => kept,
             };
         }
@@ -598,7 +599,7 @@ impl RateProblem<'_> {
         if let Some(rate) = corrected {
             let others = match combinations {
                 _ if !examine => None,
-                0..=64 => {
+                0..=super::direction::EXAMINED => {
                     let all = self.enumerated(counters);
                     Some(all.iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1))
                 }

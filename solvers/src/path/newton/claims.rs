@@ -11,24 +11,14 @@
 use super::law::Regime;
 use super::model::{Control, Model, State};
 use voussoir_core::limit::Status;
-use voussoir_core::path::certificate::{Watch, flow_residual};
-use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem};
-
-/// Residuals above which a field proves nothing.
-const FIELD: [(&str, f64); 6] = [
-    ("path_equilibrium", 1e-8),
-    ("path_kinematics", 1e-7),
-    ("path_strength", 1e-8),
-    ("path_penetration", 1e-7),
-    ("path_complementarity", 1e-7),
-    ("path_law", 1e-8),
-];
-
-/// How far a mechanism may leave the laws' flow, and a ray its equations, relative to their size.
-const MECHANISM: f64 = 1e-6;
+use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
+use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
 const VERGE: f64 = 1e-8;
+
+/// How close the factor of a claim and of its state are, relative to them.
+const SAME: f64 = 1e-9;
 
 /// Combinations of regimes that are tried.
 const COMBINATIONS: usize = 3000;
@@ -50,6 +40,10 @@ pub(super) fn confirmed(problem: &PathProblem, finite: bool, mut answer: PathAns
 }
 
 fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(), String> {
+    let own = answer.state.factor;
+    if let Some(factor) = answer.factor.filter(|f| f.is_nan() || (f - own).abs() > SAME * f.abs().max(own.abs())) {
+        return Err(format!("the factor {factor} is not that of the state"));
+    }
     let mut watch = Watch::new(finite);
     watch.state(problem, &answer.state);
     // Gaps that are rounding of what the forces deform have no size to compare with.
@@ -61,7 +55,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let applied = problem.applied(answer.state.drive, answer.state.factor);
     let parts = problem.drives.iter().zip(applied);
     let load: f64 = parts.map(|(d, factor)| (factor * super::model::load_size(problem, &d.loading)).abs()).sum();
-    for (name, bound) in FIELD {
+    for (name, value) in watch.worst {
         if still && !matches!(name, "path_equilibrium" | "path_strength") {
             continue;
         }
@@ -69,11 +63,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
         if name == "path_strength" && force <= 1e-12 * load {
             continue;
         }
-        let value = watch.worst.get(name).copied().unwrap_or(0.0);
-        // Written so that NaN fails.
-        if !matches!(value.partial_cmp(&bound), Some(std::cmp::Ordering::Less | std::cmp::Ordering::Equal)) {
-            return Err(format!("{name} is {value:.2e}"));
-        }
+        small(name, value)?;
     }
     match answer.status {
         Status::NoEquilibrium if answer.motion.is_none() => Err("there is no mechanism under the dead load".into()),
@@ -85,26 +75,21 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     }
 }
 
+/// An error where a residual is above its bound for claims, or NaN where it has one.
+fn small(name: &str, value: f64) -> Result<(), String> {
+    let bound = tolerance(name).claim;
+    if value <= bound || bound.is_infinite() { Ok(()) } else { Err(format!("{name} is {value:.2e}")) }
+}
+
 /// Whether the motion is one that goes on for ever under the present forces.
 fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(motion) = &answer.motion else { return Err("there is no mechanism".into()) };
     if problem.bodies.iter().zip(motion).any(|(body, q)| body.held && *q != [0.0; 3]) {
         return Err("the mechanism moves the ground".into());
     }
-    let flow = flow_residual(problem, &answer.state.force, motion);
-    if flow.is_nan() || flow > MECHANISM {
-        return Err(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
-    }
-    let changed = problem.leaves_forces(&answer.state, motion);
-    if changed.is_nan() || changed > MECHANISM {
-        return Err(format!("the mechanism changes the forces of laws of tractions from gaps by {changed:.2e}"));
-    }
-    let drive = &problem.drives[answer.drive];
-    let load = problem.wrenches(&drive.loading);
-    let power: f64 = load.iter().flatten().zip(motion.iter().flatten()).map(|(p, v)| p * v).sum();
-    if power.is_nan() || (power - 1.0).abs() > MECHANISM {
-        return Err(format!("the load does the work {power:.6} on the mechanism, not 1"));
-    }
+    small("path_flow", flow_residual(problem, &answer.state.force, motion))?;
+    small("path_power", power_residual(problem, &problem.drives[answer.drive].loading, motion))?;
+    small("path_forces", problem.leaves_forces(&answer.state, motion))?;
     if answer.status == Status::NoEquilibrium && answer.state.factor >= 1.0 - 1e-9 {
         return Err("all of the dead load is carried".into());
     }
@@ -114,27 +99,7 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
 /// Whether rates of forces carry any amount of the load.
 fn ray(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(ray) = &answer.ray else { return Err("there is no ray".into()) };
-    let mut sum = problem.wrenches(&problem.drives[answer.drive].loading);
-    let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
-    let mut excess: f64 = 0.0;
-    for (contact, r) in problem.contacts.iter().zip(ray) {
-        for plus in [false, true] {
-            let rows = problem.kinematics(contact, plus);
-            let body = if plus { contact.plus.body } else { contact.minus.body };
-            (0..3).for_each(|i| sum[body][i] += rows[0][i] * r[0] + rows[1][i] * r[1]);
-        }
-        if let ContactLaw::Law(law) = contact.law {
-            for f in &problem.facets[law] {
-                excess = excess.max(f.normal[0] * r[0] + f.normal[1] * r[1]);
-            }
-        }
-    }
-    let free = sum.iter().zip(&problem.bodies).filter(|(_, body)| !body.held);
-    let left = free.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
-    if size.is_finite() && left <= MECHANISM * size && excess <= MECHANISM * size {
-        return Ok(());
-    }
-    Err(format!("the ray leaves {left:.2e} of the load and exceeds a facet by {excess:.2e}, of forces of {size:.2e}"))
+    small("path_ray", ray_residual(problem, &problem.drives[answer.drive].loading, ray))
 }
 
 impl Model<'_> {
@@ -194,5 +159,123 @@ impl Model<'_> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::newton::NewtonPath;
+    use voussoir_core::geometry::Vec2;
+    use voussoir_core::interface::Facet;
+    use voussoir_core::limit::Counters;
+    use voussoir_core::path::{
+        Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathSettings, PathSolver, Unobserved,
+    };
+
+    /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N
+    /// and then a force λ f at its pole, half as high as the points are apart.
+    fn pushed(force: Vec2) -> PathProblem {
+        let body =
+            |held, pole, mass| PathBody { members: vec![0], pole, held, mass, points: vec![], flexibility: None };
+        let contact = |x: f64| Contact {
+            joint: 0,
+            position: Vec2::new(x, 0.0),
+            normal: Vec2::new(0.0, 1.0),
+            tangent: Vec2::new(-1.0, 0.0),
+            minus: Attachment { body: 0, slot: None },
+            plus: Attachment { body: 1, slot: None },
+            area: 1.0,
+            gap: 0.0,
+            law: ContactLaw::Law(0),
+            compliance: [1e-6, 2e-6],
+        };
+        let drive = |stage, gravity, loading, end| Drive { stage, gravity, loading, start: 0.0, end };
+        let pole = Vec2::new(0.0, 0.5);
+        let live = Loading { forces: vec![(1, None, pole, force)], ..Loading::default() };
+        let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
+        let [left, right] = Facet::friction(0.5, 0.0, 0.0);
+        PathProblem {
+            bodies: vec![body(true, Vec2::zeros(), 0.0), body(false, pole, 1.0)],
+            body_of: vec![0, 1],
+            contacts: vec![contact(-1.0), contact(1.0)],
+            facets: vec![vec![Facet::opening(0.0), left, right]],
+            drives: vec![
+                drive(0, true, dead, DriveEnd::Factor(1.0)),
+                drive(1, false, live, DriveEnd::Collapse(f64::INFINITY)),
+            ],
+            length: 2.0,
+            counters: Counters::new(),
+        }
+    }
+
+    fn answer(problem: &PathProblem) -> PathAnswer {
+        let settings = PathSettings {
+            finite: false,
+            tolerance: 1e-9,
+            stop_displacement: None,
+            stop_factor: None,
+            continuation: None,
+        };
+        NewtonPath {}.trace(problem, &settings, &mut Unobserved)
+    }
+
+    /// The answer with something changed is a stall that says what is wrong, and claims nothing.
+    fn refused(problem: &PathProblem, honest: &PathAnswer, says: &str, change: impl Fn(&mut PathAnswer)) {
+        let mut tampered = honest.clone();
+        change(&mut tampered);
+        let found = confirmed(problem, false, tampered);
+        assert_eq!(found.status, Status::Stalled, "{says}");
+        assert!(found.factor.is_none() && found.motion.is_none() && found.ray.is_none());
+        assert!(found.notes.last().is_some_and(|note| note.contains(says)), "{says}: {:?}", found.notes);
+    }
+
+    #[test]
+    fn a_tampered_collapse_is_refused() {
+        let problem = pushed(Vec2::new(1.0, 0.0));
+        let honest = answer(&problem);
+        assert_eq!(honest.status, Status::Collapse, "{:?}", honest.notes);
+        assert!(honest.factor.is_some_and(|factor| (factor - 5.0).abs() < 1e-8), "{:?}", honest.factor);
+        assert_eq!(confirmed(&problem, false, honest.clone()).status, Status::Collapse);
+        refused(&problem, &honest, "not that of the state", |a| a.factor = Some(5.001));
+        refused(&problem, &honest, "not that of the state", |a| a.factor = Some(f64::NAN));
+        refused(&problem, &honest, "path_equilibrium", |a| {
+            a.factor = Some(5.001);
+            a.state.factor = 5.001;
+        });
+        refused(&problem, &honest, "path_equilibrium", |a| a.state.force[0][0] *= 1.001);
+        refused(&problem, &honest, "path_equilibrium", |a| a.state.force[0][0] = f64::NAN);
+        refused(&problem, &honest, "path_kinematics", |a| a.state.motion[1][1] *= 1.01);
+        refused(&problem, &honest, "no mechanism", |a| a.motion = None);
+        refused(&problem, &honest, "moves the ground", |a| a.motion.as_mut().expect("a motion")[0][0] = 1.0);
+        refused(&problem, &honest, "path_power", |a| {
+            a.motion.as_mut().expect("a motion").iter_mut().flatten().for_each(|v| *v *= 1.01);
+        });
+        // Lifts off points that are pressed.
+        refused(&problem, &honest, "path_flow", |a| a.motion.as_mut().expect("a motion")[1][1] += 0.1);
+    }
+
+    #[test]
+    fn a_tampered_ray_is_refused() {
+        let problem = pushed(Vec2::new(0.0, -1.0));
+        let honest = answer(&problem);
+        assert_eq!(honest.status, Status::Unbounded, "{:?}", honest.notes);
+        assert_eq!(confirmed(&problem, false, honest.clone()).status, Status::Unbounded);
+        refused(&problem, &honest, "no ray", |a| a.ray = None);
+        // Does not carry the load; carries it beyond friction.
+        refused(&problem, &honest, "path_ray", |a| a.ray.as_mut().expect("a ray")[0][0] *= 1.01);
+        refused(&problem, &honest, "path_ray", |a| {
+            let ray = a.ray.as_mut().expect("a ray");
+            (ray[0][1], ray[1][1]) = (1.0, -1.0);
+        });
+    }
+
+    /// A collapse dressed up as a failure of the dead load, which is carried whole.
+    #[test]
+    fn another_status_is_refused() {
+        let problem = pushed(Vec2::new(1.0, 0.0));
+        let honest = answer(&problem);
+        refused(&problem, &honest, "all of the dead load", |a| a.status = Status::NoEquilibrium);
+        refused(&problem, &honest, "no ray", |a| a.status = Status::Unbounded);
     }
 }

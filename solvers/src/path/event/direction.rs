@@ -1,0 +1,306 @@
+//! The direction of the next piece of the path: the rate problem over the points at the verge of a
+//! change on one factorisation for many events, or guess and correction on the whole system.
+
+use super::base::Base;
+use super::local::Local;
+use super::point::Point;
+use super::rate::{Piece, Verdict, Verge};
+use super::system::{Load, System, dot};
+use super::trace::Tracer;
+
+/// Relative residual of a direction above which it is solved anew.
+const RESIDUAL: f64 = 1e-12;
+/// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
+pub const MECHANISM: f64 = 1e-8;
+/// Points with a piece of their own beside the factorised one before factorising anew.
+const FRESH: usize = 40;
+/// Points at the verge of a change above which they are searched on the whole system.
+const MANY: usize = 24;
+/// Combinations of pieces up to which a non-associated rate problem is searched for other solutions.
+pub const EXAMINED: usize = 64;
+
+/// A direction of the path.
+pub struct Direction {
+    /// Rates of all unknowns.
+    pub x: Vec<f64>,
+    /// λ̇: 1, 0 or −1.
+    pub factor: f64,
+    /// Rates of all gaps.
+    pub gaps: Vec<[f64; 2]>,
+}
+
+/// Where the path goes on.
+pub enum Next {
+    /// With λ rising or standing still.
+    Go(Direction),
+    /// With λ falling: nothing else is possible.
+    Falling(Direction),
+    /// Nowhere.
+    Nothing,
+    /// Not decided, and why.
+    Lost(String),
+}
+
+impl Tracer<'_> {
+    /// The direction from the present state.
+    pub fn direction(&mut self, load: &Load) -> Next {
+        self.counts.rate_problems += 1;
+        let verge: Vec<usize> = (0..self.points.len()).filter(|c| self.points[*c].settled().is_none()).collect();
+        // Where there are few combinations and several solutions are possible, all are looked at.
+        if (self.associated || self.combinations(&verge) > EXAMINED)
+            && let Some(direction) = self.kept(load, &verge)
+        {
+            return Next::Go(direction);
+        }
+        if (verge.len() > MANY || self.base.is_none())
+            && let Some(direction) = self.whole(load, &verge)
+        {
+            return Next::Go(direction);
+        }
+        // One attempt on the present factorisation, one on a fresh one.
+        for fresh in [false, true] {
+            // Closed points at the verge of a change make the best conditioned base: close to a collapse
+            // one in which they flow is nearly singular.
+            let stale = self.base.as_ref().is_none_or(|base| {
+                base.responses() > FRESH.max(2 * verge.len()) || verge.iter().any(|c| base.pieces[*c] != Piece::Stick)
+            });
+            let closed = |p: &Point| p.settled().unwrap_or(Piece::Stick);
+            if (fresh || stale) && !self.factorise(self.points.iter().map(closed).collect()) {
+                return Next::Lost("the system is singular with the contact points at the verge of a change closed: a block is held by nothing".into());
+            }
+            if let Some(next) = self.reduced(load, &verge) {
+                return next;
+            }
+        }
+        Next::Lost("the stiffness of the contact points at the verge of a change could not be found".into())
+    }
+
+    fn factorise(&mut self, pieces: Vec<Piece>) -> bool {
+        self.counts.factorisations += 1;
+        self.base = Base::new(&self.system, pieces);
+        self.base.is_some()
+    }
+
+    fn combinations(&self, verge: &[usize]) -> usize {
+        let candidates = Self::verges(&self.system, &self.points, verge);
+        candidates.iter().fold(1, |n: usize, verge| n.saturating_mul(verge.candidates().len()))
+    }
+
+    /// Guess and correction over the points that have just arrived somewhere and those that this moves
+    /// out of their pieces, while all others go on as they are. `None` where nothing with λ rising is
+    /// found so.
+    fn kept(&mut self, load: &Load, verge: &[usize]) -> Option<Direction> {
+        let mut open: Vec<usize> = verge.iter().copied().filter(|c| self.points[*c].hit).collect();
+        loop {
+            if open.len() > MANY {
+                return None;
+            }
+            let mut pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
+            if self.base.as_ref().is_none_or(|base| base.responses() > FRESH.max(2 * open.len()))
+                && !self.factorise(pieces.clone())
+            {
+                return None;
+            }
+            let base = self.base.as_mut()?;
+            let solves = &mut self.counts.solves;
+            let local = Local::new((&self.system, &self.points), base, (self.drive, load), &open, &pieces, solves)?;
+            let rate = local.rate.corrected(open.iter().map(|c| pieces[*c]).collect(), &mut self.counts.trials)?;
+            let x = local.combine(base, &rate);
+            open.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
+            let moved = self.leaving(&x, load, verge, &pieces)?;
+            if moved.is_empty() {
+                self.points.iter_mut().zip(pieces).for_each(|(point, piece)| point.piece = piece);
+                let x = self.refined(x, 1.0, load);
+                return Some(self.completed(x, 1.0, load));
+            }
+            let new = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c));
+            let before = open.len();
+            open = open.iter().copied().chain(new).collect();
+            if open.len() == before {
+                return None;
+            }
+        }
+    }
+
+    /// Points at the verge of a change that a direction with λ̇ = 1 moves out of their pieces: how far,
+    /// which, and the piece that mends it. `None` where gaps have no bound.
+    fn leaving(&self, x: &[f64], load: &Load, verge: &[usize], pieces: &[Piece]) -> Option<Vec<(f64, usize, Piece)>> {
+        let mut gaps = self.system.gaps(x);
+        for (gap, load) in gaps.iter_mut().zip(&load.gap) {
+            (0..2).for_each(|i| gap[i] += load[i]);
+        }
+        let force_size = x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let gap_size = gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+        if gap_size.is_nan() || gap_size > 1e10 {
+            return None;
+        }
+        let mut changes = Vec::new();
+        for (&c, point) in verge.iter().zip(&Self::verges(&self.system, &self.points, verge)) {
+            let unknowns = point.unknowns(pieces[c], gaps[c]);
+            let force = [x[2 * c], x[2 * c + 1]];
+            if let Some((size, to)) = point.violation(pieces[c], &unknowns, force, [force_size, gap_size])
+                && size > 1e-10
+            {
+                changes.push((size, c, to));
+            }
+        }
+        Some(changes)
+    }
+
+    /// Some points as the rate problem sees them.
+    pub fn verges<'s>(system: &'s System, points: &[Point], at: &[usize]) -> Vec<Verge<'s>> {
+        at.iter()
+            .map(|&c| {
+                let point = &points[c];
+                Verge {
+                    facets: system.facets[c].as_deref().unwrap_or_default(),
+                    active: point.active.clone(),
+                    open: if point.open() { point.opening_facet } else { None },
+                    apex: point.apex && point.opening_facet.is_some_and(|f| point.active.contains(&f)),
+                    guess: point.piece,
+                    hit: point.hit,
+                    stiffness: point.stiffness,
+                }
+            })
+            .collect()
+    }
+
+    /// The rate problem over the points at the verge of a change. `None` where linear algebra fails.
+    fn reduced(&mut self, load: &Load, verge: &[usize]) -> Option<Next> {
+        let base = self.base.as_mut()?;
+        let pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
+        let solves = &mut self.counts.solves;
+        let local = Local::new((&self.system, &self.points), base, (self.drive, load), verge, &pieces, solves)?;
+        let verdict = local.rate.solve(!self.associated, &mut self.counts.trials);
+        let (rate, falling) = match verdict {
+            Verdict::Found(rate, others) => {
+                if others.is_some_and(|n| n > 0) {
+                    self.counts.bifurcations += 1;
+                    if self.counts.bifurcations == 1 {
+                        self.notes.push(format!(
+                            "at λ = {:.9} the rate problem with friction has at least {} solutions; the one taken keeps the pieces of the contact points as far as it can",
+                            self.factor,
+                            others.unwrap_or(0) + 1
+                        ));
+                    }
+                }
+                (rate, false)
+            }
+            Verdict::Falling(rate) => (rate, true),
+            Verdict::Nothing => return Some(Next::Nothing),
+            Verdict::Undecided(combinations) => {
+                return Some(Next::Lost(format!(
+                    "the rate problem at λ = {:.9} has {} contact points at the verge of a change ({combinations} combinations), and pivoting did not solve it",
+                    self.factor,
+                    verge.len()
+                )));
+            }
+        };
+        let x = local.combine(base, &rate);
+        for (&c, piece) in verge.iter().zip(&rate.pieces) {
+            self.points[c].piece = *piece;
+        }
+        let x = self.refined(x, rate.factor, load);
+        let direction = self.completed(x, rate.factor, load);
+        Some(if falling { Next::Falling(direction) } else { Next::Go(direction) })
+    }
+
+    /// The direction solved anew with all pieces in the factorisation, where what was combined from
+    /// responses leaves residuals: close to a collapse the responses of single points cancel.
+    fn refined(&mut self, x: Vec<f64>, factor: f64, load: &Load) -> Vec<f64> {
+        let pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
+        if factor == 0.0 || self.residual(&x, factor, load, &pieces) <= RESIDUAL {
+            return x;
+        }
+        self.counts.factorisations += 1;
+        let Some(mut base) = Base::new(&self.system, pieces.clone()) else { return x };
+        let Some(direct) = base.drive(&self.system, self.drive, load) else { return x };
+        let direct: Vec<f64> = direct.iter().map(|v| v * factor).collect();
+        if self.residual(&direct, factor, load, &pieces) < self.residual(&x, factor, load, &pieces) {
+            self.base = Some(base);
+            return direct;
+        }
+        x
+    }
+
+    /// The worst residual of a direction: equilibrium and pieces, relative to the forces and gaps.
+    fn residual(&self, x: &[f64], factor: f64, load: &Load, pieces: &[Piece]) -> f64 {
+        let nc = self.system.contacts;
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(1e-300, |a: f64, b| a.max(b.abs()));
+        let forces = largest(&mut x[..2 * nc].iter().copied());
+        let motions = largest(&mut x[2 * nc..].iter().copied());
+        let mut worst: f64 = 0.0;
+        for (sum, p) in self.system.resultants(x).iter().zip(load.wrench.iter().flatten()) {
+            worst = worst.max((sum + factor * p).abs() / forces);
+        }
+        let gaps = self.system.gaps(x);
+        for (c, piece) in pieces.iter().enumerate() {
+            let gap = [0, 1].map(|i| gaps[c][i] + factor * load.gap[c][i]);
+            let force = [x[2 * c], x[2 * c + 1]];
+            let own = match piece {
+                Piece::Stick => gap[0].abs().max(gap[1].abs()) / motions.max(forces),
+                Piece::Free | Piece::Corner(..) => force[0].abs().max(force[1].abs()) / forces,
+                Piece::Facet(f) => match &self.system.facets[c] {
+                    Some(facets) => dot(facets[*f].normal, force).abs() / forces,
+                    None => 0.0,
+                },
+            };
+            worst = worst.max(own);
+        }
+        worst
+    }
+
+    /// The direction with gaps of all points; those of settled points are made exact.
+    fn completed(&mut self, mut x: Vec<f64>, factor: f64, load: &Load) -> Direction {
+        let mut gaps = self.system.gaps(&x);
+        // In a mechanism forces and λ stand still; what is left of them beside the motion is rounding.
+        let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let forces = 2 * self.system.contacts;
+        let mut factor = factor;
+        let stiffest = self.points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
+        let still = if factor == 0.0 { 100.0 * MECHANISM * stiffest } else { MECHANISM };
+        if largest(&x[..forces]) < still * largest(&x[forces..]) {
+            factor = 0.0;
+            x[..forces].fill(0.0);
+            gaps = self.system.gaps(&x);
+        }
+        for (c, gap) in gaps.iter_mut().enumerate() {
+            (0..2).for_each(|i| gap[i] += factor * load.gap[c][i]);
+            if let Some(piece) = self.points[c].settled() {
+                self.points[c].piece = piece;
+            }
+            if self.points[c].piece == Piece::Stick {
+                *gap = [0.0; 2];
+            }
+        }
+        Direction { x, factor, gaps }
+    }
+
+    /// Guess and correction on the whole system with λ̇ = 1: for many points at once.
+    fn whole(&mut self, load: &Load, verge: &[usize]) -> Option<Direction> {
+        let mut pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
+        let mut seen: Vec<Vec<Piece>> = Vec::new();
+        for round in 0..80 {
+            self.counts.factorisations += 1;
+            let mut base = Base::new(&self.system, pieces.clone())?;
+            let x = base.drive(&self.system, self.drive, load)?.clone();
+            let mut changes = self.leaving(&x, load, verge, &pieces)?;
+            if changes.is_empty() {
+                for (c, piece) in pieces.into_iter().enumerate() {
+                    self.points[c].piece = piece;
+                }
+                self.base = Some(base);
+                return Some(self.completed(x, 1.0, load));
+            }
+            if seen.contains(&pieces) || round > 40 {
+                changes.sort_by_key(|change| change.1);
+                changes.truncate(1);
+            }
+            seen.push(pieces.clone());
+            for (_, c, to) in changes {
+                pieces[c] = to;
+            }
+        }
+        None
+    }
+}

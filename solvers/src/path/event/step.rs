@@ -1,0 +1,180 @@
+//! A step along a direction: how far it is to the next events, and what they change.
+
+use super::direction::{Direction, MECHANISM};
+use super::rate::{Piece, corner, dilatancy};
+use super::system::dot;
+use super::trace::Tracer;
+use voussoir_core::interface::FacetMode;
+use voussoir_core::path::{Happening, PathEvent};
+
+/// Slacks and gaps below this (in scaled units) are events of the same moment.
+const SAME: f64 = 1e-12;
+
+impl Tracer<'_> {
+    /// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
+    /// closing) of which points they are.
+    pub fn next_event(&self, direction: &Direction) -> (f64, Vec<(usize, usize)>) {
+        let mut all: Vec<(f64, f64, usize, usize)> = Vec::new();
+        for (c, point) in self.points.iter().enumerate() {
+            let Some(facets) = &self.system.facets[c] else { continue };
+            if point.open() {
+                let rate = self.opening_rate(c, direction);
+                if rate < 0.0 {
+                    all.push((point.opening / -rate, rate, c, usize::MAX));
+                }
+                if point.apex {
+                    continue;
+                }
+            }
+            let force = self.force(c);
+            let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
+            for (f, facet) in facets.iter().enumerate().filter(|(f, _)| !point.active.contains(f)) {
+                let falls = dot(facet.normal, rate);
+                if falls > 0.0 {
+                    all.push((facet.slack(force).max(0.0) / falls, -falls, c, f));
+                }
+            }
+        }
+        let step = all.iter().map(|e| e.0).fold(f64::INFINITY, f64::min);
+        // A rate that is rounding brings no event.
+        let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let gap_size = direction.gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let real = |e: &&(f64, f64, usize, usize)| {
+            let own = if e.3 == usize::MAX {
+                gap_size
+            } else if direction.factor == 0.0 {
+                size.max(gap_size)
+            } else {
+                size
+            };
+            -e.1 > if direction.factor == 0.0 { MECHANISM } else { 1e-13 } * own
+        };
+        let step = all.iter().filter(real).map(|e| e.0).fold(f64::INFINITY, f64::min).max(step);
+        let hits = all.iter().filter(real).filter(|e| (e.0 - step) * -e.1 <= SAME).map(|e| (e.2, e.3)).collect();
+        (step, hits)
+    }
+
+    /// Rate of the opening above the dilated surface.
+    fn opening_rate(&self, c: usize, direction: &Direction) -> f64 {
+        let Some(facets) = &self.system.facets[c] else { return 0.0 };
+        let gap = direction.gaps[c];
+        match self.points[c].piece {
+            Piece::Free => gap[0] - dilatancy(facets) * gap[1].abs(),
+            Piece::Facet(f) if facets[f].mode == FacetMode::Opening => {
+                -dot(gap, facets[f].flow) / dot(facets[f].flow, facets[f].flow)
+            }
+            Piece::Corner(i, j) => {
+                let solved = corner(facets[i].flow, facets[j].flow, gap);
+                if facets[i].mode == FacetMode::Opening {
+                    solved[0]
+                } else if facets[j].mode == FacetMode::Opening {
+                    solved[1]
+                } else {
+                    0.0
+                }
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Goes a step along a direction and notes the events at its end.
+    pub fn advance(&mut self, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
+        let unit = self.system.force_unit * self.system.displacement_unit;
+        for (c, point) in self.points.iter().enumerate() {
+            if matches!(point.piece, Piece::Stick | Piece::Free) {
+                continue;
+            }
+            let mean = [0, 1].map(|i| self.x[2 * c + i] + 0.5 * step * direction.x[2 * c + i]);
+            self.dissipated -= dot(mean, direction.gaps[c]) * step * unit;
+        }
+        let before = self.factor;
+        let openings: Vec<f64> = (0..self.points.len()).map(|c| self.opening_rate(c, direction)).collect();
+        for (x, rate) in self.x.iter_mut().zip(&direction.x) {
+            *x += step * rate;
+        }
+        self.factor += sense * step * direction.factor;
+        let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let mut events = Vec::new();
+        for (c, opening_rate) in openings.into_iter().enumerate() {
+            let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
+            let Some(facets) = &self.system.facets[c] else { continue };
+            let was_open = self.points[c].open();
+            let was_hit = std::mem::take(&mut self.points[c].hit);
+            let point = &mut self.points[c];
+            point.opening = if was_open || matches!(point.piece, Piece::Free | Piece::Facet(_) | Piece::Corner(..)) {
+                (point.opening + step * opening_rate).max(0.0)
+            } else {
+                0.0
+            };
+            if !was_open && point.open() {
+                events.push((before, c, Happening::Opens));
+            }
+            if was_hit || !point.active.is_empty() {
+                // What began to flow in this step began at its start.
+                if let Piece::Facet(f) = point.piece
+                    && was_hit
+                {
+                    let what = match facets[f].mode {
+                        FacetMode::Sliding if facets[f].flow[1] > 0.0 => Some(Happening::SlipsBackward),
+                        FacetMode::Sliding => Some(Happening::SlipsForward),
+                        FacetMode::Crushing => Some(Happening::Crushes),
+                        FacetMode::Opening => None,
+                    };
+                    events.extend(what.map(|what| (before, c, what)));
+                }
+            }
+            // Facets that this direction leaves are active no more.
+            if !(point.open() && point.apex) {
+                let force = [self.x[2 * c], self.x[2 * c + 1]];
+                let had = point.active.len();
+                point.active.retain(|f| {
+                    let facet = &facets[*f];
+                    dot(facet.normal, rate) > -1e-11 * size || facet.slack(force) <= SAME
+                });
+                if had > 0 && point.active.is_empty() && !was_hit && self.events.iter().rev().any(|e| e.contact == c) {
+                    events.push((before, c, Happening::Sticks));
+                }
+            }
+        }
+        self.events.extend(events.into_iter().map(|(factor, contact, what)| PathEvent {
+            drive: self.drive,
+            factor,
+            contact,
+            what,
+        }));
+        for &(c, f) in hits {
+            let Some(facets) = &self.system.facets[c] else { continue };
+            let point = &mut self.points[c];
+            point.hit = true;
+            if f == usize::MAX {
+                point.opening = 0.0;
+                if point.apex {
+                    point.active = (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
+                }
+                point.piece = Piece::Stick;
+                self.events.push(PathEvent {
+                    drive: self.drive,
+                    factor: self.factor,
+                    contact: c,
+                    what: Happening::Closes,
+                });
+            } else {
+                if !point.active.contains(&f) {
+                    point.active.push(f);
+                }
+                let force = [self.x[2 * c], self.x[2 * c + 1]];
+                // At the apex all facets meet.
+                if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SAME) {
+                    point.active = (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
+                    point.piece = Piece::Free;
+                } else {
+                    let other = point.active.iter().copied().find(|g| *g != f);
+                    point.piece = match (point.open(), other) {
+                        (true, _) => point.opening_facet.map_or(Piece::Facet(f), |open| Piece::Corner(open, f)),
+                        (false, _) => Piece::Facet(f),
+                    };
+                }
+            }
+        }
+    }
+}
