@@ -5,7 +5,7 @@ use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 
 impl Model<'_> {
-    fn apply(&self, state: &mut State, step: &[f64], share: f64) {
+    pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
         let u = self.units;
         let points = state.force.len();
         for c in 0..points {
@@ -46,7 +46,11 @@ impl Model<'_> {
     /// Res. 21), so that regimes that flip for ever are seen. Where that fails, once more with one
     /// change at a time from the beginning.
     pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        self.iterate(start, guess.clone(), control, 8).or_else(|_| self.iterate(start, guess, control, 0))
+        let first = self.iterate(start, guess.clone(), control, 8);
+        if !self.responses.is_empty() && self.polygons.iter().all(|law| law.facets.is_empty()) {
+            return first;
+        }
+        first.or_else(|_| self.iterate(start, guess, control, 0))
     }
 
     /// Newton's method from all points open.
@@ -63,7 +67,7 @@ impl Model<'_> {
     }
 
     /// Greatest relative residual: balance and yielding against forces, gaps against motions.
-    fn error(&self, residual: &[f64], state: &State) -> f64 {
+    pub(super) fn error(&self, residual: &[f64], state: &State) -> f64 {
         let u = self.units;
         let points = state.gap.len();
         let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
@@ -113,7 +117,9 @@ impl Model<'_> {
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
         let mut last_norm = f64::INFINITY;
-        for iteration in 0..60 + (state.gap.len() as u64).min(200) {
+        // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
+        let most = if self.responses.is_empty() { 60 + (state.gap.len() as u64).min(200) } else { 25 };
+        for iteration in 0..most {
             let mut residual = self.residual(start, &state, &slopes);
             let (c, constraint) = self.constraint(start, &state, control);
             let last = residual.len() - 1;
@@ -151,6 +157,7 @@ impl Model<'_> {
             } else {
                 1.0
             };
+            let share = self.damped(start, &state, control, &step, share, norm);
             self.apply(&mut state, &step, share);
             slopes = self.slopes(&state);
             state.gap = slopes.gap.clone();
