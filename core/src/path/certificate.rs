@@ -56,6 +56,10 @@ pub fn tolerance(name: &str) -> Tolerance {
     TOLERANCES.iter().copied().find(|t| t.name == name).unwrap_or(free)
 }
 
+/// Share of the greatest forces of a path below which forces are not compared with themselves: a structure
+/// that has come apart carries rounding.
+const NOTHING: f64 = 1e-6;
+
 /// Watches a path and keeps the worst of each residual.
 #[derive(Debug, Default)]
 pub struct Watch {
@@ -70,6 +74,7 @@ pub struct Watch {
     pub finite: bool,
     last: Option<(usize, f64)>,
     memory: Option<Vec<f64>>,
+    greatest: f64,
 }
 
 impl Watch {
@@ -105,6 +110,9 @@ impl Watch {
             }
             size += force[0].hypot(force[1]);
         }
+        // Where everything has come apart the forces are rounding of what they were.
+        self.greatest = self.greatest.max(size);
+        let size = size.max(NOTHING * self.greatest);
         let mut deformation = state.gap.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
         for motion in &state.motion {
             deformation = deformation.max(motion[0].abs()).max(motion[1].abs());
@@ -144,7 +152,7 @@ impl Watch {
         }
         // The history is that of the states seen, where all of them were.
         let before = self.memory.as_deref().unwrap_or(&state.memory);
-        if let Some((worst, after)) = problem.law_residual(state, before, deformation, self.finite) {
+        if let Some((worst, after)) = problem.law_residual(state, before, deformation, self.finite, NOTHING * self.greatest) {
             self.note("path_law", worst);
             self.memory = Some(after);
         }

@@ -97,13 +97,15 @@ impl PathProblem {
     /// How far forces are from what laws of tractions from gaps give, relative to the greatest contact
     /// force, and the laws' states afterwards. `None` where there is no such law. Granted is the rounding
     /// of a gap, a difference of displacements (of positions, where they are `finite`), times the
-    /// law's stiffness. A `before` that does not fit is that of untouched joints.
+    /// law's stiffness. `least` is the least force \[N\] that anything is
+    /// compared with. A `before` that does not fit is that of untouched joints.
     pub fn law_residual(
         &self,
         state: &PathState,
         before: &[f64],
         deformation: f64,
         finite: bool,
+        least: f64,
     ) -> Option<(f64, Vec<f64>)> {
         let size = self.memory_size();
         if !(0..self.contacts.len()).any(|c| self.response(c).is_some()) {
@@ -114,7 +116,7 @@ impl PathProblem {
         let Some((points, after)) = self.updated(&state.gap, before) else { return Some((f64::INFINITY, untouched)) };
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
         let rounding = f64::EPSILON * if finite { 512.0 * self.length } else { 64.0 * deformation };
-        let mut scale = largest;
+        let mut scale = largest.max(least);
         let mut worst: f64 = 0.0;
         for (contact, point) in points {
             let area = self.contacts[contact].area;

@@ -64,6 +64,7 @@ voussoir_core::inventory::submit! {
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",
             "Crisfield 1981, Computers & Structures 13, 55-62",
             "Wriggers 2006, Computational Contact Mechanics, Springer",
+            "de Borst 1987, Computers & Structures 25, 211-224",
             "Judice & Pires 1994, Computers & Operations Research 21, 587-596",
         ],
         file: file!(),

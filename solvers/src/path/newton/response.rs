@@ -251,14 +251,23 @@ impl Model<'_> {
         })
     }
 
-    /// Control of the gaps of the points that a rate softens, along that rate: monotone through the
-    /// sharpest snap-back, where the length of the path is not. `None` where nothing softens.
-    pub fn local_control(&mut self, state: &State, ahead: &State, rate: &Rate) -> Option<Local> {
+    /// Controls of the gaps of the points that a rate softens, along that rate: monotone through the
+    /// sharpest snap-back, where the length of the path is not. First all of them, then those alone
+    /// that begin to. Empty where nothing softens.
+    pub fn local_controls(&mut self, state: &State, ahead: &State, rate: &Rate) -> Vec<Local> {
         let mut moved = ahead.clone();
-        self.respond(state, &mut moved).ok()?;
+        if self.respond(state, &mut moved).is_err() {
+            return Vec::new();
+        }
         let dissipates = |c: &usize| moved.answers.points[*c].dissipated > 0.0;
         let active: Vec<usize> = self.responses.points().filter(dissipates).collect();
-        Local::along(&active, &rate.gap)
+        let begins = |c: &usize| moved.answers.points[*c].regime != state.answers.points[*c].regime;
+        let new: Vec<usize> = active.iter().copied().filter(begins).collect();
+        let mut all: Vec<Local> = Local::along(&active, &rate.gap).into_iter().collect();
+        if new.len() < active.len() {
+            all.extend(Local::along(&new, &rate.gap));
+        }
+        all
     }
 
     /// Control of the gaps of the points that dissipated in a step, 1 at its end.

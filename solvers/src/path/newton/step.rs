@@ -5,7 +5,7 @@ use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 
 impl Model<'_> {
-    fn apply(&self, state: &mut State, step: &[f64], share: f64) {
+    pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
         let u = self.units;
         let points = state.force.len();
         for c in 0..points {
@@ -52,15 +52,20 @@ impl Model<'_> {
     /// change at a time from the beginning, with small displacements and a given factor by pivoting.
     pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
         let found = self.iterate(start, guess.clone(), control, 8);
-        match (found, control) {
-            (Err(_), _) if self.finite() => self.iterate(start, guess, control, 0),
-            (Err(_), Control::Factor(factor)) => self.pivoted(start, &State { factor: *factor, ..guess }, control),
-            (found, _) => found,
+        if found.is_ok() || (!self.responses.is_empty() && self.polygons.iter().all(|law| law.facets.is_empty())) {
+            return found;
+        }
+        match control {
+            Control::Factor(factor) if !self.finite() && self.piecewise_linear() => {
+                self.pivoted(start, &State { factor: *factor, ..guess }, control)
+            }
+            _ if self.finite() || !self.piecewise_linear() => self.iterate(start, guess, control, 0),
+            _ => found,
         }
     }
 
     /// Greatest relative residual: balance and yielding against forces, gaps against motions.
-    fn error(&self, residual: &[f64], state: &State) -> f64 {
+    pub(super) fn error(&self, residual: &[f64], state: &State) -> f64 {
         let u = self.units;
         let points = state.gap.len();
         let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
@@ -110,7 +115,12 @@ impl Model<'_> {
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
         let mut last_norm = f64::INFINITY;
-        let most = if self.finite() { 60 + (state.gap.len() as u64).min(200) } else { 30 };
+        // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
+        let most = match (self.responses.is_empty(), self.finite()) {
+            (false, _) => 25,
+            (true, true) => 60 + (state.gap.len() as u64).min(200),
+            (true, false) => 30,
+        };
         for iteration in 0..most {
             let mut residual = self.residual(start, &state, &slopes);
             let (c, constraint) = self.constraint(start, &state, control);
@@ -149,6 +159,7 @@ impl Model<'_> {
             } else {
                 1.0
             };
+            let share = self.damped(start, &state, control, &step, share, norm);
             self.apply(&mut state, &step, share);
             slopes = self.slopes(&state);
             state.gap = slopes.gap.clone();

@@ -682,7 +682,7 @@ impl<'a> Tracer<'a, '_> {
             }
         }
         along += (next.factor - self.state.factor) * rate.factor / (u.factor * u.factor);
-        if along <= 0.0 && !self.model.response_yields(next) {
+        if along <= 0.0 {
             return no("the step turned back");
         }
         // Friction that is not associated: several states may belong to one load. A state far from
@@ -818,6 +818,7 @@ impl<'a> Tracer<'a, '_> {
         if !self.model.responses_go_on(&self.state, rate) {
             return false;
         }
+        self.forget_lower_peak(direction);
         if still {
             self.motion = self.scaled_motion(&self.state, rate);
             if self.motion.is_none() {
@@ -857,6 +858,9 @@ impl<'a> Tracer<'a, '_> {
             }
             return false;
         };
+        if !self.model.responses.is_empty() && (factor - peak.factor) * direction > 0.0 {
+            return false;
+        }
         let behind = (displacement - peak.state.displacement).abs();
         let (stop_displacement, stop_factor) = (self.settings.stop_displacement, self.settings.stop_factor);
         let done = match (stop_displacement, stop_factor) {
