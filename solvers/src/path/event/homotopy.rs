@@ -109,8 +109,9 @@ impl Law {
 }
 
 impl RateProblem<'_> {
-    /// Pieces near a solution with the sense `factor` of λ, by the path from the guess of a number.
-    pub(super) fn followed(&self, factor: f64, number: u64, counters: &mut u64) -> Option<Vec<Piece>> {
+    /// Pieces near a solution with the sense `factor` of λ, and its ġ, by the path from the guess of a
+    /// number.
+    pub(super) fn followed(&self, factor: f64, number: u64, counters: &mut u64) -> Option<(Vec<Piece>, Vec<[f64; 2]>)> {
         let n = 2 * self.points.len();
         let laws: Vec<Law> = self.points.iter().map(Law::new).collect();
         let unit: Vec<f64> = (0..n).map(|i| self.points[i / 2].stiffness.sqrt()).collect();
@@ -172,7 +173,7 @@ impl RateProblem<'_> {
         let mut updates = 0;
         let (mut t, mut sense) = (0.0, 1.0);
         let mut entered: Option<(usize, usize)> = None;
-        for _ in 0..200 + 30 * n {
+        for _ in 0..200 + 4 * n {
             *counters += 1;
             let mut by = inverse.as_ref().filter(|_| updates <= FRESH).map(|inverse| inverse * &right);
             let wrong = |x: &DVector<f64>| {
@@ -218,7 +219,9 @@ impl RateProblem<'_> {
                 gap += &gap_rate * along;
                 t += along;
                 if rest <= step {
-                    return Some(laws.iter().zip(&cells).map(|(law, cell)| law.piece(*cell)).collect());
+                    let pieces = laws.iter().zip(&cells).map(|(law, cell)| law.piece(*cell)).collect();
+                    let gaps = (0..laws.len()).map(|k| [0, 1].map(|i| gap[2 * k + i] / unit[2 * k + i]));
+                    return Some((pieces, gaps.collect()));
                 }
                 if t < LOST {
                     return None;

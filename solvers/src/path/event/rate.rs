@@ -223,10 +223,10 @@ const COMBINATIONS: usize = 140_000;
 /// Combinations up to which all are tried at once.
 const FEW: usize = 3000;
 /// Points up to which a rate problem is searched for other solutions, and guesses for that.
-const EXAMINED: usize = 16;
-const EXAMINATIONS: u64 = 2;
+const EXAMINED: usize = 12;
+const EXAMINATIONS: u64 = 1;
 /// Guesses from which a piecewise linear path is followed.
-const STARTS: u64 = 12;
+const STARTS: u64 = 8;
 
 /// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
 #[derive(Debug)]
@@ -532,13 +532,13 @@ impl RateProblem<'_> {
     }
 
     /// By the piecewise linear path, from several guesses.
-    fn by_homotopy(&self, counters: &mut u64) -> Option<Rate> {
-        for number in 0..STARTS {
-            let Some(pieces) = self.followed(1.0, number, counters) else { continue };
+    fn by_homotopy(&self, starts: u64, counters: &mut u64) -> Option<Rate> {
+        for number in 0..starts {
+            let Some((pieces, gaps)) = self.followed(1.0, number, counters) else { continue };
             if let Some(rate) = self.corrected(pieces.clone(), counters) {
                 return Some(rate);
             }
-            if let Some(rate) = self.mechanism(&pieces) {
+            if let Some(rate) = self.mechanism(&pieces, &gaps) {
                 return Some(rate);
             }
         }
@@ -549,7 +549,7 @@ impl RateProblem<'_> {
     fn others(&self, rate: &Rate, counters: &mut u64) -> usize {
         let mut found = vec![rate.clone()];
         for number in 1..=EXAMINATIONS {
-            let Some(pieces) = self.followed(1.0, number, counters) else { continue };
+            let Some((pieces, _)) = self.followed(1.0, number, counters) else { continue };
             let Some(other) = self.corrected(pieces, counters) else { continue };
             let size = other.gaps.iter().flatten().fold(1e-300, |a: f64, g| a.max(g.abs()));
             let same = |known: &Rate| {
@@ -563,17 +563,25 @@ impl RateProblem<'_> {
         found.len() - 1
     }
 
-    /// A motion without forces in which every point keeps its piece.
-    fn mechanism(&self, pieces: &[Piece]) -> Option<Rate> {
+    /// A motion without forces in which every point keeps its piece, close to a given one.
+    fn mechanism(&self, pieces: &[Piece], gaps: &[[f64; 2]]) -> Option<Rate> {
         let (flows, matrix) = self.system(pieces);
         let n = flows.len();
         if n == 0 {
             return None;
         }
-        // Inverse iteration: the vector that the matrix makes least.
+        // Inverse iteration: what the matrix makes nothing of the given motion.
         let shifted = &matrix + DMatrix::identity(n, n) * (1e-12 * matrix.amax().max(1e-300));
         let lu = shifted.lu();
-        let mut v = DVector::from_fn(n, |i, _| 1.0 + 0.3 * ((i * 37 % 11) as f64 / 11.0 - 0.5));
+        let points = self.points.iter().zip(pieces).zip(gaps);
+        let unknowns = points.flat_map(|((point, piece), gap)| {
+            let unit = point.stiffness.sqrt();
+            point.unknowns(*piece, *gap).into_iter().map(move |v| v * unit)
+        });
+        let mut v = DVector::from_vec(unknowns.collect::<Vec<f64>>());
+        if v.len() != n || v.amax() == 0.0 {
+            return None;
+        }
         for _ in 0..4 {
             v = lu.solve(&v)?;
             let size = v.amax();
@@ -608,8 +616,8 @@ impl RateProblem<'_> {
             };
             return Verdict::Found(rate, others);
         }
-        if combinations > FEW
-            && let Some(rate) = self.by_homotopy(counters)
+        if (FEW..=COMBINATIONS).contains(&combinations)
+            && let Some(rate) = self.by_homotopy(2, counters)
         {
             return Verdict::Found(rate, None);
         }
@@ -622,6 +630,9 @@ impl RateProblem<'_> {
                 }
                 Some(Pivoted::Ray(rate)) => return Verdict::Found(rate, None),
                 None => {}
+            }
+            if let Some(rate) = self.by_homotopy(STARTS, counters) {
+                return Verdict::Found(rate, None);
             }
             if let Some(rate) = self.turned_from_associated(counters) {
                 return Verdict::Found(rate, None);
