@@ -257,7 +257,7 @@ voussoir_core::inventory::submit! {
             Parameter::number("uniaxial_strength", Quantity::Stress, Range::POSITIVE, "strength in uniaxial compression, which sets a constant p_b").optional("hardening is given"),
             Parameter::number("initial_compaction", Quantity::Ratio, Range::ANY, "compaction of the undeformed material, where the table is entered").default("0.0"),
         ],
-        provides: &[Capability::StressUpdate],
+        provides: &[Capability::StressUpdate, Capability::RigidLimit],
         requires: &[],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",

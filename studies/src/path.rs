@@ -21,6 +21,8 @@ pub const TOLERANCES: &[(&str, f64)] = &[
     ("path_penetration", 1e-8),
     ("path_complementarity", 1e-8),
     ("path_dissipation", 1e-8),
+    ("path_inner_equilibrium", 1e-8),
+    ("path_yield", 1e-8),
 ];
 
 /// Answers a case along its path.
@@ -116,6 +118,8 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
     let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, FlowReading::Own));
+    let crushing = crate::yielded::crushing(assembly, problem, &solved.state.yielded);
+    let mechanism = mechanism.map(|mechanism| mechanism.with_crushing(assembly, crushing));
     let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
     let mut stages: Vec<StageResult> = question.stages[..stage]
         .iter()
@@ -193,6 +197,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         stages,
         events,
         curve: Some(watch.curve),
+        yielded: crate::yielded::entries(assembly, problem, &solved.state),
         notes,
         ..stalled(String::new())
     }
@@ -243,6 +248,7 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     let factor = result.field_factor.ok_or("no factor of the field")?;
     let mut state = PathState { drive, factor, force, motion, ..PathState::default() };
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
+    state.yielded = crate::yielded::read(assembly, &problem, &result.yielded)?;
     let mut watch = Watch::new(finite);
     if !finite {
         let mut gaps = state.gap.clone();
@@ -277,6 +283,8 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         }
         let found =
             mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique), FlowReading::Own);
+        let crushing = crate::yielded::crushing(assembly, &problem, &state.yielded);
+        let found = found.map(|mechanism| mechanism.with_crushing(assembly, crushing));
         let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }

@@ -109,6 +109,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
         points: if flexible { vec![Vec2::zeros()] } else { Vec::new() },
         flexibility: flexible.then(|| flexibility.clone()),
         gravity: flexible.then(|| Arc::new(nalgebra::DMatrix::zeros(2, 2))),
+        inelastic: None,
     };
     let drive = |(stage, (force, end)): (usize, &([f64; 2], DriveEnd))| Drive {
         stage,

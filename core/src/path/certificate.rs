@@ -7,6 +7,11 @@
 //! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
 //! - `path_complementarity`: greatest force × gap of open contact points, relative to both;
 //! - `path_dissipation`: energy that friction would have created, relative to the work;
+//! - `path_inner_equilibrium`: of blocks whose material yields, forces on the nodes that stresses leave,
+//!   relative to the sum of the forces on the block; stresses are those that the law itself gives at the
+//!   recorded displacements and history;
+//! - `path_yield`: how much the law would still change that history, relative to the greatest strain: 0
+//!   where no stress lies beyond the yield surface (a block recorded as elastic yields nowhere);
 //! - `path_energy`: |work − stored − dissipated|, relative to the work.
 
 use super::{ContactLaw, PathObserver, PathProblem, PathState};
@@ -75,6 +80,7 @@ impl Watch {
                 self.note("path_kinematics", (g[0] - own[0]).abs().max((g[1] - own[1]).abs()) / deformation);
             }
         }
+        self.check_blocks(problem, state);
         let force_scale = largest.max(1e-300);
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
             let ContactLaw::Law(law) = contact.law else {
@@ -103,6 +109,31 @@ impl Watch {
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
         self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
         self.last = Some((state.drive, state.dissipated));
+    }
+}
+
+impl Watch {
+    /// Checks the blocks whose material yields.
+    fn check_blocks(&mut self, problem: &PathProblem, state: &PathState) {
+        if !problem.yields() {
+            return;
+        }
+        let forces = problem.forces_on_points(state, self.finite);
+        for (index, (body, forces)) in problem.bodies.iter().zip(&forces).enumerate() {
+            let Some(inelastic) = &body.inelastic else { continue };
+            let flat: Vec<f64> = forces.iter().flat_map(|f| [f.x, f.y]).collect();
+            let size = forces.iter().map(|f| f.norm()).sum::<f64>();
+            if size == 0.0 && state.inelastic(index).is_none() {
+                continue;
+            }
+            let found = match state.inelastic(index) {
+                Some(own) => inelastic.check(&own.displacement, &own.state.history, &flat),
+                None => inelastic.check(&inelastic.elastic_displacement(&flat), &inelastic.initial().history, &flat),
+            };
+            let [unbalanced, drift] = found.unwrap_or([f64::NAN; 2]);
+            self.note("path_inner_equilibrium", unbalanced / size.max(1e-300));
+            self.note("path_yield", drift);
+        }
     }
 }
 

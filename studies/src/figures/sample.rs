@@ -122,6 +122,7 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
         events: Vec::new(),
         curve: None,
         displacements: None,
+        yielded: Vec::new(),
         stages: vec![StageResult { name: "live".into(), status, factor: None, hinges: vec![] }],
     }
 }

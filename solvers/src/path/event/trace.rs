@@ -740,6 +740,7 @@ impl<'a> Tracer<'a> {
             work: self.work,
             displacement: self.displacement(),
             force,
+            yielded: Vec::new(),
         }
     }
 

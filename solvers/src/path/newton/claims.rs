@@ -15,12 +15,14 @@ use voussoir_core::path::certificate::{Watch, flow_residual};
 use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem};
 
 /// Residuals above which a field proves nothing.
-const FIELD: [(&str, f64); 5] = [
+const FIELD: [(&str, f64); 7] = [
     ("path_equilibrium", 1e-8),
     ("path_kinematics", 1e-7),
     ("path_strength", 1e-8),
     ("path_penetration", 1e-7),
     ("path_complementarity", 1e-7),
+    ("path_inner_equilibrium", 1e-8),
+    ("path_yield", 1e-8),
 ];
 
 /// How far a mechanism may leave the laws' flow, and a ray its equations, relative to their size.
@@ -61,7 +63,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let parts = problem.drives.iter().zip(applied);
     let load: f64 = parts.map(|(d, factor)| (factor * super::model::load_size(problem, &d.loading)).abs()).sum();
     for (name, bound) in FIELD {
-        if still && !matches!(name, "path_equilibrium" | "path_strength") {
+        if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;
         }
         // Where everything is open the forces are rounding of the loads.

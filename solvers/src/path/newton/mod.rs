@@ -2,6 +2,7 @@
 #![doc = include_str!("newton_path.md")]
 
 mod claims;
+mod inelastic;
 mod kinematics;
 mod law;
 mod ledger;
@@ -51,10 +52,10 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::PathSolver,
         tag: "newton_path",
-        summary: "steps by semismooth Newton: any facets, small or finite displacements, peaks and falling branches",
+        summary: "steps by semismooth Newton: any facets, blocks that yield, small or finite displacements, peaks and falling branches",
         parameters: &[],
         provides: &[Capability::FiniteDisplacements, Capability::Settlement],
-        requires: &[Capability::Facets, Capability::Linear],
+        requires: &[Capability::Facets],
         sources: &[
             "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",

@@ -96,8 +96,10 @@ impl Model<'_> {
         let mut motion = std::mem::take(&mut state.motion);
         self.settle(&mut motion, factor);
         state.motion = motion;
+        self.deform(&mut state)?;
         let mut slopes = self.slopes(&state);
         state.gap = slopes.gap.clone();
+        self.residuals.clear();
         let rounding = 400.0 * f64::EPSILON * self.units.length / self.units.displacement;
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
@@ -108,7 +110,8 @@ impl Model<'_> {
             let (c, constraint) = self.constraint(start, &state, control);
             let last = residual.len() - 1;
             residual[last] = c;
-            let norm = self.error(&residual, &state);
+            let norm = self.error(&residual, &state).max(self.inner_error(&state));
+            self.residuals.push(norm);
             if !norm.is_finite() {
                 return Err(Refusal { why: "an iteration left the numbers".into(), restless });
             }
@@ -142,6 +145,7 @@ impl Model<'_> {
                 1.0
             };
             self.apply(&mut state, &step, share);
+            self.deform(&mut state)?;
             slopes = self.slopes(&state);
             state.gap = slopes.gap.clone();
             let wanted = self.wanted(start, &state);
@@ -216,6 +220,7 @@ impl Model<'_> {
             gap: vec![[0.0; 2]; state.gap.len()],
             regime: Vec::new(),
             slip: Vec::new(),
+            blocks: Vec::new(),
         };
         self.apply(&mut zero, &x, 1.0);
         let factor = zero.factor;

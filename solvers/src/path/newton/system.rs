@@ -68,6 +68,7 @@ impl Model<'_> {
                     }
                 }
             }
+            self.add_plastic_work(&mut row, state, by.dissipation / energy);
         }
         if by.displacement != 0.0 {
             let loading = self.loaded.growing;

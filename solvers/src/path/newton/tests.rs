@@ -24,7 +24,16 @@ fn body(pole: Vec2, points: Vec<Vec2>, flexibility: Option<DMatrix<f64>>, held: 
     let rows = 2 * points.len();
     let gravity =
         flexibility.as_ref().map(|_| Arc::new(DMatrix::from_fn(rows, 2, |i, j| 1e-3 * ((3 * i + 5 * j) as f64).sin())));
-    PathBody { members: vec![0], pole, held, mass: 2.0, points, flexibility: flexibility.map(Arc::new), gravity }
+    PathBody {
+        members: vec![0],
+        pole,
+        held,
+        mass: 2.0,
+        points,
+        flexibility: flexibility.map(Arc::new),
+        gravity,
+        inelastic: None,
+    }
 }
 
 /// A symmetric positive definite matrix of plausible entries.
@@ -97,14 +106,14 @@ fn the_tangent_is_the_derivative() {
         let factor = 0.7;
         settle(&mut motion, factor);
         let flat = |force: &[[f64; 2]], motion: &[[f64; 3]], factor: f64| {
-            let s = kinematics.slopes(force, motion, &Loads { parts: vec![(factor, loading)] });
+            let s = kinematics.slopes(force, motion, &Loads { parts: vec![(factor, loading)] }, &[]);
             let mut all: Vec<f64> = s.gap.iter().flatten().copied().collect();
             all.extend(s.balance.iter().flatten());
             all
         };
         let loads = Loads { parts: vec![(factor, loading)] };
-        let slopes = kinematics.slopes(&force, &motion, &loads);
-        let curvature = kinematics.curvature(&force, &motion, &loads, &slopes);
+        let slopes = kinematics.slopes(&force, &motion, &loads, &[]);
+        let curvature = kinematics.curvature(&force, &motion, &loads, &slopes, &[]);
         let size = 6 + 12;
         let mut dense = DMatrix::zeros(size, size);
         for &(i, j, value) in &curvature.entries {
@@ -150,7 +159,7 @@ fn gaps_are_objective() {
     let (force, motion) = some_state();
     let loading = problem.drives[0].loading.clone();
     let kinematics = Kinematics::new(&problem, true);
-    let before = kinematics.slopes(&force, &motion, &Loads { parts: vec![(1.0, &loading)] });
+    let before = kinematics.slopes(&force, &motion, &Loads { parts: vec![(1.0, &loading)] }, &[]);
     for angle in [1.0, 3.0, 40.0] {
         let turn = Rotation2::new(angle);
         let turned: Vec<[f64; 3]> = motion
@@ -164,7 +173,7 @@ fn gaps_are_objective() {
         let mut load = loading.clone();
         load.acceleration = turn * load.acceleration;
         load.forces.iter_mut().for_each(|f| f.3 = turn * f.3);
-        let after = kinematics.slopes(&force, &turned, &Loads { parts: vec![(1.0, &load)] });
+        let after = kinematics.slopes(&force, &turned, &Loads { parts: vec![(1.0, &load)] }, &[]);
         for (a, b) in after.gap.iter().flatten().zip(before.gap.iter().flatten()) {
             assert!((a - b).abs() < 1e-13, "{a} {b}");
         }
@@ -192,6 +201,7 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, Drive
         points,
         flexibility: Some(Arc::new(DMatrix::from_fn(4, 4, entry))),
         gravity: None,
+        inelastic: None,
     };
     let mut ground = block.clone();
     ground.points.clear();

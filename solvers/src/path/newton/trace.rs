@@ -259,6 +259,7 @@ impl<'a> Tracer<'a, '_> {
                     !law.opens(next.regime[c]) && law.irreversible(next.regime[c], gap).0 != [0.0; 2]
                 })
             });
+            let slips = slips || next.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
             let far = self.model.finite() && iterations > 12;
             if !slips && !far {
                 return if self.commit(next) { Outcome::Reached } else { Outcome::Ended };
