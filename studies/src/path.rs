@@ -118,8 +118,8 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
     let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, FlowReading::Own));
-    let crushing = crate::yielded::crushing(assembly, problem, &solved.state.yielded);
-    let mechanism = mechanism.map(|mechanism| mechanism.with_crushing(assembly, crushing));
+    let yielded = &solved.state.yielded;
+    let mechanism = mechanism.map(|found| crate::yielded::with_crushing(found, assembly, problem, yielded));
     let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
     let mut stages: Vec<StageResult> = question.stages[..stage]
         .iter()
@@ -283,8 +283,7 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         }
         let found =
             mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique), FlowReading::Own);
-        let crushing = crate::yielded::crushing(assembly, &problem, &state.yielded);
-        let found = found.map(|mechanism| mechanism.with_crushing(assembly, crushing));
+        let found = found.map(|found| crate::yielded::with_crushing(found, assembly, &problem, &state.yielded));
         let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }

@@ -3,10 +3,10 @@
 
 use crate::results::YieldedEntry;
 use std::sync::Arc;
-use voussoir_core::assembly::Assembly;
+use voussoir_core::assembly::{Assembly, Bond};
 use voussoir_core::elastic::InelasticState;
-use voussoir_core::geometry::distance_to_segment;
-use voussoir_core::mechanism::Crushing;
+use voussoir_core::interface::FacetMode;
+use voussoir_core::mechanism::{Crushing, Mechanism};
 use voussoir_core::path::{PathProblem, PathState, Yielded};
 
 /// Equivalent plastic strain under compression from which a Gauss point counts as crushed: a tenth of
@@ -72,36 +72,43 @@ pub fn read(
     Ok(out)
 }
 
-/// Joints next to which blocks have crushed: within an element's size of them, some Gauss point has an
-/// equivalent plastic strain under compression above [`CRUSHED`]. The share of the height is that
-/// between the outermost such points, with half a spacing of points added at both.
+/// Joints next to which blocks have crushed, with the share of the height: in the elements along the
+/// joint, the rows of Gauss points of which some has an equivalent plastic strain under compression
+/// above [`CRUSHED`]; of the two blocks the one that has crushed more.
 pub fn crushing(assembly: &Assembly, problem: &PathProblem, yielded: &[Option<Yielded>]) -> Vec<Crushing> {
     let mut found = Vec::new();
     for (index, joint) in assembly.joints.iter().enumerate() {
-        let height = joint.height();
-        let mut places: Vec<f64> = Vec::new();
-        let mut spacing: f64 = 0.0;
+        let mut share: f64 = 0.0;
         for block in [joint.minus, joint.plus] {
             let body = problem.body_of[block];
             let (Some(inelastic), Some(Some(own))) = (&problem.bodies[body].inelastic, yielded.get(body)) else {
                 continue;
             };
-            let near = inelastic.element_size();
-            for (place, crushed) in inelastic.gauss_places().iter().zip(&own.state.crushed) {
-                if *crushed > CRUSHED && distance_to_segment(*place, joint.ends[0], joint.ends[1]) <= near {
-                    let along = joint.ends[1] - joint.ends[0];
-                    places.push((place - joint.ends[0]).dot(&along) / (height * height));
-                    spacing = spacing.max(near / (assembly.mesh.order + 1) as f64 / height);
-                }
-            }
+            let rows = inelastic.rows_along(joint.ends[0], joint.ends[1]);
+            let crushed = rows.iter().filter(|(_, points)| points.iter().any(|i| own.state.crushed[*i] > CRUSHED));
+            share = share.max(crushed.map(|(length, _)| length).sum::<f64>() / joint.height());
         }
-        if places.is_empty() {
-            continue;
+        if share > 0.0 {
+            let between = [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
+            found.push(Crushing { joint: index, between, share: share.min(1.0) });
         }
-        let (low, high) = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-        let share = ((high + spacing / 2.0).min(1.0) - (low - spacing / 2.0).max(0.0)).clamp(0.0, 1.0);
-        let between = [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
-        found.push(Crushing { joint: index, between, share });
     }
     found
+}
+
+/// The mechanism of a path, with the joints next to which blocks have crushed. Where blocks yield, the rates
+/// of their rigid motions overlap because they deform: only a law that crushes itself counts besides.
+pub fn with_crushing(
+    mut mechanism: Mechanism,
+    assembly: &Assembly,
+    problem: &PathProblem,
+    yielded: &[Option<Yielded>],
+) -> Mechanism {
+    if problem.yields() {
+        mechanism.crushing.retain(|crushing| match assembly.joints[crushing.joint].bond {
+            Bond::Law(law) => problem.facets[law].iter().any(|facet| facet.mode == FacetMode::Crushing),
+            Bond::Bonded => false,
+        });
+    }
+    mechanism.with_crushing(assembly, crushing(assembly, problem, yielded))
 }

@@ -168,17 +168,30 @@ impl InelasticBody {
         self.update.state_size()
     }
 
-    /// Places of the Gauss points \[m\], undeformed.
-    pub fn gauss_places(&self) -> Vec<Vec2> {
-        let mut places = Vec::with_capacity(self.gauss_points());
+    /// Rows of Gauss points of the elements with a side between two points \[m\], from that side
+    /// inwards: the length along the side that each stands for \[m\], and its points.
+    pub fn rows_along(&self, from: Vec2, to: Vec2) -> Vec<(f64, Vec<usize>)> {
+        let mut rows = Vec::new();
+        let (points, n) = (&self.shape.reference.points, self.shape.reference.order + 1);
+        let place = |local: Vec2| self.origin + self.rotation * local * self.size;
         for element in 0..self.shape.mesh.elements.len() {
-            let corners = self.shape.mesh.corners(element);
-            for point in &self.shape.reference.points {
-                let (place, _) = super::element::bilinear(&corners, point.place);
-                places.push(self.origin + self.rotation * place * self.size);
+            let corners = self.shape.mesh.corners(element).map(place);
+            for side in 0..4 {
+                let (a, b) = (corners[side], corners[(side + 1) % 4]);
+                let off = |p: Vec2| crate::geometry::distance_to_segment(p, from, to);
+                if off(a).max(off(b)) > 1e-7 * self.size {
+                    continue;
+                }
+                // Point (i, j) is the one at i + n j; sides 0 and 2 run along i.
+                let rule: f64 = points[..n].iter().map(|p| p.weight).sum();
+                for row in 0..n {
+                    let inwards = (0..n).map(|k| if side % 2 == 0 { row + n * k } else { k + n * row });
+                    let share = points[row].weight / rule;
+                    rows.push(((b - a).norm() * share, inwards.map(|k| element * n * n + k).collect()));
+                }
             }
         }
-        places
+        rows
     }
 
     /// The state of the undeformed body.
@@ -521,12 +534,6 @@ impl InelasticBody {
         let recovered = Recovered::with(mesh, local, stress, element_stress);
         let placed = recovered.placed(self.origin, self.rotation, self.size, 1.0, [0.0; 3]);
         Ok((placed, [across, element_across]))
-    }
-
-    /// Mean √area of the elements \[m\].
-    pub fn element_size(&self) -> f64 {
-        let lengths = &self.strains.lengths;
-        lengths.iter().sum::<f64>() / lengths.len() as f64 * self.size
     }
 
     /// Mean over each element of a value of its Gauss points.
