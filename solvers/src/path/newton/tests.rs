@@ -569,7 +569,8 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         law: ContactLaw::Bonded,
         compliance: [0.0; 2],
     });
-    let loading = Loading { forces: vec![(1, Some(3), Vec2::new(1.0, 1.0), Vec2::new(3e5, -4e5))], ..Loading::default() };
+    let loading =
+        Loading { forces: vec![(1, Some(3), Vec2::new(1.0, 1.0), Vec2::new(3e5, -4e5))], ..Loading::default() };
     let drive = Drive { stage: 0, gravity: false, loading: loading.clone(), start: 0.0, end: DriveEnd::Factor(1.0) };
     let problem = PathProblem {
         bodies: vec![ground, block],

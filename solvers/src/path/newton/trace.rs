@@ -673,8 +673,9 @@ impl<'a> Tracer<'a, '_> {
             }
             return true;
         }
-        // What strengths bound is no ray: the facets have been looked at above with the ray's forces.
-        if target.is_infinite() && factor > 1e-9 * (motion + force) {
+        // What strengths bound is no ray: the facets have been looked at above with the ray's forces, and no
+        // block that may yield carries any load.
+        if target.is_infinite() && !self.model.problem.yields() && factor > 1e-9 * (motion + force) {
             self.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
             self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Unbounded }, String::new());
             if self.peak.is_some() {
