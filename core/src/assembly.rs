@@ -1,6 +1,6 @@
 //! The model: bodies, joints, loads and stages, before any solver sees them.
 
-use crate::elastic::MeshDensity;
+use crate::elastic::{MeshDensity, largest_element};
 use crate::geometry::{Vec2, area_and_centroid, bounding_box, cross, turned};
 use crate::interface::InterfaceLaw;
 use crate::material::{BulkMaterial, Deformability};
@@ -195,6 +195,28 @@ impl Assembly {
     /// Whether a body's material is rigid.
     pub fn is_rigid(&self, body: usize) -> bool {
         self.catalogue.materials[self.bodies[body].material].1.deformability() == Deformability::Rigid
+    }
+
+    /// Whether a body's material yields.
+    pub fn yields(&self, body: usize) -> bool {
+        let material = &self.catalogue.materials[self.bodies[body].material].1;
+        matches!(material.deformability(), Deformability::Inelastic { .. })
+    }
+
+    /// Whether the elements of a body are small enough for its material to soften without snapping
+    /// back inside an element; the error names sizes and what to change.
+    pub fn fine_enough(&self, body: usize) -> Result<(), String> {
+        let (name, material) = &self.catalogue.materials[self.bodies[body].material];
+        let Some(update) = material.stress_update().filter(|_| self.yields(body)) else { return Ok(()) };
+        let (most, own) = (update.largest_length(), largest_element(&self.bodies[body].vertices, &self.mesh)?);
+        if own <= most {
+            return Ok(());
+        }
+        Err(format!(
+            "elements of \"{}\" have the size √area = {own:.4e} m; material \"{name}\" softens too steeply for more than \
+             {most:.4e} m: use more elements, or raise its fracture energy",
+            self.bodies[body].name
+        ))
     }
 
     /// Whether some free block deforms or some joint is compliant.

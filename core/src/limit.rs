@@ -9,7 +9,6 @@
 use crate::assembly::{Assembly, StageLoads, Wrenches};
 use crate::geometry::{Vec2, cross};
 use crate::interface::is_associated;
-use crate::material::Deformability;
 use crate::strength::{JointStrength, integrate};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -79,12 +78,6 @@ impl LimitProblem {
     /// Reduces an assembly: bonded bodies become one, held ones the ground, joints inside a group
     /// vanish. An error names the law that limit analysis cannot read.
     pub fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
-        for body in &assembly.bodies {
-            let (name, material) = &assembly.catalogue.materials[body.material];
-            if matches!(material.deformability(), Deformability::Inelastic { .. }) {
-                return Err(format!("material \"{name}\" yields: limit analysis of rigid blocks cannot read it"));
-            }
-        }
         let (group_of, groups) = assembly.rigid_groups();
         let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
         let (low, high) = crate::geometry::bounding_box(points);

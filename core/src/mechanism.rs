@@ -62,7 +62,7 @@ pub struct Sliding {
     pub slip: f64,
 }
 
-/// A joint of which more than half the height crushes.
+/// A joint that crushes: its own law over more than half the height, or blocks next to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Crushing {
     /// Index of the joint.
@@ -86,7 +86,8 @@ pub struct Mechanism {
     pub hinges: Vec<Hinge>,
     /// Every sliding joint.
     pub sliding: Vec<Sliding>,
-    /// Every joint that crushes over more than half its height.
+    /// Every joint that crushes over more than half its height, and every joint next to which a block
+    /// of a material that yields has crushed.
     pub crushing: Vec<Crushing>,
 }
 
@@ -188,19 +189,40 @@ pub fn mechanism(
             found.hinges.push(Hinge { joint: index, between: between(), side, point: point.into(), rotation });
         }
     }
-    let crushes = |joint: usize| found.crushing.iter().any(|c| c.joint == joint);
-    let hinges: Vec<&Hinge> = found.hinges.iter().filter(|hinge| !crushes(hinge.joint)).collect();
-    found.hinge_count = count_merged(assembly, &hinges);
-    found.kind = match (found.hinge_count, found.sliding.is_empty(), found.crushing.is_empty()) {
-        (0, false, true) => MechanismKind::Sliding,
-        (0, true, false) => MechanismKind::Crushing,
-        (3, true, true) => MechanismKind::ThreeHinge,
-        (4, true, true) => MechanismKind::FourHinge,
-        (5, true, true) => MechanismKind::FiveHinge,
-        (_, true, true) => MechanismKind::Rocking,
-        _ => MechanismKind::Mixed,
-    };
+    found.name_kind(assembly);
     Some(found)
+}
+
+impl Mechanism {
+    /// The mechanism with what also crushes: blocks next to these joints. A joint next to which more than
+    /// half of the height crushes is no hinge.
+    pub fn with_crushing(mut self, assembly: &Assembly, crushing: Vec<Crushing>) -> Self {
+        for new in crushing {
+            match self.crushing.iter_mut().find(|own| own.joint == new.joint) {
+                Some(own) => own.share = own.share.max(new.share),
+                None => self.crushing.push(new),
+            }
+        }
+        self.crushing.sort_by_key(|c| c.joint);
+        self.name_kind(assembly);
+        self
+    }
+
+    /// Counts hinges and names the kind.
+    fn name_kind(&mut self, assembly: &Assembly) {
+        let crushes = |joint: usize| self.crushing.iter().any(|c| c.joint == joint && c.share > 0.5);
+        let hinges: Vec<&Hinge> = self.hinges.iter().filter(|hinge| !crushes(hinge.joint)).collect();
+        self.hinge_count = count_merged(assembly, &hinges);
+        self.kind = match (self.hinge_count, self.sliding.is_empty(), self.crushing.is_empty()) {
+            (0, false, true) => MechanismKind::Sliding,
+            (0, true, false) => MechanismKind::Crushing,
+            (3, true, true) => MechanismKind::ThreeHinge,
+            (4, true, true) => MechanismKind::FourHinge,
+            (5, true, true) => MechanismKind::FiveHinge,
+            (_, true, true) => MechanismKind::Rocking,
+            _ => MechanismKind::Mixed,
+        };
+    }
 }
 
 fn contact_rays(law: &dyn InterfaceLaw, flow: FlowReading) -> Vec<[f64; 2]> {

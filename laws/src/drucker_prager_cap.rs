@@ -404,7 +404,7 @@ voussoir_core::inventory::submit! {
             Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "G_c: p_b falls as the material crushes, and a band that crushes under hydrostatic pressure takes this energy per area").optional("crushing does not soften"),
             Parameter::number("residual_ratio", Quantity::Ratio, Range::new(0.0, true, 1.0, true), "p_b of crushed over p_b of intact material, with crushing_fracture_energy").default("0.1"),
         ],
-        provides: &[Capability::StressUpdate],
+        provides: &[Capability::StressUpdate, Capability::RigidLimit],
         requires: &[],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",

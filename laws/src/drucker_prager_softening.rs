@@ -224,7 +224,7 @@ voussoir_core::inventory::submit! {
             Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy of softening in uniaxial compression per area").optional("ultimate_plastic_strain is given"),
             Parameter::number("ultimate_plastic_strain", Quantity::Ratio, Range::POSITIVE, "cumulated plastic strain at which softening ends, whatever the element size").optional("crushing_fracture_energy is given"),
         ],
-        provides: &[Capability::StressUpdate],
+        provides: &[Capability::StressUpdate, Capability::RigidLimit],
         requires: &[],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",

@@ -83,7 +83,8 @@ pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)>
             let facets =
                 assembly.joints.iter().all(|j| assembly.law(j).is_none_or(|l| l.formulation().facets().is_some()));
             let exact = question.settings.continuation.as_ref().is_none_or(|c| c.exact_events());
-            if !question.settings.finite && facets && exact {
+            let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
+            if !question.settings.finite && facets && exact && linear {
                 Some(("event_path".into(), Arc::new(EventPath {})))
             } else {
                 Some(("newton_path".into(), Arc::new(NewtonPath {})))
@@ -173,6 +174,7 @@ pub(crate) fn stalled(why: String) -> CaseResult {
         curve: None,
         displacements: None,
         joint_states: None,
+        yielded: Vec::new(),
     }
 }
 
@@ -240,6 +242,13 @@ fn solve_stage(question: &Question, stage: &Stage, problem: &LimitProblem, loads
     if (0..question.assembly.bodies.len()).any(|b| problem.group_of[b].is_some() && !question.assembly.is_rigid(b)) {
         result.notes.push(
             "blocks are read as rigid: with small displacements the limit load does not depend on their elasticity"
+                .into(),
+        );
+    }
+    if (0..question.assembly.bodies.len()).any(|b| problem.group_of[b].is_some() && question.assembly.yields(b)) {
+        result.notes.push(
+            "the material of blocks yields, which limit analysis of rigid blocks does not see: crushing counts here only \
+             where a joint has a compressive_strength; newton_path follows blocks that yield"
                 .into(),
         );
     }

@@ -28,6 +28,8 @@ pub struct DeformedBlock {
     pub cells: Vec<Vec<usize>>,
     /// Order of the elements; 0 for a rigid block.
     pub order: usize,
+    /// Mean equivalent plastic strain of each cell; empty where the block has not yielded.
+    pub plastic_strain: Vec<f64>,
     /// Greatest resultant that is left on the block, its weight included, relative to the forces on
     /// it (moments divided by the size of the scene); 0 for a rigid block.
     pub imbalance: f64,
@@ -60,7 +62,8 @@ fn end_state(problem: &PathProblem, assembly: &Assembly, result: &CaseResult) ->
     }
     let factor = result.field_factor.ok_or("no factor of the contact forces")?;
     let force = field.iter().map(|f| f.force).collect();
-    Ok(PathState { drive, factor, force, motion, ..PathState::default() })
+    let yielded = crate::yielded::read(assembly, problem, &result.yielded)?;
+    Ok(PathState { drive, factor, force, motion, yielded, ..PathState::default() })
 }
 
 /// The blocks of a case at the end of its path, or why there are none. Blocks without a shape are
@@ -101,24 +104,38 @@ pub fn deformed_blocks(
                 nodes: shape.vertices.clone(),
                 stress: Vec::new(),
                 cell_stress: Vec::new(),
+                plastic_strain: Vec::new(),
                 order: 0,
                 imbalance: 0.0,
             });
             continue;
         }
         let material = &assembly.catalogue.materials[shape.material].1;
-        let Deformability::LinearElastic { young_modulus, poisson_ratio } = material.deformability() else {
-            return Err(format!("the material of \"{}\" is not linear elastic", shape.name));
+        let (young_modulus, poisson_ratio) = match material.deformability() {
+            Deformability::LinearElastic { young_modulus, poisson_ratio }
+            | Deformability::Inelastic { young_modulus, poisson_ratio } => (young_modulus, poisson_ratio),
+            _ => return Err(format!("the material of \"{}\" does not deform", shape.name)),
         };
         let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
         let (points, own) = (&problem.bodies[body].points, &forces[body]);
         let weight = turn(-theta, gravity);
-        let recovered = condenser.recover(&shape.vertices, elastic, &assembly.mesh, points, own, weight)?;
+        let mut recovered = condenser.recover(&shape.vertices, elastic, &assembly.mesh, points, own, weight)?;
+        let (mut plastic_strain, mut yielded_across) = (Vec::new(), None);
+        if let (Some(inelastic), Some(own)) = (&problem.bodies[body].inelastic, state.inelastic(body)) {
+            let imbalance = recovered.imbalance;
+            let (found, zz) = inelastic.recover(&own.displacement, &own.state)?;
+            recovered = voussoir_core::elastic::Recovered { imbalance, ..found };
+            yielded_across = Some(zz);
+            plastic_strain = inelastic.by_element(&own.state.equivalent);
+        }
         let across = match assembly.plane {
             voussoir_core::assembly::Plane::Strain => poisson_ratio,
             voussoir_core::assembly::Plane::Stress => 0.0,
         };
-        let full = |[xx, yy, xy]: [f64; 3]| [xx, yy, across * (xx + yy), xy];
+        let full = |stress: &[[f64; 3]], own: Option<&Vec<f64>>| -> Vec<[f64; 4]> {
+            let zz = |i: usize, [xx, yy, _]: [f64; 3]| own.map_or(across * (xx + yy), |own| own[i]);
+            stress.iter().enumerate().map(|(i, s)| [s[0], s[1], zz(i, *s), s[2]]).collect()
+        };
         let [fx, fy, moment] = recovered.imbalance;
         let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * problem.bodies[body].mass;
         blocks.push(DeformedBlock {
@@ -129,11 +146,12 @@ pub fn deformed_blocks(
                 .zip(&recovered.displacement)
                 .map(|(node, u)| rigid(*node) + turn(theta, *u))
                 .collect(),
-            stress: recovered.stress.into_iter().map(full).collect(),
-            cell_stress: recovered.element_stress.into_iter().map(full).collect(),
+            stress: full(&recovered.stress, yielded_across.as_ref().map(|zz| &zz[0])),
+            cell_stress: full(&recovered.element_stress, yielded_across.as_ref().map(|zz| &zz[1])),
             nodes: recovered.nodes,
             cells: recovered.elements,
             order: recovered.order,
+            plastic_strain,
             imbalance: fx.hypot(fy).max(moment.abs() / problem.length) / size.max(f64::MIN_POSITIVE),
         });
     }

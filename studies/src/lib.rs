@@ -18,6 +18,7 @@ pub mod scenes;
 pub mod study;
 pub mod verify;
 pub mod writers;
+pub mod yielded;
 
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;

@@ -130,6 +130,8 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
     let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, FlowReading::Own));
+    let yielded = &solved.state.yielded;
+    let mechanism = mechanism.map(|found| crate::yielded::with_crushing(found, assembly, problem, yielded));
     let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
     let mut stages: Vec<StageResult> = question.stages[..stage]
         .iter()
@@ -202,6 +204,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
                 .map(|(body, displacement)| DisplacementEntry { body: name(body), displacement })
                 .collect(),
         ),
+        yielded: crate::yielded::entries(assembly, problem, &solved.state),
         joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
         certificate,
         counters,
@@ -259,6 +262,7 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     let mut state = PathState { drive, factor, force, motion, ..PathState::default() };
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
     state.memory = result.joint_states.clone().unwrap_or_default();
+    state.yielded = crate::yielded::read(assembly, &problem, &result.yielded)?;
     let mut watch = Watch::new(finite);
     if !finite {
         let mut gaps = state.gap.clone();
@@ -295,6 +299,7 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         }
         let found =
             mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique), FlowReading::Own);
+        let found = found.map(|found| crate::yielded::with_crushing(found, assembly, &problem, &state.yielded));
         let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }

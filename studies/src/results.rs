@@ -116,6 +116,22 @@ pub struct DisplacementEntry {
     pub displacement: [f64; 3],
 }
 
+/// A block whose material has yielded, at the state of the field: what `verify` needs to recompute its
+/// stresses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct YieldedEntry {
+    /// Name of the body.
+    pub body: String,
+    /// Displacements (x, y) of the nodes of its mesh relative to the mean rigid motion, in the frame of
+    /// its first edge, in units of √area.
+    pub displacement: Vec<f64>,
+    /// Gauss points that have yielded: index, cumulated equivalent plastic strain, the part of it under
+    /// compression, state of the law.
+    pub points: Vec<(usize, f64, f64, Vec<f64>)>,
+    /// Mean equivalent plastic strain of each element.
+    pub elements: Vec<f64>,
+}
+
 /// An event of a path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EventEntry {
@@ -211,4 +227,7 @@ pub struct CaseResult {
     /// that ended at `field`, contact point after contact point, from which the laws give its forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_states: Option<Vec<f64>>,
+    /// Of a path: blocks whose material has yielded at the state of `field`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub yielded: Vec<YieldedEntry>,
 }

@@ -752,6 +752,12 @@ fn choose_solver(
         }
     }
     needs_deformation(builder, resolved, assembly, chosen, kinematics);
+    if let Some(assembly) = assembly.filter(|_| chosen.is_none_or(|card| card.kind == PluginKind::PathSolver)) {
+        let free = (0..assembly.bodies.len()).filter(|body| !assembly.bodies[*body].fixed);
+        if let Some(why) = free.map(|body| assembly.fine_enough(body)).find_map(Result::err) {
+            builder.wrong("scene.mesh.elements", why, "raise the numbers of elements of scene.mesh");
+        }
+    }
     let own = |key: &str| chosen.is_some_and(|card| card.parameters.iter().any(|p| p.name == key));
     let mut table = solver.as_object()?.clone();
     table.retain(|key, _| key == "solver" || own(key));

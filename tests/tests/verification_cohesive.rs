@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 use voussoir::core::limit::Status;
-use voussoir::core::path::certificate::Watch;
-use voussoir::core::path::{
-    Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState,
-};
+use voussoir::core::path::certificate::{TOLERANCES, Tolerance, Watch};
+use voussoir::core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
     arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
 };
@@ -41,7 +39,7 @@ fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Vec<
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
     let mut states = States { watch: Watch::new(settings.finite), ..States::default() };
     let answer = NewtonPath {}.trace(&problem, settings, &mut states);
-    for (name, bound) in voussoir::path::TOLERANCES {
+    for Tolerance { name, result: bound, .. } in TOLERANCES {
         let worst = states.watch.worst.get(name).copied().unwrap_or(0.0);
         assert!(worst <= *bound, "{name} is {worst:.2e}: {:?}", answer.notes);
     }
@@ -152,7 +150,11 @@ fn a_bar_in_tension_is_its_closed_form() {
             let reached = gap.clamp(onset, end);
             let work = 0.5 * STRENGTH * onset + 0.5 * (STRENGTH + tension(reached)) * (reached - onset);
             let dissipated = area * (work - 0.5 * tension(reached) * reached);
-            assert!((state.dissipated - dissipated).abs() <= 1e-8 * area * MODE_ONE, "{} {dissipated}", state.dissipated);
+            assert!(
+                (state.dissipated - dissipated).abs() <= 1e-8 * area * MODE_ONE,
+                "{} {dissipated}",
+                state.dissipated
+            );
             softened += usize::from(stress > 0.0 && gap > onset);
             greatest = greatest.max(state.displacement);
         }
@@ -172,7 +174,11 @@ fn a_bar_is_unloaded_and_reloaded() {
     let stages: String = moves
         .iter()
         .enumerate()
-        .map(|(i, u)| format!("[[stages]]\nname = \"move {i}\"\nsettlement = [{{ support = \"c\", displacement = [{u:?}, 0.0] }}]\n"))
+        .map(|(i, u)| {
+            format!(
+                "[[stages]]\nname = \"move {i}\"\nsettlement = [{{ support = \"c\", displacement = [{u:?}, 0.0] }}]\n"
+            )
+        })
         .collect();
     let text = format!(
         r#"name = "history"
@@ -288,7 +294,12 @@ loads = [{{ kind = "point", block = "a", point = [0.0, 0.0], force = [1e3, 0.0] 
 
 /// A rigid block of 0.4 × 0.4 m on the ground, pressed by λ kN at x = 0.5 through an arm: the joint opens
 /// from the far side. `map` moves the scene, lengths are in units of `metre`.
-fn hinge(elements: usize, metre: f64, map: impl Fn([f64; 2]) -> [f64; 2], turn: impl Fn([f64; 2]) -> [f64; 2]) -> String {
+fn hinge(
+    elements: usize,
+    metre: f64,
+    map: impl Fn([f64; 2]) -> [f64; 2],
+    turn: impl Fn([f64; 2]) -> [f64; 2],
+) -> String {
     let list = |points: &[[f64; 2]]| {
         let all: Vec<String> =
             points.iter().map(|p| map(*p)).map(|p| format!("[{:?}, {:?}]", p[0] * metre, p[1] * metre)).collect();
@@ -354,7 +365,12 @@ fn an_eccentric_hinge_is_the_integral_along_its_joint() {
     for elements in [8, 16, 32] {
         let same = |p| p;
         let (_, answer, states) = traced(&hinge(elements, 1.0, same, same), &settings(ArcLength::default()));
-        assert!(matches!(answer.status, Status::LimitPoint | Status::Collapse), "{:?} {:?}", answer.status, answer.notes);
+        assert!(
+            matches!(answer.status, Status::LimitPoint | Status::Collapse),
+            "{:?} {:?}",
+            answer.status,
+            answer.notes
+        );
         let mut worst: f64 = 0.0;
         let peak = answer.factor.expect("a factor");
         for state in &states {
@@ -385,7 +401,19 @@ fn units_mirror_and_rotation_do_not_matter() {
     assert_close(peak(hinge(8, 1e3, same, same)), reference, 1e-8);
     let (sine, cosine) = 0.7f64.sin_cos();
     let turn = |p: [f64; 2]| [cosine * p[0] - sine * p[1], sine * p[0] + cosine * p[1]];
-    assert_close(peak(hinge(8, 1.0, |p| { let q = turn(p); [q[0] + 3.0, q[1] - 2.0] }, turn)), reference, 1e-8);
+    assert_close(
+        peak(hinge(
+            8,
+            1.0,
+            |p| {
+                let q = turn(p);
+                [q[0] + 3.0, q[1] - 2.0]
+            },
+            turn,
+        )),
+        reference,
+        1e-8,
+    );
     let mirror = |p: [f64; 2]| [-p[0], p[1]];
     assert_close(peak(hinge(8, 1.0, mirror, mirror)), reference, 1e-8);
 }
@@ -435,7 +463,8 @@ fn arch_of(elements: usize) -> [f64; 2] {
     let (_, answer, states) = traced(&text, &settings);
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     let at = std::env::var("AT").ok().and_then(|n| n.parse().ok()).unwrap_or(2.5e-3);
-    let pair = states.windows(2).find(|pair| pair[0].drive == 1 && pair[0].displacement < at && pair[1].displacement >= at);
+    let pair =
+        states.windows(2).find(|pair| pair[0].drive == 1 && pair[0].displacement < at && pair[1].displacement >= at);
     let [before, after] = pair.expect("a path of 2.5 mm") else { unreachable!("windows of two") };
     let share = (at - before.displacement) / (after.displacement - before.displacement);
     [answer.factor.expect("a factor"), before.dissipated + share * (after.dissipated - before.dissipated)]

@@ -111,6 +111,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
         mass: 0.0,
         points: if flexible { vec![Vec2::zeros()] } else { Vec::new() },
         flexibility: flexible.then(|| flexibility.clone()),
+        inelastic: None,
     };
     let drive = |(stage, (force, end)): (usize, &([f64; 2], DriveEnd))| Drive {
         stage,

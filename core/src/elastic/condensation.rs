@@ -4,11 +4,13 @@
 //! x along edge 0), in units of the shape's size: in plane problems the flexibility then does not
 //! depend on the size, and C = Q C̃ Qᵀ / (E width) with Q the body's rotation.
 
-use super::element::{Hooke, Reference, bilinear, inertia, stiffness};
+use super::element::{Hooke, Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
+use super::inelastic::{InelasticBody, Strains};
 use super::mesh::{Mesh, MeshDensity};
 use super::stress::{Recovered, recovered};
 use crate::assembly::Plane;
 use crate::geometry::{Vec2, area_and_centroid, bounding_box, turned};
+use crate::material::plane::PlanarUpdate;
 use crate::sparse::{Entries, Factorised};
 use nalgebra::{DMatrix, Matrix2};
 use std::collections::HashMap;
@@ -23,7 +25,7 @@ const OUTSIDE: f64 = 1e-4;
 const RESIDUAL: f64 = 1e-13;
 /// Springs that hold a free mesh: the ends of edge 0, which lies on the local x axis. They are
 /// statically determinate, so they carry nothing, whatever they are.
-const SPRINGS: [usize; 3] = [0, 1, 3];
+pub(super) const SPRINGS: [usize; 3] = [0, 1, 3];
 
 /// An isotropic, linear elastic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,11 +60,11 @@ pub struct Condensed {
 }
 
 /// A placed polygon: vertex i of the shape is `origin` + Q × local vertex × `size`.
-struct Placement {
+pub(super) struct Placement {
     local: Vec<Vec2>,
-    origin: Vec2,
-    rotation: Matrix2<f64>,
-    size: f64,
+    pub origin: Vec2,
+    pub rotation: Matrix2<f64>,
+    pub size: f64,
 }
 
 impl Placement {
@@ -94,18 +96,20 @@ fn agree(a: &[Vec2], b: &[Vec2]) -> bool {
 }
 
 /// A point's place in the mesh: nodes with their shape functions.
-type Place = Vec<(usize, f64)>;
+pub(super) type Place = Vec<(usize, f64)>;
 
 /// A mesh with its factorisation, for E = 1, width 1 and area 1, centroid at the origin.
-struct Shape {
+pub(super) struct Shape {
     vertices: Vec<Vec2>,
     /// √area \[m\].
     size: f64,
     poisson_ratio: f64,
     density: MeshDensity,
-    reference: Reference,
+    /// Whether the elements are those of strains also where others are better for linear materials.
+    of_strains: bool,
+    pub reference: Reference,
     hooke: Hooke,
-    mesh: Mesh,
+    pub mesh: Mesh,
     /// Stiffness with springs of stiffness 1 at `SPRINGS`.
     factorised: Factorised,
     /// Greatest entry of the stiffness.
@@ -116,12 +120,16 @@ struct Shape {
     rigid: DMatrix<f64>,
     /// Diagonal of Rᵀ M R: area twice, polar moment.
     masses: [f64; 3],
-    /// Flexibilities by local points.
-    condensed: Vec<(Vec<Vec2>, Arc<DMatrix<f64>>)>,
 }
 
 impl Shape {
-    fn new(placement: &Placement, nu: f64, density: &MeshDensity, plane: Plane) -> Result<Self, String> {
+    fn new(
+        placement: &Placement,
+        nu: f64,
+        density: &MeshDensity,
+        plane: Plane,
+        of_strains: bool,
+    ) -> Result<Self, String> {
         let mesh = Mesh::new(&placement.local, density)?;
         let (reference, hooke) = (Reference::new(density.order), Hooke::new(plane, nu));
         let count = mesh.nodes.len();
@@ -130,7 +138,10 @@ impl Shape {
         let mut moments = vec![(0.0, Vec2::zeros()); count];
         for (index, nodes) in mesh.elements.iter().enumerate() {
             let corners = mesh.corners(index);
-            let k = stiffness(&reference, &corners, hooke);
+            let k = match of_strains {
+                true => stiffness_of_strains(&strain_operators(&reference, &corners, plane), hooke),
+                false => stiffness(&reference, &corners, hooke),
+            };
             let row = |i: usize| 2 * nodes[i / 2] + i % 2;
             for j in 0..k.ncols() {
                 entries.extend((0..k.nrows()).map(|i| (row(i), row(j), k[(i, j)])));
@@ -155,6 +166,7 @@ impl Shape {
             size: placement.size,
             poisson_ratio: nu,
             density: *density,
+            of_strains,
             reference,
             hooke,
             mesh,
@@ -163,12 +175,12 @@ impl Shape {
             inertia,
             rigid,
             masses,
-            condensed: Vec::new(),
         })
     }
 
-    fn is(&self, placement: &Placement, nu: f64, density: &MeshDensity) -> bool {
+    fn is(&self, placement: &Placement, nu: f64, density: &MeshDensity, of_strains: bool) -> bool {
         self.poisson_ratio == nu
+            && self.of_strains == of_strains
             && self.density == *density
             && (self.size / placement.size - 1.0).abs() <= CONGRUENT
             && agree(&self.vertices, &placement.local)
@@ -207,6 +219,28 @@ impl Shape {
         points.iter().zip(asked).map(place).collect()
     }
 
+    /// P x.
+    pub fn without_rigid_motion(&self, x: &mut DMatrix<f64>) {
+        self.project(x, &self.rigid, &self.inertia);
+    }
+
+    /// Pᵀ x.
+    pub fn balanced(&self, x: &mut DMatrix<f64>) {
+        self.project(x, &self.inertia, &self.rigid);
+    }
+
+    /// Nᵀ: unit forces (x, y) at places.
+    pub fn loads_at(&self, places: &[Place]) -> DMatrix<f64> {
+        let mut loads = DMatrix::zeros(2 * self.mesh.nodes.len(), 2 * places.len());
+        for (j, place) in places.iter().enumerate() {
+            for &(node, value) in place {
+                loads[(2 * node, 2 * j)] += value;
+                loads[(2 * node + 1, 2 * j + 1)] += value;
+            }
+        }
+        loads
+    }
+
     /// Takes Bᵀ x off along A: x − A (Rᵀ M R)⁻¹ Bᵀ x. P with A = R, B = M R; Pᵀ the other way round.
     fn project(&self, x: &mut DMatrix<f64>, along: &DMatrix<f64>, seen: &DMatrix<f64>) {
         let mut motion = seen.tr_mul(x);
@@ -216,7 +250,7 @@ impl Shape {
 
     /// P K⁺ Pᵀ times each column of `loads`, refined once and checked. Residuals are taken at
     /// projected displacements: those of the held mesh may be large rigid motions, which cost digits.
-    fn displacements(&self, mut loads: DMatrix<f64>) -> Result<DMatrix<f64>, String> {
+    pub fn displacements(&self, mut loads: DMatrix<f64>) -> Result<DMatrix<f64>, String> {
         self.project(&mut loads, &self.inertia, &self.rigid);
         let solve = |mut right: DMatrix<f64>| {
             self.project(&mut right, &self.inertia, &self.rigid);
@@ -247,22 +281,52 @@ impl Shape {
     /// C̃ of points given in the shape's frame.
     fn flexibility(&self, places: &[Place]) -> Result<DMatrix<f64>, String> {
         let columns = 2 * places.len();
-        let mut loads = DMatrix::zeros(2 * self.mesh.nodes.len(), columns);
-        for (j, place) in places.iter().enumerate() {
-            for &(node, value) in place {
-                loads[(2 * node, 2 * j)] += value;
-                loads[(2 * node + 1, 2 * j + 1)] += value;
-            }
-        }
-        let all = self.displacements(loads)?;
-        let entry = |i: usize, j: usize| -> f64 {
-            places[i / 2].iter().map(|&(node, value)| value * all[(2 * node + i % 2, j)]).sum()
-        };
-        let full = DMatrix::from_fn(columns, columns, entry);
+        let full = at_places(places, &self.displacements(self.loads_at(places))?);
         // Symmetric but for rounding: the two triangles come from different solutions.
         Ok(DMatrix::from_fn(columns, columns, |i, j| 0.5 * (full[(i, j)] + full[(j, i)])))
     }
 }
+
+/// N x: rows (x, y) per place.
+pub(super) fn at_places(places: &[Place], all: &DMatrix<f64>) -> DMatrix<f64> {
+    let entry = |i: usize, j: usize| -> f64 {
+        places[i / 2].iter().map(|&(node, value)| value * all[(2 * node + i % 2, j)]).sum()
+    };
+    DMatrix::from_fn(2 * places.len(), all.ncols(), entry)
+}
+
+/// Q C̃ Qᵀ scale, block by block; exactly symmetric where C̃ is and `symmetric` says so.
+pub(super) fn placed(local: &DMatrix<f64>, q: Matrix2<f64>, scale: f64, symmetric: bool) -> DMatrix<f64> {
+    let mut turned = DMatrix::zeros(local.nrows(), local.ncols());
+    for j in 0..local.ncols() / 2 {
+        for i in 0..if symmetric { j + 1 } else { local.nrows() / 2 } {
+            let block = local.fixed_view::<2, 2>(2 * i, 2 * j);
+            let mut block = q * block * q.transpose() * scale;
+            if symmetric {
+                if i == j {
+                    block = (block + block.transpose()) / 2.0;
+                }
+                turned.fixed_view_mut::<2, 2>(2 * j, 2 * i).copy_from(&block.transpose());
+            }
+            turned.fixed_view_mut::<2, 2>(2 * i, 2 * j).copy_from(&block);
+        }
+    }
+    turned
+}
+
+/// A shape with what is known of it.
+struct Known {
+    shape: Arc<Shape>,
+    /// Flexibilities by local points.
+    condensed: Vec<(Vec<Vec2>, Arc<DMatrix<f64>>)>,
+    /// Strains at the quadrature points.
+    strains: Option<Arc<Strains>>,
+    /// Places of points and displacements of all nodes by forces there, by local points.
+    responses: Vec<(Vec<Vec2>, Response)>,
+}
+
+/// Places of points, and the elastic displacements of all nodes by forces there.
+pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
 /// Where the bilinear map of an element takes a point from, by Newton's method; `None` where it
 /// does not converge, which happens far outside only.
@@ -282,13 +346,25 @@ fn inverse(corners: &[Vec2; 4], point: Vec2) -> Option<[f64; 2]> {
     (last < 1e-9).then_some(place)
 }
 
+impl Known {
+    /// C̃ of points given in the shape's frame.
+    fn flexibility(&mut self, local: Vec<Vec2>, asked: &[Vec2]) -> Result<Arc<DMatrix<f64>>, String> {
+        if let Some((_, flexibility)) = self.condensed.iter().find(|(points, _)| agree(points, &local)) {
+            return Ok(flexibility.clone());
+        }
+        let flexibility = Arc::new(self.shape.flexibility(&self.shape.places(&local, asked)?)?);
+        self.condensed.push((local, flexibility.clone()));
+        Ok(flexibility)
+    }
+}
+
 /// Condenses bodies. Congruent shapes (equal up to translation and rotation, vertices in the same
 /// order, with the same mesh density and Poisson's ratio) share one factorisation, and one
 /// flexibility where also their points agree.
 pub struct Condenser {
     plane: Plane,
     width: f64,
-    shapes: Vec<Shape>,
+    shapes: Vec<Known>,
     /// Indices of shapes by a rounded logarithm of their area.
     by_area: HashMap<i64, Vec<usize>>,
     factorisations: u64,
@@ -306,13 +382,15 @@ impl Condenser {
     }
 
     /// The index of the shape of a body, made where there is none yet.
-    fn shape(&mut self, placement: &Placement, nu: f64, mesh: &MeshDensity) -> Result<usize, String> {
+    fn shape(&mut self, placement: &Placement, nu: f64, mesh: &MeshDensity, strains: bool) -> Result<usize, String> {
         let area = (placement.size.ln() * 1e6).floor() as i64;
         let near = (area - 1..=area + 1).filter_map(|key| self.by_area.get(&key)).flatten();
-        if let Some(&index) = near.into_iter().find(|&&index| self.shapes[index].is(placement, nu, mesh)) {
+        if let Some(&index) = near.into_iter().find(|&&index| self.shapes[index].shape.is(placement, nu, mesh, strains))
+        {
             return Ok(index);
         }
-        self.shapes.push(Shape::new(placement, nu, mesh, self.plane)?);
+        let shape = Arc::new(Shape::new(placement, nu, mesh, self.plane, strains)?);
+        self.shapes.push(Known { shape, condensed: Vec::new(), strains: None, responses: Vec::new() });
         self.factorisations += 1;
         self.by_area.entry(area).or_default().push(self.shapes.len() - 1);
         Ok(self.shapes.len() - 1)
@@ -324,6 +402,7 @@ impl Condenser {
         material: IsotropicElastic,
         mesh: &MeshDensity,
         points: &[Vec2],
+        strains: bool,
     ) -> Result<(Placement, usize, Vec<Vec2>), String> {
         material.check()?;
         mesh.check()?;
@@ -331,7 +410,7 @@ impl Condenser {
             return Err(format!("a body's width is greater than 0, not {} m", self.width));
         }
         let placement = Placement::new(vertices)?;
-        let shape = self.shape(&placement, material.poisson_ratio, mesh)?;
+        let shape = self.shape(&placement, material.poisson_ratio, mesh, strains && mesh.order == 1)?;
         let local = points.iter().map(|&p| placement.local(p)).collect();
         Ok((placement, shape, local))
     }
@@ -345,31 +424,42 @@ impl Condenser {
         mesh: &MeshDensity,
         points: &[Vec2],
     ) -> Result<Condensed, String> {
-        let (placement, index, local) = self.prepare(vertices, material, mesh, points)?;
-        let shape = &mut self.shapes[index];
-        let known = shape.condensed.iter().find(|(points, _)| agree(points, &local));
-        let flexibility = match known.map(|(_, flexibility)| flexibility.clone()) {
-            Some(flexibility) => flexibility,
+        let (placement, index, local) = self.prepare(vertices, material, mesh, points, false)?;
+        let flexibility = self.shapes[index].flexibility(local, points)?;
+        let turned = placed(&flexibility, placement.rotation, 1.0 / (material.young_modulus * self.width), true);
+        Ok(Condensed { points: points.to_vec(), flexibility: turned })
+    }
+
+    /// The same body of a material that yields: its first answer is that of [`condense`](Self::condense)
+    /// with the same elastic constants, to the last bit for elements of order 2 and 3.
+    pub fn inelastic(
+        &mut self,
+        vertices: &[Vec2],
+        material: IsotropicElastic,
+        update: Arc<PlanarUpdate>,
+        mesh: &MeshDensity,
+        points: &[Vec2],
+    ) -> Result<InelasticBody, String> {
+        let (placement, index, local) = self.prepare(vertices, material, mesh, points, true)?;
+        let (plane, width) = (self.plane, self.width);
+        let known = &mut self.shapes[index];
+        let flexibility = known.flexibility(local.clone(), points)?;
+        let scale = 1.0 / (material.young_modulus * width);
+        let flexibility = Arc::new(placed(&flexibility, placement.rotation, scale, true));
+        let strains = known.strains.get_or_insert_with(|| Arc::new(Strains::new(&known.shape, plane))).clone();
+        let response = known.responses.iter().find(|(points, _)| agree(points, &local));
+        let response = match response.map(|(_, response)| response.clone()) {
+            Some(response) => response,
             None => {
-                let flexibility = Arc::new(shape.flexibility(&shape.places(&local, points)?)?);
-                shape.condensed.push((local, flexibility.clone()));
-                flexibility
+                let places = known.shape.places(&local, points)?;
+                let all = known.shape.displacements(known.shape.loads_at(&places))?;
+                let response = (Arc::new(places), Arc::new(all));
+                known.responses.push((local, response.clone()));
+                response
             }
         };
-        let (q, scale) = (placement.rotation, 1.0 / (material.young_modulus * self.width));
-        let mut turned = DMatrix::zeros(2 * points.len(), 2 * points.len());
-        for j in 0..points.len() {
-            for i in 0..=j {
-                let block = flexibility.fixed_view::<2, 2>(2 * i, 2 * j);
-                let mut block = q * block * q.transpose() * scale;
-                if i == j {
-                    block = (block + block.transpose()) / 2.0;
-                }
-                turned.fixed_view_mut::<2, 2>(2 * i, 2 * j).copy_from(&block);
-                turned.fixed_view_mut::<2, 2>(2 * j, 2 * i).copy_from(&block.transpose());
-            }
-        }
-        Ok(Condensed { points: points.to_vec(), flexibility: turned })
+        let shape = known.shape.clone();
+        Ok(InelasticBody::new(shape, strains, response, flexibility, placement, material, update, width))
     }
 
     /// Displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform
@@ -387,8 +477,8 @@ impl Condenser {
         if points.len() != forces.len() {
             return Err(format!("{} forces act at {} points", forces.len(), points.len()));
         }
-        let (placement, index, local) = self.prepare(vertices, material, mesh, points)?;
-        let shape = &self.shapes[index];
+        let (placement, index, local) = self.prepare(vertices, material, mesh, points, false)?;
+        let shape = &self.shapes[index].shape;
         let scale = 1.0 / (material.young_modulus * self.width * placement.size);
         let to_local = placement.rotation.transpose();
         let mut loads = DMatrix::zeros(2 * shape.mesh.nodes.len(), 1);
@@ -423,7 +513,7 @@ mod tests {
         for order in 1..=3 {
             let density = MeshDensity { elements: [2, 2], order, grading: 1.0 };
             let placement = Placement::new(&outline).unwrap();
-            let shape = Shape::new(&placement, 0.25, &density, Plane::Strain).unwrap();
+            let shape = Shape::new(&placement, 0.25, &density, Plane::Strain, false).unwrap();
             let n = 2 * shape.mesh.nodes.len();
             let mut system = DMatrix::zeros(n + 3, n + 3);
             for (index, nodes) in shape.mesh.elements.iter().enumerate() {

@@ -36,6 +36,12 @@ impl Hooke {
         [pressure + 2.0 * self.mu * gradient[(0, 0)], pressure + 2.0 * self.mu * gradient[(1, 1)], shear]
     }
 
+    /// D: (σ_xx, σ_yy, σ_xy) from (ε_xx, ε_yy, γ_xy).
+    pub fn stiffness(&self) -> Matrix3<f64> {
+        let Hooke { lambda, mu } = *self;
+        Matrix3::new(lambda + 2.0 * mu, lambda, 0.0, lambda, lambda + 2.0 * mu, 0.0, 0.0, 0.0, mu)
+    }
+
     /// S: (ε_xx, ε_yy, γ_xy) from (σ_xx, σ_yy, σ_xy).
     fn compliance(&self) -> Matrix3<f64> {
         let (l, m) = (self.lambda, self.mu);
@@ -157,6 +163,52 @@ pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], hooke: Hooke) -> DM
         }
     }
     k.fill_lower_triangle_with_upper_triangle();
+    k
+}
+
+/// B of each quadrature point, (ε_xx, ε_yy, γ_xy) from (x, y) per node, with its share of the area:
+/// strains of the displacements, which a material that yields needs. Orders 2 and 3: those of
+/// [`stiffness`]. Order 1 in plane strain: the dilatation is replaced by its mean over the element,
+/// half in each direction, so that volume-preserving flow does not lock (Nagtegaal, Parks & Rice 1974,
+/// Comput. Methods Appl. Mech. Engng 4, 153–177; Hughes 1980, Int. J. Numer. Methods Eng. 15,
+/// 1413–1418); it bends too stiffly, as all bilinear displacements do.
+pub fn strain_operators(reference: &Reference, corners: &[Vec2; 4], plane: Plane) -> Vec<(DMatrix<f64>, f64)> {
+    let mut all: Vec<(DMatrix<f64>, f64)> = Vec::with_capacity(reference.points.len());
+    for point in &reference.points {
+        let (gradient, determinant) = gradients(corners, point);
+        let mut b = DMatrix::zeros(3, 2 * gradient.len());
+        for (a, g) in gradient.iter().enumerate() {
+            b[(0, 2 * a)] = g.x;
+            b[(1, 2 * a + 1)] = g.y;
+            b[(2, 2 * a)] = g.y;
+            b[(2, 2 * a + 1)] = g.x;
+        }
+        all.push((b, point.weight * determinant));
+    }
+    if reference.order == 1 && plane == Plane::Strain {
+        let area: f64 = all.iter().map(|(_, weight)| weight).sum();
+        let columns = all[0].0.ncols();
+        let mean: Vec<f64> =
+            (0..columns).map(|j| all.iter().map(|(b, w)| (b[(0, j)] + b[(1, j)]) * w).sum::<f64>() / area).collect();
+        for (b, _) in &mut all {
+            for (j, mean) in mean.iter().enumerate() {
+                let correction = 0.5 * (mean - b[(0, j)] - b[(1, j)]);
+                b[(0, j)] += correction;
+                b[(1, j)] += correction;
+            }
+        }
+    }
+    all
+}
+
+/// K of strains from [`strain_operators`].
+pub fn stiffness_of_strains(operators: &[(DMatrix<f64>, f64)], hooke: Hooke) -> DMatrix<f64> {
+    let d = hooke.stiffness();
+    let columns = operators[0].0.ncols();
+    let mut k = DMatrix::zeros(columns, columns);
+    for (b, weight) in operators {
+        k += b.transpose() * (d * *weight) * b;
+    }
     k
 }
 

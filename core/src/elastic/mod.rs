@@ -40,6 +40,7 @@
 
 mod condensation;
 mod element;
+mod inelastic;
 mod joint;
 mod mesh;
 mod polygon;
@@ -47,6 +48,7 @@ mod quadrature;
 mod stress;
 
 pub use condensation::{Condensed, Condenser, IsotropicElastic};
+pub use inelastic::{InelasticBody, InelasticState, Linearisation, largest_element};
 pub use joint::{breaks_on_joint, joint_points, union_breaks};
 pub use mesh::{Mesh, MeshDensity, edge_breaks, edge_points};
 pub use stress::Recovered;

@@ -53,20 +53,31 @@ pub fn recovered(mesh: &Mesh, reference: &Reference, hooke: Hooke, displacement:
         }
         element_stress.push(middle);
     }
-    let order = vtk_order(mesh.order);
-    Recovered {
-        nodes: mesh.nodes.clone(),
-        elements: mesh.elements.iter().map(|nodes| order.iter().map(|&k| nodes[k]).collect()).collect(),
-        order: mesh.order,
-        displacement: displacement.to_vec(),
-        // Triangles of a cut polygon list each vertex, so a node without an element cannot be.
-        stress: sums.into_iter().map(|(sum, count)| sum.map(|s| s / count)).collect(),
-        element_stress,
-        imbalance: [0.0; 3],
-    }
+    // Triangles of a cut polygon list each vertex, so a node without an element cannot be.
+    let stress = sums.into_iter().map(|(sum, count)| sum.map(|s| s / count)).collect();
+    Recovered::with(mesh, displacement.to_vec(), stress, element_stress)
 }
 
 impl Recovered {
+    /// A mesh with displacements and stresses that were found otherwise.
+    pub(super) fn with(
+        mesh: &Mesh,
+        displacement: Vec<Vec2>,
+        stress: Vec<[f64; 3]>,
+        element_stress: Vec<[f64; 3]>,
+    ) -> Self {
+        let order = vtk_order(mesh.order);
+        Recovered {
+            nodes: mesh.nodes.clone(),
+            elements: mesh.elements.iter().map(|nodes| order.iter().map(|&k| nodes[k]).collect()).collect(),
+            order: mesh.order,
+            displacement,
+            stress,
+            element_stress,
+            imbalance: [0.0; 3],
+        }
+    }
+
     /// The same in the world: `self` has unit size and E = 1.
     pub(super) fn placed(
         self,

@@ -35,6 +35,8 @@ pub struct PlanarPoint {
     pub strain_across: f64,
     /// ∂(σ_xx, σ_yy, σ_xy)/∂(ε_xx, ε_yy, γ_xy) \[Pa\].
     pub tangent: [[f64; 3]; 3],
+    /// ∂σ_zz/∂(ε_xx, ε_yy, γ_xy) \[Pa\]; 0 in plane stress.
+    pub tangent_across: [f64; 3],
     /// Where the stress lies.
     pub region: Region,
     /// Plastic work of the step per volume \[J/m³\].
@@ -48,6 +50,7 @@ impl PlanarPoint {
         stress_across: 0.0,
         strain_across: 0.0,
         tangent: [[0.0; 3]; 3],
+        tangent_across: [0.0; 3],
         region: Region::Elastic,
         dissipation: 0.0,
     };
@@ -76,6 +79,11 @@ impl PlanarUpdate {
     /// The law in space.
     pub fn law(&self) -> &Arc<dyn StressUpdate> {
         &self.law
+    }
+
+    /// The plane.
+    pub fn plane(&self) -> Plane {
+        self.plane
     }
 
     /// Numbers in the state of a point: the law's, and ε_zz in plane stress.
@@ -222,6 +230,7 @@ fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> Pla
         stress_across: point.stress[ACROSS],
         strain_across,
         tangent,
+        tangent_across: if condense.is_some() { [0.0; 3] } else { IN_PLANE.map(|j| c[ACROSS][j]) },
         region: point.region,
         dissipation: point.dissipation,
     }

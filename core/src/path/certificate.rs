@@ -10,6 +10,11 @@
 //!   gaps gives for the recorded gap and the history of gaps, relative to the greatest contact force.
 //!   Such a law has its own compliance: strength, penetration and complementarity say nothing there;
 //! - `path_dissipation`: energy that friction would have created, relative to the work;
+//! - `path_inner_equilibrium`: of blocks whose material yields, forces on the nodes that stresses leave,
+//!   relative to the sum of the forces on the block; stresses are those that the law itself gives at the
+//!   recorded displacements and history;
+//! - `path_yield`: how much the law would still change that history, relative to the greatest strain: 0
+//!   where no stress lies beyond the yield surface (a block recorded as elastic yields nowhere);
 //! - `path_energy`: |work − stored − dissipated|, relative to the work (a step's error: no bound);
 //!
 //! and of what is claimed at a path's end:
@@ -43,6 +48,8 @@ pub const TOLERANCES: &[Tolerance] = &[
     Tolerance { name: "path_penetration", result: 1e-8, claim: 1e-7 },
     Tolerance { name: "path_complementarity", result: 1e-8, claim: 1e-7 },
     Tolerance { name: "path_law", result: 1e-8, claim: 1e-8 },
+    Tolerance { name: "path_inner_equilibrium", result: 1e-8, claim: 1e-8 },
+    Tolerance { name: "path_yield", result: 1e-8, claim: 1e-8 },
     Tolerance { name: "path_forces", result: 1e-6, claim: 1e-6 },
     Tolerance { name: "path_dissipation", result: 1e-8, claim: f64::INFINITY },
     Tolerance { name: "path_flow", result: 1e-6, claim: 1e-6 },
@@ -127,6 +134,7 @@ impl Watch {
                 self.note("path_kinematics", (g[0] - own[0]).abs().max((g[1] - own[1]).abs()) / deformation);
             }
         }
+        self.check_blocks(problem, state);
         let force_scale = largest.max(1e-300);
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
             let ContactLaw::Law(law) = contact.law else {
@@ -152,7 +160,9 @@ impl Watch {
         }
         // The history is that of the states seen, where all of them were.
         let before = self.memory.as_deref().unwrap_or(&state.memory);
-        if let Some((worst, after)) = problem.law_residual(state, before, deformation, self.finite, NOTHING * self.greatest) {
+        if let Some((worst, after)) =
+            problem.law_residual(state, before, deformation, self.finite, NOTHING * self.greatest)
+        {
             self.note("path_law", worst);
             self.memory = Some(after);
         }
@@ -161,6 +171,31 @@ impl Watch {
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
         self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
         self.last = Some((state.drive, state.dissipated));
+    }
+}
+
+impl Watch {
+    /// Checks the blocks whose material yields.
+    fn check_blocks(&mut self, problem: &PathProblem, state: &PathState) {
+        if !problem.yields() {
+            return;
+        }
+        let forces = problem.forces_on_points(state, self.finite);
+        for (index, (body, forces)) in problem.bodies.iter().zip(&forces).enumerate() {
+            let Some(inelastic) = &body.inelastic else { continue };
+            let flat: Vec<f64> = forces.iter().flat_map(|f| [f.x, f.y]).collect();
+            let size = forces.iter().map(|f| f.norm()).sum::<f64>();
+            if size == 0.0 && state.inelastic(index).is_none() {
+                continue;
+            }
+            let found = match state.inelastic(index) {
+                Some(own) => inelastic.check(&own.displacement, &own.state.history, &flat),
+                None => inelastic.check(&inelastic.elastic_displacement(&flat), &inelastic.initial().history, &flat),
+            };
+            let [unbalanced, drift] = found.unwrap_or([f64::NAN; 2]);
+            self.note("path_inner_equilibrium", unbalanced / size.max(1e-300));
+            self.note("path_yield", drift);
+        }
     }
 }
 

@@ -16,8 +16,19 @@ mod response;
 pub use problem::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
 pub use response::{SoftensOver, coarse_joints};
 
+use crate::elastic::InelasticState;
 use crate::limit::{Counters, Status};
 use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A body whose material has yielded, in a state.
+#[derive(Debug, Clone)]
+pub struct Yielded {
+    /// Displacements (x, y) of the nodes in the shape's frame, in units of its size.
+    pub displacement: Arc<Vec<f64>>,
+    /// What its Gauss points remember.
+    pub state: Arc<InelasticState>,
+}
 
 /// A state in equilibrium on the path.
 #[derive(Debug, Clone, Default)]
@@ -34,7 +45,7 @@ pub struct PathState {
     pub motion: Vec<[f64; 3]>,
     /// Elastic energy of blocks and joints \[J\].
     pub stored: f64,
-    /// Energy dissipated in the joints so far \[J\].
+    /// Energy dissipated in joints and in blocks so far \[J\].
     pub dissipated: f64,
     /// Work of all loads and settlements so far \[J\].
     pub work: f64,
@@ -43,6 +54,16 @@ pub struct PathState {
     /// State of the laws of tractions from gaps at the start of the step that ends here, contact point
     /// after contact point: the update from it at the gap gives the force.
     pub memory: Vec<f64>,
+    /// For each body: what it remembers, where its material has yielded. A list that is too short
+    /// stands for bodies that have not.
+    pub yielded: Vec<Option<Yielded>>,
+}
+
+impl PathState {
+    /// What a body remembers, where its material has yielded.
+    pub fn inelastic(&self, body: usize) -> Option<&Yielded> {
+        self.yielded.get(body).and_then(Option::as_ref)
+    }
 }
 
 /// What happened at a contact point.

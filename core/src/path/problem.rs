@@ -1,11 +1,12 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, drives.
 
 use crate::assembly::{Assembly, Bond, Stage, Target, root};
-use crate::elastic::{Condenser, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
+use crate::elastic::{Condenser, InelasticBody, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
 use crate::geometry::{Vec2, cross, turned};
 use crate::interface::{Facet, Formulation, InterfaceResponse};
 use crate::limit::Counters;
 use crate::material::Deformability;
+use crate::material::plane::PlanarUpdate;
 use nalgebra::DMatrix;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -26,6 +27,9 @@ pub struct PathBody {
     /// Displacements (x, y per point) by forces (x, y per point) relative to the mean rigid motion
     /// \[m/N\]; `None` for rigid bodies.
     pub flexibility: Option<Arc<DMatrix<f64>>>,
+    /// Where the material yields: the body with its mesh. `flexibility` is then that of the body
+    /// before anything has yielded.
+    pub inelastic: Option<Arc<InelasticBody>>,
 }
 
 /// One side of a contact point.
@@ -135,7 +139,11 @@ const BEDDING: f64 = 1e5;
 /// Young's modulus of a deformable block.
 fn modulus(assembly: &Assembly, block: usize) -> Option<f64> {
     match assembly.catalogue.materials[assembly.bodies[block].material].1.deformability() {
-        Deformability::LinearElastic { young_modulus, .. } if !assembly.bodies[block].fixed => Some(young_modulus),
+        Deformability::LinearElastic { young_modulus, .. } | Deformability::Inelastic { young_modulus, .. }
+            if !assembly.bodies[block].fixed =>
+        {
+            Some(young_modulus)
+        }
         _ => None,
     }
 }
@@ -165,6 +173,7 @@ impl PathProblem {
                     mass: 0.0,
                     points: Vec::new(),
                     flexibility: None,
+                    inelastic: None,
                 });
             }
             body_of[block] = body_of[r];
@@ -357,22 +366,46 @@ impl PathProblem {
 
     fn condense(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
         let mut condenser = Condenser::new(assembly.plane, assembly.width);
+        let mut updates: HashMap<usize, Arc<PlanarUpdate>> = HashMap::new();
         for body in self.bodies.iter_mut().filter(|body| body.members.len() == 1) {
             let block = body.members[0];
             if !elastic(block) {
                 continue;
             }
-            let material = &assembly.catalogue.materials[assembly.bodies[block].material].1;
-            let Deformability::LinearElastic { young_modulus, poisson_ratio } = material.deformability() else {
-                return Err(format!("the material of \"{}\" is not linear elastic", assembly.bodies[block].name));
+            let index = assembly.bodies[block].material;
+            let material = &assembly.catalogue.materials[index].1;
+            let (young_modulus, poisson_ratio) = match material.deformability() {
+                Deformability::LinearElastic { young_modulus, poisson_ratio }
+                | Deformability::Inelastic { young_modulus, poisson_ratio } => (young_modulus, poisson_ratio),
+                Deformability::Rigid => continue,
             };
             let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
-            let condensed =
-                condenser.condense(&assembly.bodies[block].vertices, elastic, &assembly.mesh, &body.points)?;
+            let vertices = &assembly.bodies[block].vertices;
+            if matches!(material.deformability(), Deformability::Inelastic { .. }) {
+                let update = match updates.get(&index) {
+                    Some(update) => update.clone(),
+                    None => {
+                        let law = material.stress_update().ok_or("a material that yields has no stresses")?;
+                        let update = PlanarUpdate::new(law, assembly.plane).map_err(|why| why.to_string())?;
+                        updates.entry(index).or_insert(Arc::new(update)).clone()
+                    }
+                };
+                assembly.fine_enough(block)?;
+                let inelastic = condenser.inelastic(vertices, elastic, update, &assembly.mesh, &body.points)?;
+                body.flexibility = Some(inelastic.flexibility());
+                body.inelastic = Some(Arc::new(inelastic));
+                continue;
+            }
+            let condensed = condenser.condense(vertices, elastic, &assembly.mesh, &body.points)?;
             body.flexibility = Some(Arc::new(condensed.flexibility));
         }
         self.counters.insert("condensation_factorisations".into(), condenser.factorisations());
         Ok(())
+    }
+
+    /// Whether some body's material yields.
+    pub fn yields(&self) -> bool {
+        self.bodies.iter().any(|body| body.inelastic.is_some())
     }
 
     /// Whether anything can deform: a scene of rigid bodies without joint compliance has no path
@@ -502,9 +535,14 @@ impl PathProblem {
             .bodies
             .iter()
             .zip(&forces)
-            .map(|(body, f)| match &body.flexibility {
-                None => Vec::new(),
-                Some(flexibility) => {
+            .enumerate()
+            .map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
+                (None, ..) => Vec::new(),
+                (Some(_), Some(inelastic), Some(recorded)) => {
+                    let u = inelastic.at_points(&recorded.displacement);
+                    u.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect()
+                }
+                (Some(flexibility), ..) => {
                     let flat = nalgebra::DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
                     let u = &**flexibility * flat;
                     (0..f.len()).map(|i| Vec2::new(u[2 * i], u[2 * i + 1])).collect()

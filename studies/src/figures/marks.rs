@@ -18,6 +18,8 @@ pub const THRUST: &str = "#009e73";
 pub const STRUT: &str = "#cc79a7";
 /// Hinges and sliding joints.
 pub const MOTION: &str = "#c8102e";
+/// Elements that have yielded.
+pub const YIELDED: &str = "#6f6f6f";
 /// Crushing joints.
 pub const CRUSH: &str = "#7b2d8b";
 /// More hinges than this are not numbered.
@@ -46,6 +48,8 @@ pub enum Symbol {
     Sliding,
     /// A crushing joint.
     Crushing,
+    /// An element that has yielded.
+    Yielded,
     /// Where blocks were.
     Before,
 }
@@ -69,6 +73,7 @@ impl Symbol {
                 turning(sheet, middle, 1.0);
             }
             Symbol::Sliding => sliding(sheet, middle, [1.0, 0.0], 28.0, 1.0),
+            Symbol::Yielded => boxed(sheet, [x, y], YIELDED, "none", ""),
             Symbol::Crushing => sheet.line(&ends, CRUSH, 6.0, ""),
         }
     }

@@ -4,10 +4,12 @@ use super::closure::closed;
 use super::displaced::displaced;
 use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
-use super::marks::{OUTLINE, STONE, Symbol, mark};
+use super::marks::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use super::sheet::Sheet;
 use crate::results::CaseResult;
+use crate::yielded::CRUSHED;
 use voussoir_core::assembly::Assembly;
+use voussoir_core::elastic::Mesh;
 use voussoir_core::geometry::Vec2;
 
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
@@ -37,10 +39,16 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     faces(&mut sheet, assembly, "#999999", |_, point| point);
     let after = moved.iter().enumerate().filter(|(body, _)| free(*body)).map(|(_, shape)| shape.as_slice());
     sheet.outlines(after, STONE, OUTLINE, width, "");
+    let grey = yielded_elements(assembly, result, |body, point| placements[body].of(point));
+    sheet.outlines(grey.iter().map(|element| element.as_slice()), YIELDED, "none", 0.0, "");
     faces(&mut sheet, assembly, OUTLINE, |body, point| placements[body].of(point));
     supports(&mut sheet, assembly);
     let mut legend =
         vec![(Symbol::Block, "blocks as they move".to_string()), (Symbol::Before, "where they were".to_string())];
+    if !grey.is_empty() {
+        let text = format!("elements that have yielded (mean equivalent plastic strain above {CRUSHED:.0e})");
+        legend.push((Symbol::Yielded, text));
+    }
     legend.extend(mark(&mut sheet, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
     let caption = [format!(
         "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {}. \
@@ -48,4 +56,19 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
         format_short(scale, 3)
     )];
     Some(sheet.finish(&legend, &caption))
+}
+
+/// Corners of the elements that have yielded, moved.
+fn yielded_elements(assembly: &Assembly, result: &CaseResult, place: impl Fn(usize, Vec2) -> Vec2) -> Vec<Vec<Vec2>> {
+    let mut out = Vec::new();
+    for entry in &result.yielded {
+        let Some(body) = assembly.body(&entry.body) else { continue };
+        let Ok(mesh) = Mesh::new(&assembly.bodies[body].vertices, &assembly.mesh) else { continue };
+        if mesh.elements.len() != entry.elements.len() {
+            continue;
+        }
+        let yields = (0..mesh.elements.len()).filter(|element| entry.elements[*element] > CRUSHED);
+        out.extend(yields.map(|element| mesh.corners(element).map(|corner| place(body, corner)).to_vec()));
+    }
+    out
 }

@@ -123,6 +123,7 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
         curve: None,
         displacements: None,
         joint_states: None,
+        yielded: Vec::new(),
         stages: vec![StageResult { name: "live".into(), status, factor: None, hinges: vec![] }],
     }
 }

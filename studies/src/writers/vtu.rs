@@ -44,7 +44,8 @@ const MEANING: &str = "Blocks at the end of each path, for ParaView. cases.pvd o
     Points stand where they were before any load [m]; Warp By Vector with \"displacement [m]\" shows where they went.\n\
     \"stress [Pa]\": xx, yy, zz, xy, yz, xz, tension positive, at nodes (mean of the elements around) and in cells (their\n\
     middle); with finite displacements in axes that turn with the block. Rigid blocks have deformable = 0 and no stress\n\
-    (zeros stand for it). Stresses at the ends of contact zones are singular: they grow with the mesh.\n\n";
+    (zeros stand for it). \"equivalent plastic strain [-]\": mean of each cell, 0 where nothing yields; stresses of blocks that\n\
+    have yielded are those of the nearest Gauss points. Stresses at the ends of contact zones are singular: they grow with the mesh.\n\n";
 
 fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: impl Iterator<Item = String>) {
     let _ = writeln!(
@@ -111,6 +112,10 @@ pub fn vtu_text(blocks: &[DeformedBlock], factor: f64) -> String {
     array(&mut text, "stress [Pa]", "Float64", 6, blocks.iter().flat_map(|b| rows(&b.stress, b.nodes.len())));
     text.push_str("      </PointData>\n      <CellData>\n");
     array(&mut text, "stress [Pa]", "Float64", 6, blocks.iter().flat_map(|b| rows(&b.cell_stress, b.cells.len())));
+    let strains = |b: &DeformedBlock| -> Vec<String> {
+        (0..b.cells.len()).map(|i| format!("{:e}", b.plastic_strain.get(i).copied().unwrap_or(0.0))).collect()
+    };
+    array(&mut text, "equivalent plastic strain [-]", "Float64", 1, blocks.iter().flat_map(strains));
     array(&mut text, "block", "Int64", 1, of_cells(&|b| b.block.to_string()).into_iter());
     array(&mut text, "deformable", "UInt8", 1, of_cells(&|b| u8::from(b.order > 0).to_string()).into_iter());
     text.push_str("      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");

@@ -47,7 +47,7 @@ impl PathSolver for EventPath {
         if !problem.deforms() {
             return Some("all blocks are rigid and no joint is compliant: there is no path before the collapse; limit analysis answers this scene".into());
         }
-        None
+        problem.yields().then(|| "it follows linear blocks only; newton_path follows blocks that yield".into())
     }
 }
 

@@ -225,6 +225,7 @@ impl<'a> Tracer<'a> {
             displacement: load_displacement(self.problem, &self.problem.drives[self.drive].loading, &motion),
             motion,
             memory: Vec::new(),
+            yielded: Vec::new(),
         }
     }
 

@@ -56,7 +56,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let parts = problem.drives.iter().zip(applied);
     let load: f64 = parts.map(|(d, factor)| (factor * super::model::load_size(problem, &d.loading)).abs()).sum();
     for (name, value) in watch.worst {
-        if still && !matches!(name, "path_equilibrium" | "path_strength") {
+        if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;
         }
         // Where everything is open the forces are rounding of the loads.
@@ -176,8 +176,15 @@ mod tests {
     /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N
     /// and then a force λ f at its pole, half as high as the points are apart.
     fn pushed(force: Vec2) -> PathProblem {
-        let body =
-            |held, pole, mass| PathBody { members: vec![0], pole, held, mass, points: vec![], flexibility: None };
+        let body = |held, pole, mass| PathBody {
+            members: vec![0],
+            pole,
+            held,
+            mass,
+            points: vec![],
+            flexibility: None,
+            inelastic: None,
+        };
         let contact = |x: f64| Contact {
             joint: 0,
             position: Vec2::new(x, 0.0),
@@ -204,6 +211,7 @@ mod tests {
                 drive(0, true, dead, DriveEnd::Factor(1.0)),
                 drive(1, false, live, DriveEnd::Collapse(f64::INFINITY)),
             ],
+            responses: vec![],
             length: 2.0,
             counters: Counters::new(),
         }

@@ -9,12 +9,16 @@
 //! ∂Π/∂r = g,   ∂Π/∂q = Gqᵀ r + w + λ p = 0 (the moments of v_b included)
 //! ```
 //!
-//! C: flexibility of the body, relative to its mean motion, so that the weight is part of w only. Small displacements are the same potential to
+//! C: flexibility of the body, relative to its mean motion, so that the weight is part of w only. Of a body
+//! that yields, u = C f + c is its linearisation ([`Linearisation`](voussoir_core::elastic::Linearisation)):
+//! Π is then no potential, its slopes and their derivatives stay as they are with this u, and C need not be
+//! symmetric. Small displacements are the same potential to
 //! second order at the undeformed place: R = 1 and no second derivatives of rotations.
 //! Source: the mixed form of Hellinger and Reissner with corotational frames (Wriggers 2006,
 //! Computational Contact Mechanics; Crisfield 1997, Non-linear Finite Element Analysis 2, ch. 17).
 
-use nalgebra::Matrix2;
+use super::inelastic::Inner;
+use nalgebra::{DMatrix, Matrix2};
 use voussoir_core::geometry::{Vec2, turned};
 use voussoir_core::path::{Loading, PathProblem};
 
@@ -131,7 +135,8 @@ impl<'a> Kinematics<'a> {
         (c.normal * normal + c.tangent * tangent, self.turn(-side.sign * phi / 2.0))
     }
 
-    fn body_forces(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Vec<f64> {
+    /// Forces on the points of a body in its axes \[N\].
+    pub fn body_forces(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Vec<f64> {
         let points = self.problem.bodies[body].flexibility.as_ref().map_or(0, |c| c.nrows());
         let mut f = vec![0.0; points];
         for side in &self.sides[body] {
@@ -153,8 +158,16 @@ impl<'a> Kinematics<'a> {
         f
     }
 
-    fn times_flexibility(&self, body: usize, f: &[f64]) -> Vec<f64> {
-        let Some(c) = &self.problem.bodies[body].flexibility else { return Vec::new() };
+    /// C of a body: of one that yields, its linearisation's.
+    fn flexibility<'b>(&'b self, body: usize, blocks: &'b [Option<Inner>]) -> Option<&'b DMatrix<f64>> {
+        match blocks.get(body) {
+            Some(Some(inner)) => Some(&inner.linear.flexibility),
+            _ => self.problem.bodies[body].flexibility.as_deref(),
+        }
+    }
+
+    fn times_flexibility(&self, body: usize, f: &[f64], blocks: &[Option<Inner>]) -> Vec<f64> {
+        let Some(c) = self.flexibility(body, blocks) else { return Vec::new() };
         let mut v = vec![0.0; f.len()];
         for (j, column) in c.column_iter().enumerate() {
             if f[j] != 0.0 {
@@ -166,8 +179,31 @@ impl<'a> Kinematics<'a> {
         v
     }
 
-    /// First derivatives of Π at contact forces and motions.
-    pub fn slopes(&self, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Slopes {
+    /// Derivatives of w·f, f the forces on a body's points, by contact forces (given to `add` with their
+    /// row) and by the factor that grows; the bodies' rotations held.
+    pub fn by_forces(
+        &self,
+        body: usize,
+        weight: &[f64],
+        (force, motion): (&[[f64; 2]], &[[f64; 3]]),
+        loads: &Loads,
+        mut add: impl FnMut(usize, f64),
+    ) -> f64 {
+        let at = |slot: usize| Vec2::new(weight[2 * slot], weight[2 * slot + 1]);
+        for side in &self.sides[body] {
+            let c = &self.problem.contacts[side.contact];
+            let (_, turn) = self.carried(side, force, motion);
+            let back = turn.transpose() * at(side.slot) * side.sign;
+            add(2 * side.contact, c.normal.dot(&back));
+            add(2 * side.contact + 1, c.tangent.dot(&back));
+        }
+        let back = self.turn(-motion[body][2]);
+        let own = loads.growing().forces.iter().filter(|l| l.0 == body);
+        own.filter_map(|(_, slot, _, load)| slot.map(|slot| (back * *load).dot(&at(slot)))).sum()
+    }
+
+    /// First derivatives of Π at contact forces and motions; `blocks` are the bodies that yield.
+    pub fn slopes(&self, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads, blocks: &[Option<Inner>]) -> Slopes {
         let problem = self.problem;
         let mut out = Slopes {
             gap: Vec::with_capacity(problem.contacts.len()),
@@ -206,17 +242,31 @@ impl<'a> Kinematics<'a> {
                 }
             }
             if b.flexibility.is_some() {
-                self.elastic_slopes(body, force, motion, loads, &mut out);
+                self.elastic_slopes(body, force, motion, loads, blocks, &mut out);
             }
         }
         out
     }
 
-    fn elastic_slopes(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads, out: &mut Slopes) {
+    fn elastic_slopes(
+        &self,
+        body: usize,
+        force: &[[f64; 2]],
+        motion: &[[f64; 3]],
+        loads: &Loads,
+        blocks: &[Option<Inner>],
+        out: &mut Slopes,
+    ) {
         let f = self.body_forces(body, force, motion, loads);
         let back = self.turn(-motion[body][2]);
-        let v = self.times_flexibility(body, &f);
-        out.stored += 0.5 * f.iter().zip(&v).map(|(f, v)| f * v).sum::<f64>();
+        let mut v = self.times_flexibility(body, &f, blocks);
+        match blocks.get(body) {
+            Some(Some(inner)) => {
+                out.stored += inner.linear.stored;
+                v.iter_mut().zip(&inner.linear.offset).for_each(|(v, c)| *v += c);
+            }
+            _ => out.stored += 0.5 * f.iter().zip(&v).map(|(f, v)| f * v).sum::<f64>(),
+        }
         for side in &self.sides[body] {
             let c = &self.problem.contacts[side.contact];
             let (r, turn) = self.carried(side, force, motion);
@@ -244,7 +294,14 @@ impl<'a> Kinematics<'a> {
     }
 
     /// Second derivatives of Π.
-    pub fn curvature(&self, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads, slopes: &Slopes) -> Curvature {
+    pub fn curvature(
+        &self,
+        force: &[[f64; 2]],
+        motion: &[[f64; 3]],
+        loads: &Loads,
+        slopes: &Slopes,
+        blocks: &[Option<Inner>],
+    ) -> Curvature {
         let problem = self.problem;
         let base = 2 * problem.contacts.len();
         let size = base + 3 * problem.bodies.len();
@@ -300,7 +357,7 @@ impl<'a> Kinematics<'a> {
                 }
             }
             if b.flexibility.is_some() {
-                self.elastic_curvature(body, force, motion, loads, slopes, &mut out);
+                self.elastic_curvature(body, force, motion, loads, slopes, blocks, &mut out);
             }
         }
         // Settlements move with the factor.
@@ -316,6 +373,7 @@ impl<'a> Kinematics<'a> {
         out
     }
 
+    #[allow(clippy::too_many_arguments)]
     fn elastic_curvature(
         &self,
         body: usize,
@@ -323,10 +381,11 @@ impl<'a> Kinematics<'a> {
         motion: &[[f64; 3]],
         loads: &Loads,
         slopes: &Slopes,
+        blocks: &[Option<Inner>],
         out: &mut Curvature,
     ) {
         let problem = self.problem;
-        let Some(flexibility) = problem.bodies[body].flexibility.as_deref() else { return };
+        let Some(flexibility) = self.flexibility(body, blocks) else { return };
         let base = 2 * problem.contacts.len();
         let theta = |b: usize| base + 3 * b + 2;
         let rows = flexibility.nrows();
@@ -364,7 +423,7 @@ impl<'a> Kinematics<'a> {
                 pushed[2 * slot + 1] += on.y;
             }
         }
-        let by_factor = self.times_flexibility(body, &pushed);
+        let by_factor = self.times_flexibility(body, &pushed, blocks);
         for (side, m, _) in &moved {
             let gap = m.transpose() * at(&by_factor, side.slot);
             out.factor[2 * side.contact] += gap.x;
@@ -402,11 +461,20 @@ impl<'a> Kinematics<'a> {
                 }
             }
         }
-        let products: Vec<Vec<f64>> = columns.iter().map(|(_, column)| self.times_flexibility(body, column)).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let products: Vec<Vec<f64>> =
+            columns.iter().map(|(_, column)| self.times_flexibility(body, column, blocks)).collect();
+        // Where a block yields, C need not be symmetric: gaps by rotations take C, moments by forces Cᵀ.
+        let yields = matches!(blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
+        let across: Option<Vec<Vec<f64>>> = yields.then(|| {
+            let times = |column: &[f64]| flexibility.column_iter().map(|c| dot(c.as_slice(), column)).collect();
+            columns.iter().map(|(_, column)| times(column)).collect()
+        });
         for (k, (of, column)) in columns.iter().enumerate() {
             for (side, m, frame) in &moved {
-                let mut block = m.transpose() * at(&products[k], side.slot);
+                let product = m.transpose() * at(&products[k], side.slot);
+                let transposed = across.as_ref().map_or(product, |all| m.transpose() * at(&all[k], side.slot));
+                let mut block = Vec2::zeros();
                 let c = &problem.contacts[side.contact];
                 let chain = f64::from(c.plus.body == *of) - f64::from(c.minus.body == *of);
                 // ∂M/∂φ = −½ J R(−s φ/2) [n t]
@@ -414,8 +482,8 @@ impl<'a> Kinematics<'a> {
                 block.x += chain * -0.5 * turned(frame.column(0).into()).dot(&here);
                 block.y += chain * -0.5 * turned(frame.column(1).into()).dot(&here);
                 for i in 0..2 {
-                    out.entries.push((2 * side.contact + i, theta(*of), block[i]));
-                    out.entries.push((theta(*of), 2 * side.contact + i, block[i]));
+                    out.entries.push((2 * side.contact + i, theta(*of), product[i] + block[i]));
+                    out.entries.push((theta(*of), 2 * side.contact + i, transposed[i] + block[i]));
                 }
             }
             for (l, (other, _)) in columns.iter().enumerate() {

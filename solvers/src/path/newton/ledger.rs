@@ -84,6 +84,7 @@ impl Ledger {
             let (end, begun) = (state.force[contact], if same { start.force[contact] } else { state.force[contact] });
             self.dissipated -= 0.5 * ((begun[0] + end[0]) * kept[0] + (begun[1] + end[1]) * kept[1]);
         }
+        self.dissipated += model.plastic_work(start, state) * model.units.force * model.units.displacement;
         let problem = model.problem;
         let place = |state: &State, slopes: &Slopes, body: usize, slot: Option<usize>, point: Vec2| {
             let rigid = model.kinematics.rigid(body, point, &state.motion);
@@ -138,6 +139,7 @@ impl Ledger {
             work: self.work,
             displacement: model.displacement(&state.motion),
             memory: state.answers.before.clone(),
+            yielded: super::inelastic::yielded(&state.blocks),
         }
     }
 }

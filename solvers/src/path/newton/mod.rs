@@ -3,6 +3,7 @@
 
 mod claims;
 mod frame;
+mod inelastic;
 mod kinematics;
 pub(super) mod law;
 mod ledger;
@@ -55,10 +56,10 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::PathSolver,
         tag: "newton_path",
-        summary: "steps by semismooth Newton: any law of joints, small or finite displacements, peaks and falling branches",
+        summary: "steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements, peaks and falling branches",
         parameters: &[],
         provides: &[Capability::FiniteDisplacements, Capability::Settlement],
-        requires: &[Capability::FacetsOrResponse, Capability::Linear],
+        requires: &[Capability::FacetsOrResponse],
         sources: &[
             "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",

@@ -3,6 +3,7 @@
 //! Unknowns (r of all contact points, q of the free bodies, λ), each in its unit: force F, the size
 //! of the loads; displacement U = F × mean compliance; rotation U / length; factor Λ.
 
+use super::inelastic::Inner;
 use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
 use super::law::{Polygon, Regime};
 use super::response::{Answers, Local, Responses};
@@ -32,6 +33,8 @@ pub(super) struct State {
     pub slip: Vec<[f64; 2]>,
     /// What laws of tractions from gaps say, with their history.
     pub answers: Answers,
+    /// Bodies whose material yields, by body.
+    pub blocks: Vec<Option<Inner>>,
 }
 
 /// Rate of a state per unit of its control.
@@ -95,6 +98,10 @@ pub(super) struct Model<'a> {
     pub bodies_free: usize,
     pub counters: Counters,
     pub loaded: Loaded<'a>,
+    /// Greatest relative residual of each iteration of the last step that was tried.
+    pub residuals: Vec<f64>,
+    /// Undeformed bodies whose material yields.
+    blocks: Vec<Option<Inner>>,
     /// Second derivatives with small displacements, of the present drive.
     pub(super) constant: Option<std::rc::Rc<Curvature>>,
 }
@@ -176,6 +183,8 @@ impl<'a> Model<'a> {
             bodies_free,
             counters: Counters::new(),
             loaded,
+            residuals: Vec::new(),
+            blocks: super::inelastic::undeformed(problem)?,
             constant: None,
         })
     }
@@ -217,7 +226,7 @@ impl<'a> Model<'a> {
 
     /// Whether with small displacements every law is one of facets.
     pub fn piecewise_linear(&self) -> bool {
-        self.responses.is_empty()
+        self.responses.is_empty() && self.blocks.iter().all(Option::is_none)
     }
 
     /// Takes slip to be associated; the laws as they were.
@@ -264,6 +273,7 @@ impl<'a> Model<'a> {
             regime: vec![Regime::Stuck; points],
             slip: vec![[0.0; 2]; points],
             answers: Answers { memory: self.problem.untouched(), ..Answers::default() },
+            blocks: self.blocks.clone(),
         };
         // The update of untouched joints has succeeded in `new`.
         if let Ok(answers) = self.responses.update(&state.gap, &state.answers.memory) {
@@ -292,16 +302,18 @@ impl<'a> Model<'a> {
     }
 
     pub fn slopes(&self, state: &State) -> Slopes {
-        self.kinematics.slopes(&state.force, &state.motion, &self.loaded.at(state.factor))
+        self.kinematics.slopes(&state.force, &state.motion, &self.loaded.at(state.factor), &state.blocks)
     }
 
     pub fn curvature(&mut self, state: &State, slopes: &Slopes) -> std::rc::Rc<Curvature> {
-        if let Some(constant) = &self.constant {
+        let yields = state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
+        if let Some(constant) = self.constant.as_ref().filter(|_| !yields) {
             return constant.clone();
         }
         let loads = self.loaded.at(state.factor);
-        let curvature = std::rc::Rc::new(self.kinematics.curvature(&state.force, &state.motion, &loads, slopes));
-        if !self.finite() {
+        let curvature = self.kinematics.curvature(&state.force, &state.motion, &loads, slopes, &state.blocks);
+        let curvature = std::rc::Rc::new(curvature);
+        if !self.finite() && !yields {
             self.constant = Some(curvature.clone());
         }
         curvature
@@ -356,6 +368,7 @@ impl<'a> Model<'a> {
                 dissipation -= kept[0] * state.force[c][0] + kept[1] * state.force[c][1];
             }
         }
+        dissipation += self.plastic_work(start, state);
         Increment {
             factor: (state.factor - start.factor) / u.factor,
             displacement: (self.displacement(&state.motion) - self.displacement(&start.motion)) / u.displacement,
@@ -388,12 +401,14 @@ impl<'a> Model<'a> {
         moved.answers = self.responses.update(&moved.gap, &state.answers.memory).unwrap_or_default();
         let mut base = origin;
         base.slip = base.gap.clone();
+        (base.blocks, moved.blocks) = (Vec::new(), Vec::new());
         let i = self.increment(&base, &moved);
         Increment {
             factor: rate.factor / self.units.factor,
             displacement: i.displacement / small,
             motion: i.motion / small,
-            dissipation: i.dissipation / small,
+            dissipation: i.dissipation / small
+                + self.plastic_power(state, rate) / (self.units.force * self.units.displacement),
         }
     }
 
@@ -421,8 +436,9 @@ impl<'a> Model<'a> {
         [state.gap[contact][0] - start.slip[contact][0], state.gap[contact][1] - start.slip[contact][1]]
     }
 
-    /// The irreversible gaps of a step become history.
+    /// The irreversible gaps and the plastic strains of a step become history.
     pub fn keep(&self, start: &State, state: &mut State) {
+        state.blocks.iter_mut().flatten().for_each(|inner| inner.base = inner.linear.end.clone());
         for c in 0..state.gap.len() {
             let gap = self.step_gap(start, state, c);
             state.slip[c] = start.slip[c];

@@ -35,6 +35,9 @@ impl Model<'_> {
             let share = share * 0.5f64.powi(halvings);
             let mut trial = state.clone();
             self.apply(&mut trial, step, share);
+            if self.deform(&mut trial).is_err() {
+                continue;
+            }
             let slopes = self.slopes(&trial);
             trial.gap = slopes.gap.clone();
             if self.respond(start, &mut trial).is_err() {
@@ -90,7 +93,9 @@ impl Tracer<'_, '_> {
             (0..2).for_each(|k| gap[k] += share * rate[k]);
         }
         for local in self.model.local_controls(&start, &ahead, rate) {
-            let Ok((next, iterations)) = self.model.newton(&start, ahead.clone(), &local.control(share)) else { continue };
+            let Ok((next, iterations)) = self.model.newton(&start, ahead.clone(), &local.control(share)) else {
+                continue;
+            };
             if (next.factor - target) * direction <= 0.0 && self.model.response_yields(&next) {
                 return Some((next, iterations, local));
             }
@@ -112,7 +117,9 @@ impl Tracer<'_, '_> {
     pub(super) fn forget_lower_peak(&mut self, direction: f64) {
         let factor = self.state.factor;
         let lower = |peak: &super::trace::Peak| (factor - peak.factor) * direction > 0.0;
-        if !self.model.responses.is_empty() && let Some(peak) = self.peak.take_if(|peak| lower(peak)) {
+        if !self.model.responses.is_empty()
+            && let Some(peak) = self.peak.take_if(|peak| lower(peak))
+        {
             self.notes.push(format!("behind a limit point at factor {} the load rises above it again", peak.factor));
         }
     }

@@ -100,8 +100,10 @@ impl Model<'_> {
         let mut motion = std::mem::take(&mut state.motion);
         self.settle(&mut motion, factor);
         state.motion = motion;
+        self.deform(&mut state)?;
         let mut slopes = self.slopes(&state);
         state.gap = slopes.gap.clone();
+        self.residuals.clear();
         let refused = |why: String| Refusal { why, restless: Vec::new() };
         self.respond(start, &mut state).map_err(refused)?;
         // Small displacements round by their own size, which the residual is relative to; a law of
@@ -126,7 +128,8 @@ impl Model<'_> {
             let (c, constraint) = self.constraint(start, &state, control);
             let last = residual.len() - 1;
             residual[last] = c;
-            let norm = self.error(&residual, &state);
+            let norm = self.error(&residual, &state).max(self.inner_error(&state));
+            self.residuals.push(norm);
             if !norm.is_finite() {
                 return Err(Refusal { why: "an iteration left the numbers".into(), restless });
             }
@@ -161,6 +164,7 @@ impl Model<'_> {
             };
             let share = self.damped(start, &state, control, &step, share, norm);
             self.apply(&mut state, &step, share);
+            self.deform(&mut state)?;
             slopes = self.slopes(&state);
             state.gap = slopes.gap.clone();
             self.respond(start, &mut state).map_err(refused)?;
@@ -242,6 +246,7 @@ impl Model<'_> {
             regime: Vec::new(),
             slip: Vec::new(),
             answers: Default::default(),
+            blocks: Vec::new(),
         };
         self.apply(&mut zero, x, 1.0);
         let factor = zero.factor;

@@ -72,6 +72,7 @@ impl Model<'_> {
                     }
                 }
             }
+            self.add_plastic_work(&mut row, state, by.dissipation / energy);
         }
         if by.displacement != 0.0 {
             let loading = self.loaded.growing;
@@ -192,6 +193,7 @@ impl Model<'_> {
             regime: Vec::new(),
             slip: Vec::new(),
             answers: Default::default(),
+            blocks: Vec::new(),
         };
         let moved = State { force: rate.force.clone(), motion: rate.motion.clone(), ..none.clone() };
         self.work_between(&none, &moved)

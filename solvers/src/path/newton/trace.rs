@@ -22,6 +22,10 @@ const LARGEST_FINITE_STEP: f64 = 0.002;
 /// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
 const LARGEST_SLIP: f64 = 0.05;
 
+/// Relative change of the factor, while the displacement doubles, below which blocks flow at a constant
+/// load.
+const PLATEAU: f64 = 1e-5;
+
 /// How a drive ended.
 enum Outcome {
     /// At its factor.
@@ -267,6 +271,7 @@ impl<'a> Tracer<'a, '_> {
                     !law.opens(next.regime[c]) && law.irreversible(next.regime[c], gap).0 != [0.0; 2]
                 })
             });
+            let slips = slips || next.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
             let far = !small && iterations > 12;
             let straight = !slips && !far && !self.model.response_yields(&next);
             if straight || (small && self.proportional()) {
@@ -572,7 +577,10 @@ impl<'a> Tracer<'a, '_> {
             }
             rate = next_rate;
             yielding = None;
-            if !self.model.finite() && self.ray_ends(&rate, direction, target) {
+            if !self.model.finite() && !self.flows() && self.ray_ends(&rate, direction, target) {
+                return Outcome::Ended;
+            }
+            if !self.model.finite() && self.flows() && self.plateau(&rate) {
                 return Outcome::Ended;
             }
             if self.stops(drive, direction) {
@@ -833,8 +841,9 @@ impl<'a> Tracer<'a, '_> {
             }
             return true;
         }
-        // What strengths bound is no ray: the facets have been looked at above with the ray's forces.
-        if target.is_infinite() && factor > 1e-9 * (motion + force) {
+        // What strengths bound is no ray: the facets have been looked at above with the ray's forces, and no
+        // block that may yield carries any load.
+        if target.is_infinite() && !self.model.problem.yields() && factor > 1e-9 * (motion + force) {
             self.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
             self.end(if self.peak.is_some() { Status::LimitPoint } else { Status::Unbounded }, String::new());
             if self.peak.is_some() {
@@ -846,6 +855,29 @@ impl<'a> Tracer<'a, '_> {
             return true;
         }
         false
+    }
+
+    /// Whether a block yields in the last step.
+    fn flows(&self) -> bool {
+        self.state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
+    }
+
+    /// Whether blocks flow at a load that has stopped growing: as much displacement again would change λ
+    /// by less than [`PLATEAU`] of itself.
+    fn plateau(&mut self, rate: &Rate) -> bool {
+        let speed = self.model.increment_of(&self.state, rate).displacement * self.model.units.displacement;
+        let change = rate.factor * self.recorded.displacement / speed;
+        if speed == 0.0 || self.peak.is_some() || change.is_nan() || change.abs() > PLATEAU * self.state.factor.abs() {
+            return false;
+        }
+        self.end(
+            Status::LimitPoint,
+            format!(
+                "blocks flow at factor {}: as much displacement again would change it by less than {PLATEAU:.0e} of itself",
+                self.state.factor
+            ),
+        );
+        true
     }
 
     /// Whether the path went as far behind its peak as was asked for.
