@@ -102,9 +102,9 @@ impl Kept {
             }
         }
         let mut groups = vec![vec![false; m]; n];
-        for k in 0..m {
+        for (k, near) in joints.iter().enumerate() {
             for a in of(k) {
-                (0..m).for_each(|l| groups[a][l] |= joints[k][l]);
+                groups[a].iter_mut().zip(near).for_each(|(group, near)| *group |= near);
             }
         }
         Kept { joints, groups, cuts }
@@ -212,14 +212,16 @@ impl Program {
             pair.flow.iter().for_each(|&(j, v)| flow[j].0.push((gamma(i), v)));
         }
         for l in 0..forces + 2 {
+            // θ and 1 belong to no joint.
+            let at = joint_of.get(l);
             for (form, k) in &flow {
-                if l >= forces || kept.joints[*k][joint_of[l]] {
+                if at.is_none_or(|&at| kept.joints[*k][at]) {
                     program.equations.push(columns.row(form.iter().map(|&(first, v)| ((first, l), v))));
                 }
             }
-            let driven = |q: &usize| systems.varying[*q] != 0.0;
-            if l >= forces || (0..3 * groups).filter(driven).all(|q| kept.groups[q / 3][joint_of[l]]) {
-                let power = (0..3 * groups).filter(driven).map(|q| ((velocity(q), l), systems.varying[q]));
+            let driven: Vec<usize> = (0..3 * groups).filter(|&q| systems.varying[q] != 0.0).collect();
+            if at.is_none_or(|&at| driven.iter().all(|&q| kept.groups[q / 3][at])) {
+                let power = driven.iter().map(|&q| ((velocity(q), l), systems.varying[q]));
                 program.equations.push(columns.row(power.chain([((0, l), -1.0)])));
             }
             if program.equations.len() + program.rows.len() > most {
