@@ -1,9 +1,10 @@
-//! Newton path: dead and live load of the 14-joint arch, rigid voussoirs with compliant joints and
-//! elastic ones, condensation included; cost against the number of voussoirs.
+//! Newton path and exact path: dead and live load of the 14-joint arch, rigid voussoirs with compliant
+//! joints and elastic ones, condensation included; cost against the number of voussoirs.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use voussoir::core::path::{PathProblem, PathSettings, PathSolver, Unobserved};
+use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir::study::Case;
 use voussoir_benches::{compliant_ring, elastic_ring};
@@ -12,9 +13,17 @@ fn settings(finite: bool) -> PathSettings {
     PathSettings { finite, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
 }
 
-fn path(case: &Case, finite: bool) -> Option<f64> {
+fn traced(solver: &dyn PathSolver, case: &Case, finite: bool) -> Option<f64> {
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
-    NewtonPath {}.trace(&problem, &settings(finite), &mut Unobserved).factor
+    solver.trace(&problem, &settings(finite), &mut Unobserved).factor
+}
+
+fn path(case: &Case, finite: bool) -> Option<f64> {
+    traced(&NewtonPath {}, case, finite)
+}
+
+fn events(case: &Case) -> Option<f64> {
+    traced(&EventPath {}, case, false)
 }
 
 fn the_arch(c: &mut Criterion) {
@@ -39,5 +48,28 @@ fn cost_against_voussoirs(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, the_arch, cost_against_voussoirs);
+fn exact_arch(c: &mut Criterion) {
+    let mut group = c.benchmark_group("event_path, arch of 14 joints, condensation included");
+    group.sample_size(10);
+    let (rigid, elastic) = (compliant_ring(13), elastic_ring(13));
+    group.bench_function("rigid, compliant joints", |b| b.iter(|| events(black_box(&rigid))));
+    group.bench_function("elastic 4 x 6 quadratic", |b| b.iter(|| events(black_box(&elastic))));
+    let problem = || PathProblem::new(&elastic.assembly, &elastic.stages).map(|p| p.contacts.len());
+    group.bench_function("elastic 4 x 6 quadratic, condensation alone", |b| b.iter(|| black_box(problem())));
+    group.finish();
+}
+
+/// Whole paths to collapse: events grow with the voussoirs, so that the cost grows with their square.
+fn events_against_voussoirs(c: &mut Criterion) {
+    let mut group = c.benchmark_group("event_path against the number of voussoirs, to collapse");
+    group.sample_size(10);
+    for voussoirs in [13, 40, 130] {
+        let case = compliant_ring(voussoirs);
+        group.throughput(Throughput::Elements(voussoirs as u64));
+        group.bench_with_input(BenchmarkId::from_parameter(voussoirs), &case, |b, case| b.iter(|| events(case)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, the_arch, cost_against_voussoirs, exact_arch, events_against_voussoirs);
 criterion_main!(benches);

@@ -315,3 +315,31 @@ loads = [
         assert!(*value < 1e-8, "{name} {value:e}");
     }
 }
+
+/// Two like blocks that begin to slide at the same load: either may go, so the mechanism is never said to
+/// be the only one; one block alone has one way to go.
+#[test]
+fn a_mechanism_is_not_unique_where_two_are_possible() {
+    for count in [1, 2] {
+        let each = |make: &dyn Fn(usize) -> String| (0..count).map(make).collect::<Vec<_>>().join(",\n");
+        let at = |k: usize| 3.0 * k as f64;
+        let blocks = each(&|k| {
+            let x = at(k);
+            format!(
+                "{{ name = \"b{k}\", vertices = [[{x:?}, 0.0], [{0:?}, 0.0], [{0:?}, 0.2], [{x:?}, 0.2]] }}",
+                x + 1.0
+            )
+        });
+        let loads = each(&|k| {
+            format!("{{ kind = \"point\", block = \"b{k}\", point = [{:?}, 0.0], force = [1000.0, 0.0] }}", at(k) + 0.5)
+        });
+        let text = format!(
+            "name = \"sliders\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\nblocks = [\n{{ name = \"ground\", vertices = [[-1.0, -0.5], [6.0, -0.5], [6.0, 0.0], [-1.0, 0.0]], fixed = true }},\n{blocks}\n]\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\nlaw = \"coulomb\"\nfriction = 0.5\nnormal_stiffness = 1e9\nshear_stiffness = 1e8\n[solver]\nsolver = \"event_path\"\n[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{loads}]\n"
+        );
+        let result = answered(&text);
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        assert_close(result.load_factor.unwrap(), 2.0, 1e-9);
+        // With two the signs of the flows decide, which is not examined: nothing is said.
+        assert_eq!(result.mechanism.unwrap().unique, (count == 1).then_some(true));
+    }
+}
