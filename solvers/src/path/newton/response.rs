@@ -272,11 +272,9 @@ impl Model<'_> {
 
     /// Control of the gaps of the points that dissipated in a step, 1 at its end.
     pub fn local_of_step(&self, start: &State, next: &State) -> Option<Local> {
-        let active: Vec<usize> =
-            self.responses.points().filter(|c| next.answers.points[*c].dissipated > 0.0).collect();
-        let moved: Vec<[f64; 2]> = (0..next.gap.len())
-            .map(|c| [0, 1].map(|k| next.gap[c][k] - start.gap[c][k]))
-            .collect();
+        let active: Vec<usize> = self.responses.points().filter(|c| next.answers.points[*c].dissipated > 0.0).collect();
+        let moved: Vec<[f64; 2]> =
+            (0..next.gap.len()).map(|c| [0, 1].map(|k| next.gap[c][k] - start.gap[c][k])).collect();
         Local::along(&active, &moved)
     }
 }
@@ -307,4 +305,3 @@ impl Local {
         Control::Gaps { local: self, length }
     }
 }
-

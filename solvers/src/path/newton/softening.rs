@@ -90,7 +90,9 @@ impl Tracer<'_, '_> {
             (0..2).for_each(|k| gap[k] += share * rate[k]);
         }
         for local in self.model.local_controls(&start, &ahead, rate) {
-            let Ok((next, iterations)) = self.model.newton(&start, ahead.clone(), &local.control(share)) else { continue };
+            let Ok((next, iterations)) = self.model.newton(&start, ahead.clone(), &local.control(share)) else {
+                continue;
+            };
             if (next.factor - target) * direction <= 0.0 && self.model.response_yields(&next) {
                 return Some((next, iterations, local));
             }
@@ -112,7 +114,9 @@ impl Tracer<'_, '_> {
     pub(super) fn forget_lower_peak(&mut self, direction: f64) {
         let factor = self.state.factor;
         let lower = |peak: &super::trace::Peak| (factor - peak.factor) * direction > 0.0;
-        if !self.model.responses.is_empty() && let Some(peak) = self.peak.take_if(|peak| lower(peak)) {
+        if !self.model.responses.is_empty()
+            && let Some(peak) = self.peak.take_if(|peak| lower(peak))
+        {
             self.notes.push(format!("behind a limit point at factor {} the load rises above it again", peak.factor));
         }
     }

@@ -187,8 +187,7 @@ impl Model<'_> {
         let regimes = &state.regime;
         let (points, size) = (regimes.len(), self.size());
         let last = size - 1;
-        let rows: Vec<_> =
-            (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
+        let rows: Vec<_> = (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
         let mut entries: Vec<(usize, usize, f64)> = Vec::with_capacity(curvature.entries.len() + 4 * size);
         let mut shifts: Vec<(usize, usize, f64)> = Vec::new();
         let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };

@@ -3,8 +3,8 @@
 use super::kinematics::Slopes;
 use super::law::Regime;
 use super::ledger::{Ledger, events};
-use super::softening::MOST_REFINEMENTS;
 use super::model::{Control, Loaded, Model, Rate, Refusal, State, load_size};
+use super::softening::MOST_REFINEMENTS;
 use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
@@ -161,7 +161,8 @@ impl<'a> Tracer<'a, '_> {
             Some(peak) => {
                 // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
                 let of_peak = peak.motion.filter(|_| self.model.finite() || self.model.responses.is_empty());
-                let motion = if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
+                let motion =
+                    if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
                 (peak.state, Some(self.recorded), Some(peak.factor), motion)
             }
             None => {
@@ -435,7 +436,11 @@ impl<'a> Tracer<'a, '_> {
             let size = next.factor.abs().max(unit * 1e-3);
             let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
             let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
-            if self.peak.is_none() && self.model.responses.is_empty() && (fell || (falls && before_peak_rate > 0.0)) && !reaches {
+            if self.peak.is_none()
+                && self.model.responses.is_empty()
+                && (fell || (falls && before_peak_rate > 0.0))
+                && !reaches
+            {
                 self.peak = self.locate_peak(&rate, previous, length, direction);
             }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
