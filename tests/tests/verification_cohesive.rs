@@ -362,7 +362,7 @@ fn integrated(gap: f64, slope: f64) -> [f64; 2] {
 #[test]
 fn an_eccentric_hinge_is_the_integral_along_its_joint() {
     let mut errors = Vec::new();
-    for elements in [8, 16, 32] {
+    for elements in [16, 32, 64] {
         let same = |p| p;
         let (_, answer, states) = traced(&hinge(elements, 1.0, same, same), &settings(ArcLength::default()));
         assert!(
@@ -373,7 +373,8 @@ fn an_eccentric_hinge_is_the_integral_along_its_joint() {
         );
         let mut worst: f64 = 0.0;
         let peak = answer.factor.expect("a factor");
-        for state in &states {
+        // Later the pressed part is shorter than an element.
+        for state in states.iter().filter(|state| state.factor > 0.5 * peak) {
             // Joint points run against x or along it: gap at both ends.
             let (first, last) = (state.gap[0][0], state.gap[state.gap.len() - 1][0]);
             let theta = state.motion.iter().map(|q| q[2]).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
@@ -385,8 +386,7 @@ fn an_eccentric_hinge_is_the_integral_along_its_joint() {
         assert!(states.len() >= 15, "{}", states.len());
         errors.push(worst);
     }
-    println!("{errors:?}");
-    assert!(errors[2] < 0.02 && errors[2] < 0.5 * errors[0], "{errors:?}");
+    assert!(errors[2] < 2e-3 && errors[1] < 0.5 * errors[0] && errors[2] < 0.5 * errors[1], "{errors:?}");
 }
 
 /// Neither units nor a mirror nor a rigid rotation of the scene change the peak.
@@ -423,12 +423,13 @@ fn units_mirror_and_rotation_do_not_matter() {
 fn the_energy_error_falls_with_the_step() {
     let error = |largest: f64| {
         let strategy = ArcLength { largest_step: Some(largest), ..ArcLength::default() };
-        let (_, _, states) = traced(&bar(1.0, 5e9), &settings(strategy));
+        let same = |p| p;
+        let (_, _, states) = traced(&hinge(8, 1.0, same, same), &settings(strategy));
         let last = states.last().expect("a state");
         (last.work - last.stored - last.dissipated).abs() / last.dissipated
     };
-    let errors = [error(2e-5), error(2e-6)];
-    assert!(errors[0] < 2e-2 && errors[1] < 0.2 * errors[0], "{errors:?}");
+    let errors = [error(2e-5), error(4e-6)];
+    assert!(errors[0] < 1e-3 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }
 
 /// Joints of the reference arch with a bond of some strength, in units of the paper's ring.
@@ -453,38 +454,36 @@ fn a_weak_bond_is_a_dry_joint() {
     assert_close(result.load_factor.expect("a factor"), 698.022_665_212_378_8, 1e-4);
 }
 
-/// The reference arch with a bond of 0.2 MPa and 100 J/m², `elements` of three points each across a joint: peak and energy
-/// dissipated when the load has gone 2.5 mm.
+/// The reference arch with a bond of 0.2 MPa and 300 J/m², `elements` of three points each across a joint: peak and energy
+/// dissipated when the load has gone 2 mm.
 fn arch_of(elements: usize) -> [f64; 2] {
-    let arch = Arch { joint: bonded(0.2e6, energy()), ..Arch::default() };
+    let arch = Arch { joint: bonded(0.2e6, 300.0), ..Arch::default() };
     let mesh = format!("[scene.mesh]\nelements = [1, {elements}]\n[materials.stone]");
     let text = arch.study().replace("[materials.stone]", &mesh);
-    let settings = PathSettings { stop_displacement: Some(2e-3), stop_factor: None, ..settings(ArcLength::default()) };
+    let settings = PathSettings { stop_displacement: Some(1e-3), stop_factor: None, ..settings(ArcLength::default()) };
     let (_, answer, states) = traced(&text, &settings);
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
-    let at = std::env::var("AT").ok().and_then(|n| n.parse().ok()).unwrap_or(2.5e-3);
+    let at = 2e-3;
     let pair =
         states.windows(2).find(|pair| pair[0].drive == 1 && pair[0].displacement < at && pair[1].displacement >= at);
-    let [before, after] = pair.expect("a path of 2.5 mm") else { unreachable!("windows of two") };
+    let [before, after] = pair.expect("a path of 2 mm") else { unreachable!("windows of two") };
     let share = (at - before.displacement) / (after.displacement - before.displacement);
     [answer.factor.expect("a factor"), before.dissipated + share * (after.dissipated - before.dissipated)]
 }
 
-/// Peak and dissipated energy of an arch do not depend on the mesh of its joints, over a fourfold refinement. FINEST sets the
-/// last mesh (8 by default; the page shows 16).
+/// Peak and dissipated energy of an arch hardly depend on the mesh of its joints: within 2 % between 4 and 8 elements a
+/// joint, and (FINEST=20, minutes) within 1 % over a fourfold refinement from 5 to 20.
 #[test]
 fn an_arch_keeps_its_peak_under_refinement() {
     let finest: usize = std::env::var("FINEST").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
-    let all: Vec<[f64; 2]> = [finest / 4, finest / 2, finest].into_iter().map(arch_of).collect();
-    println!("{all:?}");
-    for coarse in &all[..2] {
+    let (meshes, tolerance) =
+        if finest >= 20 { (vec![finest / 4, finest / 2], 0.01) } else { (vec![finest / 2], 0.02) };
+    let last = arch_of(finest);
+    for coarse in meshes.into_iter().map(arch_of) {
+        println!("{coarse:?} {last:?}");
         for k in 0..2 {
-            assert_close(coarse[k], all[2][k], 0.01);
+            assert_close(coarse[k], last[k], tolerance);
         }
     }
-    assert!(all[2][0] > 1.4 * 698.0, "{all:?}");
-}
-
-fn energy() -> f64 {
-    std::env::var("ENERGY").ok().and_then(|n| n.parse().ok()).unwrap_or(100.0)
+    assert!(last[0] > 1.4 * 698.0, "{last:?}");
 }
