@@ -690,7 +690,8 @@ impl<'a> Tracer<'a, '_> {
             }
         }
         along += (next.factor - self.state.factor) * rate.factor / (u.factor * u.factor);
-        if along <= 0.0 {
+        // Where a block softens the path may snap back sharply: what dissipates does not go back.
+        if along <= 0.0 && self.model.plastic_work(&self.state, next) <= 1e-9 * size {
             return no("the step turned back");
         }
         // Friction that is not associated: several states may belong to one load. A state far from
