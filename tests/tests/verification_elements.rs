@@ -126,8 +126,10 @@ fn contact_patch_test_across_meshes_that_do_not_match() {
     let stress = [-2.0e4, -1.0e5, 3.0e4];
     let traction = |_: Vec2, n: Vec2| Matrix2::new(stress[0], stress[2], stress[2], stress[1]) * n;
     for (order, grading) in [(1, 1.0), (2, 1.0), (3, 1.0), (2, 6.0), (3, 6.0)] {
-        let meshes =
-            [MeshDensity { elements: [3, 2], order, grading: [1.0; 2] }, MeshDensity { elements: [5, 4], order, grading: [grading; 2] }];
+        let meshes = [
+            MeshDensity { elements: [3, 2], order, grading: [1.0; 2] },
+            MeshDensity { elements: [5, 4], order, grading: [grading; 2] },
+        ];
         let ends = [lower[2], upper[0]];
         let sides = [(&lower, &meshes[0]), (&upper, &meshes[1])];
         let [one, other] = sides.map(|(shape, mesh)| breaks_on_joint(shape, mesh, ends).unwrap());

@@ -119,8 +119,7 @@ impl Mesh {
         let mut mesh = Mesh { nodes: vertices.to_vec(), elements: Vec::new(), order: density.order };
         let mut sides = HashMap::new();
         if is_convex_quadrilateral(vertices) {
-            let [u, v] =
-                [0, 1].map(|i| with_nodes(&graded(density.elements[i], density.grading[i]), density.order));
+            let [u, v] = [0, 1].map(|i| with_nodes(&graded(density.elements[i], density.grading[i]), density.order));
             let complement = |t: &[f64]| t.iter().rev().copied().collect::<Vec<_>>();
             let places = [(u.as_slice(), complement(&u)), (v.as_slice(), complement(&v))];
             mesh.fill([0, 1, 2, 3], &places, &mut sides);
@@ -224,8 +223,9 @@ mod tests {
     /// element side belongs to two elements: the mesh is conforming.
     #[test]
     fn meshes_are_valid() {
-        for (shape, order, grading) in
-            shapes().iter().flat_map(|s| (1..=3).flat_map(move |p| [(s, p, [1.0; 2]), (s, p, [20.0; 2]), (s, p, [3.0, 50.0])]))
+        for (shape, order, grading) in shapes()
+            .iter()
+            .flat_map(|s| (1..=3).flat_map(move |p| [(s, p, [1.0; 2]), (s, p, [20.0; 2]), (s, p, [3.0, 50.0])]))
         {
             let density = MeshDensity { elements: [3, 4], order, grading };
             let mesh = Mesh::new(shape, &density).unwrap();

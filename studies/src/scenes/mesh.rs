@@ -41,7 +41,11 @@ impl Grading {
 impl Default for Mesh {
     fn default() -> Self {
         let MeshDensity { elements, order, grading } = MeshDensity::default();
-        Mesh { elements, order, grading: if grading[0] == grading[1] { Grading::Both(grading[0]) } else { Grading::Each(grading) } }
+        Mesh {
+            elements,
+            order,
+            grading: if grading[0] == grading[1] { Grading::Both(grading[0]) } else { Grading::Each(grading) },
+        }
     }
 }
 

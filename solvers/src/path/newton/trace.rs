@@ -557,21 +557,9 @@ impl<'a> Tracer<'a, '_> {
         if !self.strategy.passes_limit_points() && (falls || self.turns_back(rate, direction)) {
             self.doubt(&self.state.clone(), direction);
             self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
-        } else if self.model.finite() && self.peak.is_none() && self.is_a_limit(direction) {
-            self.end(
-                Status::LimitPoint,
-                format!("{why}; no combination of regimes of the points at the verge of a change lets the factor grow"),
-            );
         } else {
             self.end(Status::Stalled, why);
         }
-    }
-
-    /// Whether the factor cannot grow from the present state. Where several points open at one factor,
-    /// as in a symmetric scene, the path has a corner there, several ways go on, and none may be found.
-    fn is_a_limit(&mut self, direction: f64) -> bool {
-        let state = self.state.clone();
-        self.strategy.passes_limit_points() && self.model.none_rises(&state, direction).is_ok()
     }
 
     /// Whether the path goes on with a factor that does not grow.
@@ -636,15 +624,15 @@ impl<'a> Tracer<'a, '_> {
         Some(Peak { factor: state.factor, state: recorded, motion })
     }
 
-    /// Velocities with p·q̇ = 1; of settlements, which do no work, with 1 m of the fastest point's
-    /// speed. `None` where the load does next to no work on them: rates are checked to 1e-8 of their
-    /// size, so less work than a hundred times that proves nothing.
+    /// Velocities with p·q̇ = 1; of settlements with finite displacements, which do no work, with 1 m of
+    /// the fastest body's speed. `None` where the load does next to no work on them: rates are checked
+    /// to 1e-8 of their size, so less work than a hundred times that proves nothing.
     fn scaled_motion(&self, state: &State, rate: &Rate) -> Option<Vec<[f64; 3]>> {
         let u = self.model.units;
         let load = load_size(self.model.problem, self.model.loaded.growing);
         let power = self.model.increment_of(state, rate).displacement * u.displacement * load;
         let size = self.model.motion_size(rate) * u.displacement * u.force / u.factor;
-        let by = if load == 0.0 {
+        let by = if load == 0.0 && self.model.finite() {
             rate.motion.iter().map(|q| q[0].hypot(q[1]).max(q[2].abs() * u.length)).fold(0.0, f64::max)
         } else if power > 1e-6 * size {
             power
