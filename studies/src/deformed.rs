@@ -1,6 +1,7 @@
 //! Blocks at the end of a path: displacements and stresses on their meshes, recovered from the
 //! result alone (contact forces, loads and motions of the blocks).
 
+use crate::path::of_body;
 use crate::results::CaseResult;
 use crate::study::Kinematics;
 use voussoir_core::assembly::{Assembly, Stage};
@@ -36,7 +37,12 @@ pub struct DeformedBlock {
 }
 
 /// The state at which `result` ends, on the problem that its case poses.
-fn end_state(problem: &PathProblem, assembly: &Assembly, result: &CaseResult) -> Result<PathState, String> {
+fn end_state(
+    problem: &PathProblem,
+    assembly: &Assembly,
+    result: &CaseResult,
+    finite: bool,
+) -> Result<PathState, String> {
     let stage = result.stages.len().checked_sub(1).ok_or("no stage was begun")?;
     let first = problem.drives.iter().position(|d| d.stage == stage).filter(|_| result.status == Status::NoEquilibrium);
     let drive = first.or(problem.drives.iter().rposition(|d| d.stage <= stage)).ok_or("no load was applied")?;
@@ -55,10 +61,7 @@ fn end_state(problem: &PathProblem, assembly: &Assembly, result: &CaseResult) ->
     }
     let mut motion = vec![[0.0; 3]; problem.bodies.len()];
     for (block, entry) in displaced.iter().enumerate() {
-        let [x, y, theta] = entry.displacement;
-        let body = problem.body_of[block];
-        let u = Vec2::new(x, y) + turned(problem.bodies[body].pole - assembly.inertia(block).centroid) * theta;
-        motion[body] = [u.x, u.y, theta];
+        motion[problem.body_of[block]] = of_body(assembly, problem, block, entry.displacement, finite);
     }
     let factor = result.field_factor.ok_or("no factor of the contact forces")?;
     let force = field.iter().map(|f| f.force).collect();
@@ -79,7 +82,7 @@ pub fn deformed_blocks(
     }
     let finite = kinematics == Kinematics::Finite;
     let problem = PathProblem::new(assembly, stages)?;
-    let state = end_state(&problem, assembly, result)?;
+    let state = end_state(&problem, assembly, result, finite)?;
     let forces = problem.forces_on_points(&state, finite);
     let applied = problem.applied(state.drive, state.factor);
     let gravity: Vec2 =

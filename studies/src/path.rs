@@ -50,23 +50,61 @@ fn failed(tag: &str, why: String) -> CaseResult {
     CaseResult { solver: tag.into(), ..stalled(why) }
 }
 
-/// Velocity (or displacement) of every block at its centroid from those of the path's bodies about
-/// their poles. What moves by rounding beside the greatest stands still where the ground holds it.
-fn of_blocks(assembly: &Assembly, problem: &PathProblem, motion: &[[f64; 3]], rates: bool) -> Vec<CentroidVelocity> {
+/// Displacement of a point that moves rigidly with a body: \[u_x, u_y, θ\] at `from`, u + R(θ) a − a
+/// with a = to − from; linear in θ where displacements are small.
+fn carried([x, y, theta]: [f64; 3], from: Vec2, to: Vec2, finite: bool) -> Vec2 {
+    let arm = to - from;
+    let swing = if finite { arm * (theta.cos() - 1.0) + turned(arm) * theta.sin() } else { turned(arm) * theta };
+    Vec2::new(x, y) + swing
+}
+
+/// Rigid motion of a block's body about its pole, from the displacement of the block's centroid.
+pub(crate) fn of_body(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    block: usize,
+    displacement: [f64; 3],
+    finite: bool,
+) -> [f64; 3] {
+    let pole = problem.bodies[problem.body_of[block]].pole;
+    let u = carried(displacement, assembly.inertia(block).centroid, pole, finite);
+    [u.x, u.y, displacement[2]]
+}
+
+/// Displacement of every block at its centroid from the rigid motions of the path's bodies.
+fn displacements(assembly: &Assembly, problem: &PathProblem, motion: &[[f64; 3]], finite: bool) -> Vec<[f64; 3]> {
+    let of_block = |block: usize| {
+        let body = problem.body_of[block];
+        let u = carried(motion[body], problem.bodies[body].pole, assembly.inertia(block).centroid, finite);
+        [u.x, u.y, motion[body][2]]
+    };
+    (0..assembly.bodies.len()).map(of_block).collect()
+}
+
+/// Velocity of every block at its centroid from those of the path's bodies about their poles, which
+/// are in the places that `placed` moves them to. What moves by rounding beside the greatest stands
+/// still where the ground holds it.
+fn velocities(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    rates: &[[f64; 3]],
+    placed: Option<&[[f64; 3]]>,
+) -> Vec<CentroidVelocity> {
     let mut all: Vec<CentroidVelocity> = (0..assembly.bodies.len())
         .map(|block| {
             let body = problem.body_of[block];
-            let [x, y, omega] = motion[body];
-            let v = Vec2::new(x, y) + turned(assembly.inertia(block).centroid - problem.bodies[body].pole) * omega;
+            let [x, y, omega] = rates[body];
+            let arm = assembly.inertia(block).centroid - problem.bodies[body].pole;
+            let angle = placed.map_or(0.0, |motion| motion[body][2]);
+            let arm = arm * angle.cos() + turned(arm) * angle.sin();
+            let v = Vec2::new(x, y) + turned(arm) * omega;
             [v.x, v.y, omega]
         })
         .collect();
-    if rates {
-        let largest = all.iter().flatten().fold(0.0, |a: f64, v| a.max(v.abs()));
-        for (velocity, group) in all.iter_mut().zip(assembly.rigid_groups().0) {
-            if group.is_none() && velocity.iter().all(|v| v.abs() <= 1e-7 * largest) {
-                *velocity = [0.0; 3];
-            }
+    let largest = all.iter().flatten().fold(0.0, |a: f64, v| a.max(v.abs()));
+    for (velocity, group) in all.iter_mut().zip(assembly.rigid_groups().0) {
+        if group.is_none() && velocity.iter().all(|v| v.abs() <= 1e-7 * largest) {
+            *velocity = [0.0; 3];
         }
     }
     all
@@ -92,11 +130,13 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         let forces = problem.contacts.iter().zip(ray);
         forces.map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force }).collect::<Vec<_>>()
     });
-    let mut motion = solved.motion.as_ref().map(|motion| of_blocks(assembly, problem, motion, true));
-    if let (Status::NoEquilibrium, Some(motion)) = (solved.status, &mut motion) {
-        let largest = largest_jump(&jumps(assembly, motion));
-        motion.iter_mut().flatten().for_each(|v| *v /= largest);
+    let finite = question.settings.finite;
+    let mut rates = solved.motion.clone();
+    if let (Status::NoEquilibrium, Some(rates)) = (solved.status, &mut rates) {
+        let largest = largest_jump(&jumps(assembly, &velocities(assembly, problem, rates, None)));
+        rates.iter_mut().flatten().for_each(|v| *v /= largest);
     }
+    let motion = rates.as_ref().map(|rates| velocities(assembly, problem, rates, None));
     if let (Some(motion), false) = (&solved.motion, question.settings.finite) {
         let flow = flow_residual(problem, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
@@ -129,6 +169,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         _ => None,
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
+    // The mechanism is read at the undeformed place, velocities are those at the displaced one.
     let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, FlowReading::Own));
     let yielded = &solved.state.yielded;
     let mechanism = mechanism.map(|found| crate::yielded::with_crushing(found, assembly, problem, yielded));
@@ -175,7 +216,11 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
             }
         })
         .collect();
-    let displacements = of_blocks(assembly, problem, &solved.state.motion, false);
+    let motion = match (finite, &rates) {
+        (true, Some(rates)) => Some(velocities(assembly, problem, rates, Some(&solved.state.motion))),
+        _ => motion,
+    };
+    let displacements = displacements(assembly, problem, &solved.state.motion, finite);
     let mut counters = solved.counters;
     counters.insert("states".into(), watch.states);
     let open: Vec<ContactForce> = problem
@@ -253,10 +298,7 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     expect(displaced.len() == assembly.bodies.len(), "displacements: not one per block");
     for (block, entry) in displaced.iter().enumerate().take(assembly.bodies.len()) {
         expect(entry.body == assembly.bodies[block].name, "displacements: another block");
-        let [x, y, theta] = entry.displacement;
-        let body = problem.body_of[block];
-        let u = Vec2::new(x, y) + turned(problem.bodies[body].pole - assembly.inertia(block).centroid) * theta;
-        motion[body] = [u.x, u.y, theta];
+        motion[problem.body_of[block]] = of_body(assembly, &problem, block, entry.displacement, finite);
     }
     let factor = result.field_factor.ok_or("no factor of the field")?;
     let mut state = PathState { drive, factor, force, motion, ..PathState::default() };

@@ -24,7 +24,7 @@ fn rectangle(length: f64, height: f64) -> Vec<Vec2> {
 }
 
 fn density(elements: [usize; 2], order: usize) -> MeshDensity {
-    MeshDensity { elements, order, grading: 1.0 }
+    MeshDensity { elements, order, grading: [1.0; 2] }
 }
 
 /// G and Kolosov's constant κ.
@@ -100,7 +100,7 @@ fn patch_test_on_any_polygon() {
     let stress = [1.0e5, -3.0e5, 0.7e5];
     for (shape, plane) in shapes.iter().flat_map(|s| PLANES.map(|plane| (s, plane))) {
         for (order, grading) in [(1, 1.0), (2, 1.0), (3, 1.0), (1, 5.0), (2, 5.0), (3, 5.0)] {
-            let mesh = MeshDensity { elements: [3, 4], order, grading };
+            let mesh = MeshDensity { elements: [3, 4], order, grading: [grading; 2] };
             let (points, forces) = on_boundary(shape, &mesh, |_| stress);
             let mut condenser = Condenser::new(plane, WIDTH);
             let found = condenser.recover(shape, STONE, &mesh, &points, &forces, Vec2::zeros()).unwrap();
@@ -126,8 +126,10 @@ fn contact_patch_test_across_meshes_that_do_not_match() {
     let stress = [-2.0e4, -1.0e5, 3.0e4];
     let traction = |_: Vec2, n: Vec2| Matrix2::new(stress[0], stress[2], stress[2], stress[1]) * n;
     for (order, grading) in [(1, 1.0), (2, 1.0), (3, 1.0), (2, 6.0), (3, 6.0)] {
-        let meshes =
-            [MeshDensity { elements: [3, 2], order, grading: 1.0 }, MeshDensity { elements: [5, 4], order, grading }];
+        let meshes = [
+            MeshDensity { elements: [3, 2], order, grading: [1.0; 2] },
+            MeshDensity { elements: [5, 4], order, grading: [grading; 2] },
+        ];
         let ends = [lower[2], upper[0]];
         let sides = [(&lower, &meshes[0]), (&upper, &meshes[1])];
         let [one, other] = sides.map(|(shape, mesh)| breaks_on_joint(shape, mesh, ends).unwrap());
@@ -449,5 +451,5 @@ fn impossible_bodies_are_refused() {
     refused(&backwards, STONE, &mesh, &[], "anticlockwise");
     refused(&shape, IsotropicElastic { poisson_ratio: 0.5, ..STONE }, &mesh, &[], "no elastic material");
     refused(&shape, STONE, &density([4, 6], 4), &[], "order 1 to 3");
-    refused(&shape, STONE, &MeshDensity { grading: 0.5, ..mesh }, &[], "at least 1");
+    refused(&shape, STONE, &MeshDensity { grading: [1.0, 0.5], ..mesh }, &[], "at least 1");
 }

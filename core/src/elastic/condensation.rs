@@ -511,7 +511,7 @@ mod tests {
     fn sparse_and_dense_routes_agree() {
         let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]].map(Vec2::from);
         for order in 1..=3 {
-            let density = MeshDensity { elements: [2, 2], order, grading: 1.0 };
+            let density = MeshDensity { elements: [2, 2], order, grading: [1.0; 2] };
             let placement = Placement::new(&outline).unwrap();
             let shape = Shape::new(&placement, 0.25, &density, Plane::Strain, false).unwrap();
             let n = 2 * shape.mesh.nodes.len();

@@ -83,7 +83,7 @@ mod tests {
     /// On meshes that match, contact points are the nodes and weights the consistent forces.
     #[test]
     fn matching_meshes_touch_at_their_nodes() {
-        let density = MeshDensity { elements: [4, 6], order: 2, grading: 3.0 };
+        let density = MeshDensity { elements: [4, 6], order: 2, grading: [3.0; 2] };
         let (lower, upper) = (brick(0.0, 0.0), brick(0.0, 0.175));
         let ends = [lower[2], lower[3]];
         let one = breaks_on_joint(&lower, &density, ends).unwrap();

@@ -12,14 +12,15 @@ pub struct MeshDensity {
     pub elements: [usize; 2],
     /// Order of the elements, 1 to 3.
     pub order: usize,
-    /// g ≥ 1: greatest over least element size along an edge; finer towards the edge's ends.
-    pub grading: f64,
+    /// g ≥ 1: greatest over least element size along edges 0 and 2, along edges 1 and 3; finer
+    /// towards the edge's ends. Polygons that are no quadrilaterals take the greater for all edges.
+    pub grading: [f64; 2],
 }
 
 impl Default for MeshDensity {
     /// 4 × 6 elements of order 2, all alike.
     fn default() -> Self {
-        MeshDensity { elements: [4, 6], order: 2, grading: 1.0 }
+        MeshDensity { elements: [4, 6], order: 2, grading: [1.0; 2] }
     }
 }
 
@@ -35,8 +36,8 @@ impl MeshDensity {
         if !(1..=Self::MAX_ORDER).contains(&self.order) {
             return Err(format!("elements have order 1 to {}, not {}", Self::MAX_ORDER, self.order));
         }
-        if !(self.grading.is_finite() && self.grading >= 1.0) {
-            return Err(format!("the grading of a mesh is at least 1, not {}", self.grading));
+        if let Some(grading) = self.grading.iter().find(|g| !(g.is_finite() && **g >= 1.0)) {
+            return Err(format!("the grading of a mesh is at least 1, not {grading}"));
         }
         Ok(())
     }
@@ -76,19 +77,23 @@ fn with_nodes(ends: &[f64], order: usize) -> Vec<f64> {
     mirrored(t)
 }
 
-/// Elements along an edge.
-fn divisions(vertices: &[Vec2], density: &MeshDensity, edge: usize) -> usize {
-    if is_convex_quadrilateral(vertices) { density.elements[edge % 2] } else { 2 * half_divisions(density) }
-}
-
 fn half_divisions(density: &MeshDensity) -> usize {
     density.elements[0].max(density.elements[1]).div_ceil(2)
+}
+
+/// Grading of edges of polygons that are no quadrilaterals.
+fn common_grading(density: &MeshDensity) -> f64 {
+    density.grading[0].max(density.grading[1])
 }
 
 /// Element boundaries along the edge from vertex `edge` to the next, as fractions from 0 to 1;
 /// symmetric to the last bit, so that an edge read backwards has the same ones.
 pub fn edge_breaks(vertices: &[Vec2], density: &MeshDensity, edge: usize) -> Vec<f64> {
-    graded(divisions(vertices, density, edge), density.grading)
+    if is_convex_quadrilateral(vertices) {
+        graded(density.elements[edge % 2], density.grading[edge % 2])
+    } else {
+        graded(2 * half_divisions(density), common_grading(density))
+    }
 }
 
 /// The mesh's nodes along the edge from vertex `edge` to the next, as fractions from 0 to 1.
@@ -114,7 +119,7 @@ impl Mesh {
         let mut mesh = Mesh { nodes: vertices.to_vec(), elements: Vec::new(), order: density.order };
         let mut sides = HashMap::new();
         if is_convex_quadrilateral(vertices) {
-            let [u, v] = density.elements.map(|n| with_nodes(&graded(n, density.grading), density.order));
+            let [u, v] = [0, 1].map(|i| with_nodes(&graded(density.elements[i], density.grading[i]), density.order));
             let complement = |t: &[f64]| t.iter().rev().copied().collect::<Vec<_>>();
             let places = [(u.as_slice(), complement(&u)), (v.as_slice(), complement(&v))];
             mesh.fill([0, 1, 2, 3], &places, &mut sides);
@@ -122,7 +127,7 @@ impl Mesh {
         }
         let triangles = triangles(vertices).ok_or("the polygon cannot be cut into triangles")?;
         let k = half_divisions(density);
-        let whole = with_nodes(&graded(2 * k, density.grading), density.order);
+        let whole = with_nodes(&graded(2 * k, common_grading(density)), density.order);
         let half: Vec<f64> = whole[..=k * density.order].iter().map(|t| 2.0 * t).collect();
         let complement: Vec<f64> = half.iter().map(|t| 1.0 - t).collect();
         let mut middles = HashMap::new();
@@ -218,8 +223,9 @@ mod tests {
     /// element side belongs to two elements: the mesh is conforming.
     #[test]
     fn meshes_are_valid() {
-        for (shape, order, grading) in
-            shapes().iter().flat_map(|s| (1..=3).flat_map(move |p| [(s, p, 1.0), (s, p, 20.0)]))
+        for (shape, order, grading) in shapes()
+            .iter()
+            .flat_map(|s| (1..=3).flat_map(move |p| [(s, p, [1.0; 2]), (s, p, [20.0; 2]), (s, p, [3.0, 50.0])]))
         {
             let density = MeshDensity { elements: [3, 4], order, grading };
             let mesh = Mesh::new(shape, &density).unwrap();
@@ -249,7 +255,7 @@ mod tests {
     #[test]
     fn edges_have_their_nodes() {
         for shape in shapes() {
-            let density = MeshDensity { elements: [4, 6], order: 3, grading: 7.0 };
+            let density = MeshDensity { elements: [4, 6], order: 3, grading: [2.0, 7.0] };
             let mesh = Mesh::new(&shape, &density).unwrap();
             for (edge, (a, b)) in edges(&shape).enumerate() {
                 let fractions = edge_points(&shape, &density, edge);

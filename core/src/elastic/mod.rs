@@ -14,8 +14,9 @@
 //! `elements` count along the ring and across it. Any other polygon is cut into triangles, each of
 //! them into three quadrilaterals with k × k elements, k = ⌈max(elements) / 2⌉, so that every edge
 //! has 2 k parts. With a grading g > 1 the parts of an edge grow geometrically from its ends to its
-//! middle, the greatest being g times the least; both directions are graded, because at a joint's
-//! end the stress varies as fast into the body as along the joint.
+//! middle, the greatest being g times the least. Both directions want grading, because at a joint's
+//! end the stress varies as fast into the body as along the joint; each has its own g, because the
+//! two rarely have equally many parts.
 //!
 //! **Points.** Points of a body need not be nodes: the displacement there is that of the element's
 //! shape functions N, a force there acts by Nᵀ. All resultants stay exact, because the shape

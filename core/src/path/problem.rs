@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub struct PathBody {
     /// Blocks of the assembly.
     pub members: Vec<usize>,
-    /// Its centroid; the origin where it has no shape \[m\].
+    /// Its centroid; the origin where it has no shape; the point about which a support settles \[m\].
     pub pole: Vec2,
     /// Held by the ground: moves by settlement only.
     pub held: bool,
@@ -309,6 +309,11 @@ impl PathProblem {
     }
 
     fn drives(&mut self, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+        // What turns about a point has its pole there, so that the point's displacement is the pole's
+        // however far the body turns.
+        for settlement in stages.iter().flat_map(|stage| &stage.settlements).rev() {
+            self.bodies[self.body_of[settlement.body]].pole = settlement.about;
+        }
         let mut gravity = Vec2::zeros();
         for (index, stage) in stages.iter().enumerate() {
             let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);

@@ -16,25 +16,49 @@ pub struct Mesh {
     /// Order of the elements, 1 to 3.
     pub order: usize,
     /// Greatest over least element size along an edge; more than 1 is finer towards the edge's ends.
-    pub grading: f64,
+    pub grading: Grading,
+}
+
+/// One grading for all edges, or one along the ring and one across it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Grading {
+    /// The same both ways.
+    Both(f64),
+    /// Along, across; as `elements`.
+    Each([f64; 2]),
+}
+
+impl Grading {
+    fn pair(self) -> [f64; 2] {
+        match self {
+            Grading::Both(grading) => [grading; 2],
+            Grading::Each(grading) => grading,
+        }
+    }
 }
 
 impl Default for Mesh {
     fn default() -> Self {
         let MeshDensity { elements, order, grading } = MeshDensity::default();
-        Mesh { elements, order, grading }
+        Mesh {
+            elements,
+            order,
+            grading: if grading[0] == grading[1] { Grading::Both(grading[0]) } else { Grading::Each(grading) },
+        }
     }
 }
 
 impl From<Mesh> for MeshDensity {
     fn from(Mesh { elements, order, grading }: Mesh) -> MeshDensity {
-        MeshDensity { elements, order, grading }
+        MeshDensity { elements, order, grading: grading.pair() }
     }
 }
 
 const MAX_ELEMENTS: usize = 1000;
 const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
+const GRADING_NUMBER: Shape = Shape::Number(Quantity::Ratio, GRADING);
 
 /// The density of a scene's mesh, where it gives none the default.
 pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
@@ -53,7 +77,14 @@ pub(super) fn mistakes(mesh: Option<&Mesh>) -> Vec<Issue> {
     if !(1..=MAX_ORDER).contains(&mesh.order) {
         issues.push(Issue::new("mesh.order", format!("{} must be from 1 to {MAX_ORDER}", mesh.order)));
     }
-    issues.extend(out_of_range("mesh.grading", mesh.grading, GRADING));
+    match mesh.grading {
+        Grading::Both(grading) => issues.extend(out_of_range("mesh.grading", grading, GRADING)),
+        Grading::Each(each) => {
+            for (i, grading) in each.into_iter().enumerate() {
+                issues.extend(out_of_range(&format!("mesh.grading.{i}"), grading, GRADING));
+            }
+        }
+    }
     issues
 }
 
@@ -70,8 +101,12 @@ const KEYS: &[Parameter] = &[
         shape: Shape::Integer { min: 1, max: MAX_ORDER as i64 },
         need: Need::Default("2"),
     },
-    Parameter::number("grading", Quantity::Ratio, GRADING, "more than 1 is finer towards the joint's ends")
-        .default("1.0"),
+    Parameter {
+        name: "grading",
+        doc: "greatest over least element size along an edge, one number or [along the ring, across it]: more than 1 is finer towards the joint's ends",
+        shape: Shape::Either(&[GRADING_NUMBER, Shape::List { of: &GRADING_NUMBER, min: 2, max: 2 }]),
+        need: Need::Default("1.0"),
+    },
 ];
 
 /// The key `mesh` of a scene.

@@ -548,7 +548,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
     let material = IsotropicElastic { young_modulus: 1e9, poisson_ratio: 0.2, density: 0.0 };
     let law = Mises { elastic: Isotropic::new(1e9, 0.2), strength: 1e6, hardening: 1e8 };
     let update = Arc::new(PlanarUpdate::new(Arc::new(law), Plane::Strain).unwrap());
-    let mesh = MeshDensity { elements: [2, 2], order: 2, grading: 1.0 };
+    let mesh = MeshDensity { elements: [2, 2], order: 2, grading: [1.0; 2] };
     let inelastic = Condenser::new(Plane::Strain, 1.0).inelastic(&square, material, update, &mesh, &points).unwrap();
     let mut block = body(Vec2::new(0.5, 0.5), points, None, false);
     block.flexibility = Some(inelastic.flexibility());

@@ -797,15 +797,22 @@ impl<'a> Tracer<'a, '_> {
         Peak { factor: state.factor, state: recorded, motion }
     }
 
-    /// Velocities with p·q̇ = 1. `None` where the load does next to no work on them: rates are checked to
-    /// 1e-8 of their size, so less work than a hundred times that proves nothing.
+    /// Velocities with p·q̇ = 1; of settlements with finite displacements, which do no work, with 1 m of
+    /// the fastest body's speed. `None` where the load does next to no work on them: rates are checked
+    /// to 1e-8 of their size, so less work than a hundred times that proves nothing.
     fn scaled_motion(&self, state: &State, rate: &Rate) -> Option<Vec<[f64; 3]>> {
         let u = self.model.units;
-        let power = self.model.increment_of(state, rate).displacement
-            * u.displacement
-            * load_size(self.model.problem, self.model.loaded.growing);
+        let load = load_size(self.model.problem, self.model.loaded.growing);
+        let power = self.model.increment_of(state, rate).displacement * u.displacement * load;
         let size = self.model.motion_size(rate) * u.displacement * u.force / u.factor;
-        (power > 1e-6 * size).then(|| rate.motion.iter().map(|q| q.map(|x| x / power)).collect())
+        let by = if load == 0.0 && self.model.finite() {
+            rate.motion.iter().map(|q| q[0].hypot(q[1]).max(q[2].abs() * u.length)).fold(0.0, f64::max)
+        } else if power > 1e-6 * size {
+            power
+        } else {
+            0.0
+        };
+        (by > 0.0).then(|| rate.motion.iter().map(|q| q.map(|x| x / by)).collect())
     }
 
     /// Whether the rate goes on for ever: collapse, or a ray that carries any load.
