@@ -59,6 +59,9 @@ pub fn coarse_joints(problem: &PathProblem, assembly: &Assembly) -> Vec<SoftensO
     found
 }
 
+/// Contact points with their answers, and the states of all laws after them.
+type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
+
 impl PathProblem {
     /// Numbers in the states of all laws of tractions from gaps.
     pub fn memory_size(&self) -> usize {
@@ -78,17 +81,17 @@ impl PathProblem {
 
     /// One update of every contact point with a law of tractions from gaps, from `before`: contact
     /// point, answer and the states after it. `None` where `before` has the wrong length or an update fails.
-    fn updated(&self, gaps: &[[f64; 2]], before: &[f64]) -> Option<(Vec<(usize, TractionPoint)>, Vec<f64>)> {
+    fn updated(&self, gaps: &[[f64; 2]], before: &[f64]) -> Option<Updated> {
         let (mut after, mut points) = (before.to_vec(), Vec::new());
         if before.len() != self.memory_size() {
             return None;
         }
         let mut at = 0;
-        for contact in 0..self.contacts.len() {
+        for (contact, gap) in gaps.iter().enumerate().take(self.contacts.len()) {
             let Some(law) = self.response(contact) else { continue };
             let place = at..at + law.state_size();
             at = place.end;
-            let point = law.respond_point(gaps[contact], &before[place.clone()], &mut after[place]).ok()?;
+            let point = law.respond_point(*gap, &before[place.clone()], &mut after[place]).ok()?;
             points.push((contact, point));
         }
         Some((points, after))

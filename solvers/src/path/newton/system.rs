@@ -295,8 +295,8 @@ impl Model<'_> {
         }
         for (c, regime) in regimes.iter().enumerate() {
             if let Some((own, _)) = rows[c] {
-                for k in 0..2 {
-                    entries.push((2 * c + k, 2 * c + k, own[k]));
+                for (k, own) in own.iter().enumerate() {
+                    entries.push((2 * c + k, 2 * c + k, *own));
                     shifts.push((2 * c + k, 2 * c + k, SHIFT));
                 }
                 continue;
