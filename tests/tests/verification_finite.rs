@@ -194,84 +194,6 @@ fn a_three_hinged_arch_follows_its_closed_form_through_the_whole_loop() {
     }
 }
 
-/// An arch of two thick blocks on supports that hold no tension: it hinges at the intrados of the
-/// supports and at the extrados of the crown, snaps through, and is traced to where it hangs from
-/// those corners. Near the peak the corners are pressed in so far that more points touch; where one
-/// touches in each joint, the trough included, states lie on the closed form of the three-hinged arch.
-#[test]
-fn a_shallow_arch_of_blocks_snaps_through() {
-    let text = r#"name = "snap"
-[scene]
-scene = "arch"
-profile = { shape = "segmental", span = 4.0, rise = 0.1 }
-thickness = 0.4
-width = 1.0
-voussoirs = 2
-ends = "jointed"
-material = "stone"
-joint = "dry"
-[scene.mesh]
-elements = [1, 1]
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-law = "unilateral"
-tangential = "stuck"
-normal_stiffness = 1e9
-shear_stiffness = 5e8
-[solver]
-solver = "newton_path"
-kinematics = "finite"
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "live"
-until = "collapse"
-loads = [{ kind = "point", span_fraction = 0.4, force = [0.0, -1000.0] }, { kind = "point", span_fraction = 0.6, force = [0.0, -1000.0] }]
-"#;
-    let (problem, answer, states) = followed(text, &settings(Some(0.62), None));
-    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
-    let contacts = |joint: usize| problem.contacts.iter().filter(move |c| c.joint == joint);
-    let support = contacts(0).min_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("points");
-    let crown = contacts(1).max_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("points");
-    let left = support.plus.body;
-    let forces = &problem.drives[1].loading.forces;
-    let load = forces.iter().find(|f| f.0 == left).expect("a load on the left block").2;
-    let bar = Bar {
-        crown: crown.position - support.position,
-        load: load - support.position,
-        centroid: problem.bodies[left].pole - support.position,
-        span: crown.position.x - support.position.x,
-        weight: 9.81 * problem.bodies[left].mass,
-        normal: support.normal.y.atan2(support.normal.x),
-        support: support.compliance,
-        hinge: crown.compliance[0],
-    };
-    let factor = answer.factor.expect("a peak");
-    let (mut compared, mut least, mut least_compared) = (0, 0.0f64, 0.0f64);
-    for state in states.iter().filter(|s| s.drive == 1) {
-        least = least.min(state.factor);
-        let touching = |joint: usize| {
-            problem.contacts.iter().zip(&state.force).filter(|(c, f)| c.joint == joint && f[0] > 0.0).count()
-        };
-        if (0..3).all(|joint| touching(joint) == 1) {
-            let closed = bar.closed_load(state.motion[left][2]) / 1e3;
-            assert!((state.factor - closed).abs() < 1e-8 * factor, "{} {closed}", state.factor);
-            least_compared = least_compared.min(state.factor);
-            compared += 1;
-        }
-    }
-    let last = states.last().expect("states");
-    assert!(
-        compared > 50 && least == least_compared,
-        "{compared} of {}, trough {least_compared} {least}",
-        states.len()
-    );
-    assert!(least < -0.3 * factor && last.factor > 0.7 * least, "trough {least}, last {}", last.factor);
-}
-
 /// The reference bridge with elastic voussoirs; lengths in units of 1/`unit` m, forces in N.
 struct Bridge {
     young_modulus: f64,
@@ -331,6 +253,8 @@ gravity = {:?}
 name = "live"
 until = "collapse"
 loads = [{{ kind = "point", span_fraction = {:?}, force = [0.0, -1000.0] }}]
+[output]
+curve = true
 "#,
             9.42 * u,
             2.99 * u,
