@@ -7,6 +7,7 @@ use super::system::{Load, PointFacet, System, dot};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::interface::FacetMode;
 use voussoir_core::limit::{Counters, Status};
+use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{
     DriveEnd, Happening, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
@@ -187,7 +188,7 @@ impl<'a> Tracer<'a> {
             while (target - self.factor) * sense > 0.0 {
                 steps += 1;
                 if steps > greatest_events {
-                    return self.lost(format!("{greatest_events} events without an end"));
+                    return self.lost(format!("{greatest_events} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them"));
                 }
                 let (direction, falling) = match self.direction(&load) {
                     Next::Go(direction) => (direction, false),
@@ -365,6 +366,7 @@ impl<'a> Tracer<'a> {
             points: Self::verges(&self.system, &self.points, verge),
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
             drive: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
+            from_nothing: self.x.iter().all(|v| *v == 0.0),
         };
         let verdict = rate.solve(!self.associated, &mut self.counts.trials);
         let (rate, falling) = match verdict {
@@ -385,7 +387,7 @@ impl<'a> Tracer<'a> {
             Verdict::Nothing => return Some(Next::Nothing),
             Verdict::Undecided(combinations) => {
                 return Some(Next::Lost(format!(
-                    "the rate problem at λ = {:.9} has {m} contact points at the verge of a change ({combinations} combinations), and pivoting did not solve it",
+                    "the rate problem at λ = {:.9} has {m} contact points at the verge of a change ({combinations} combinations), and pivoting did not solve it; newton_path or a slightly different mesh or load may pass",
                     self.factor
                 )));
             }
@@ -782,7 +784,7 @@ impl<'a> Tracer<'a> {
         // p·q̇ = 1 in physical units.
         let physical = power * self.system.force_unit * size * sense;
         let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
-        let motion = bodies.into_iter().map(|b| b.map(|v| v * scale)).collect();
+        let motion: Vec<[f64; 3]> = bodies.into_iter().map(|b| b.map(|v| v * scale)).collect();
         if direction.factor < 0.0 {
             let mut this = self;
             this.notes.push("behind the limit point λ falls without end".into());
@@ -792,7 +794,11 @@ impl<'a> Tracer<'a> {
         let status = if gravity { Status::NoEquilibrium } else { Status::Collapse };
         let factor = (!gravity).then_some(self.factor);
         let limit = self.limit_point.is_some();
-        let mut answer = self.finish(if limit { Status::LimitPoint } else { status }, factor, Some(motion), None);
+        // The mechanism belongs to the last state; the one at the limit point may not allow it.
+        let motion = Some(motion).filter(|motion| {
+            self.limit_point.as_ref().is_none_or(|state| flow_residual(self.problem, &state.force, motion) <= 1e-6)
+        });
+        let mut answer = self.finish(if limit { Status::LimitPoint } else { status }, factor, motion, None);
         if limit {
             answer.notes.push("behind the limit point the path ends in a mechanism".into());
         }

@@ -63,6 +63,8 @@ voussoir_core::inventory::submit! {
             "Crisfield 1981, Computers & Structures 13, 55-62",
             "Wriggers 2006, Computational Contact Mechanics, Springer",
             "Judice & Pires 1994, Computers & Operations Research 21, 587-596",
+            "Ralph 1994, Math. Operations Research 19, 352-389",
+            "Dirkse & Ferris 1995, Optim. Methods Software 5, 123-156",
         ],
         file: file!(),
         page: include_str!("newton_path.md"),

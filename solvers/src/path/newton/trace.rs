@@ -7,6 +7,7 @@ use super::model::{Control, Loaded, Model, Rate, Refusal, State, load_size};
 use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
+use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{
     Continuation, Drive, DriveEnd, Increment, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
@@ -20,6 +21,9 @@ const LARGEST_FINITE_STEP: f64 = 0.002;
 
 /// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
 const LARGEST_SLIP: f64 = 0.05;
+
+/// Why there is no first state.
+const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
 
 /// How a drive ended.
 enum Outcome {
@@ -157,7 +161,15 @@ impl<'a> Tracer<'a, '_> {
             ));
         }
         let (state, last, factor, motion) = match self.peak {
-            Some(peak) => (peak.state, Some(self.recorded), Some(peak.factor), peak.motion.or(self.motion)),
+            Some(peak) => {
+                // The mechanism of the last state may not be one at the peak.
+                let problem = self.model.problem;
+                let fits = |motion: &Vec<[f64; 3]>| {
+                    self.model.finite() || flow_residual(problem, &peak.state.force, motion) <= 1e-6
+                };
+                let motion = peak.motion.filter(fits).or_else(|| self.motion.filter(fits));
+                (peak.state, Some(self.recorded), Some(peak.factor), motion)
+            }
             None => {
                 let factor = matches!(
                     self.status,
@@ -282,8 +294,16 @@ impl<'a> Tracer<'a, '_> {
         let direction = if factor < drive.start { -1.0 } else { 1.0 };
         let control = Control::Spring { weight: self.spring(), length: direction };
         let nothing = 1e-9 * self.model.units.factor;
+        if !self.model.monotone()
+            && let Some(next) = self.model.turned(&self.state, factor)
+        {
+            return if self.commit(next) { Outcome::Reached } else { Outcome::Ended };
+        }
         let own = self.model.pivoted(&self.state, &self.state.clone(), &control);
-        let Ok((state, _)) = own else { return self.follow(drive, factor) };
+        let Ok((state, _)) = own else {
+            self.end(Status::Stalled, NO_START.into());
+            return Outcome::Ended;
+        };
         if (state.factor - drive.start) * direction > nothing {
             let guess = self.model.in_proportion(&state, (factor - drive.start) / (state.factor - drive.start));
             return match self.model.iterate(&self.state, guess, &Control::Factor(factor), 8) {
@@ -297,10 +317,7 @@ impl<'a> Tracer<'a, '_> {
             let other = self.model.pivoted(&self.state, &self.state.clone(), &control);
             self.model.polygons = polygons;
             if !other.is_ok_and(|(other, _)| (other.factor - drive.start) * direction <= nothing) {
-                self.end(
-                    Status::Stalled,
-                    "the first load has no state that Newton's method or pivoting found, though associated slip would carry it: friction without dilatancy may have none, or several; try event_path, smaller stages, or limit_least".into(),
-                );
+                self.end(Status::Stalled, NO_START.into());
                 return Outcome::Ended;
             }
         }
@@ -555,7 +572,7 @@ impl<'a> Tracer<'a, '_> {
         }
         self.end(
             Status::Stalled,
-            format!("{MOST_STEPS} steps were not enough; the last state is at factor {}", self.state.factor),
+            format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended
     }
