@@ -170,7 +170,8 @@ impl Tracer<'_> {
         let base = self.base.as_mut()?;
         let pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
         let solves = &mut self.counts.solves;
-        let local = Local::new((&self.system, &self.points), base, (self.drive, load), verge, &pieces, solves)?;
+        let mut local = Local::new((&self.system, &self.points), base, (self.drive, load), verge, &pieces, solves)?;
+        local.rate.from_nothing = self.x.iter().all(|v| *v == 0.0);
         let verdict = local.rate.solve(!self.associated, &mut self.counts.trials);
         let (rate, falling) = match verdict {
             Verdict::Found(rate, others) => {
@@ -190,7 +191,7 @@ impl Tracer<'_> {
             Verdict::Nothing => return Some(Next::Nothing),
             Verdict::Undecided(combinations) => {
                 return Some(Next::Lost(format!(
-                    "the rate problem at λ = {:.9} has {} contact points at the verge of a change ({combinations} combinations), and pivoting did not solve it",
+                    "the rate problem at λ = {:.9} has {} contact points at the verge of a change ({combinations} combinations), and pivoting did not solve it; newton_path or a slightly different mesh or load may pass",
                     self.factor,
                     verge.len()
                 )));

@@ -211,17 +211,21 @@ impl RateProblem<'_> {
                 }
                 let rest = if sense > 0.0 { 1.0 - t } else { f64::INFINITY };
                 let step = next.map_or(f64::INFINITY, |n| n.0);
+                let read = |gap: &DVector<f64>, by: f64| {
+                    let pieces = laws.iter().zip(&cells).map(|(law, cell)| law.piece(*cell)).collect();
+                    let gaps = (0..laws.len()).map(|k| [0, 1].map(|i| by * gap[2 * k + i] / unit[2 * k + i]));
+                    Some((pieces, gaps.collect()))
+                };
                 if step.min(rest).is_infinite() {
-                    return None;
+                    // A ray: where forces stand still on it, a mechanism.
+                    return read(&gap_rate, sense);
                 }
                 let along = sense * step.min(rest);
                 force += &force_rate * along;
                 gap += &gap_rate * along;
                 t += along;
                 if rest <= step {
-                    let pieces = laws.iter().zip(&cells).map(|(law, cell)| law.piece(*cell)).collect();
-                    let gaps = (0..laws.len()).map(|k| [0, 1].map(|i| gap[2 * k + i] / unit[2 * k + i]));
-                    return Some((pieces, gaps.collect()));
+                    return read(&gap, 1.0);
                 }
                 if t < LOST {
                     return None;

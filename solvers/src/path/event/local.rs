@@ -71,6 +71,7 @@ impl<'a> Local<'a> {
             points: Tracer::verges(system, all, open),
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
             drive: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
+            from_nothing: false,
         };
         Some(Local { rate, points, epsilon })
     }

@@ -237,6 +237,9 @@ pub struct RateProblem<'a> {
     pub s: DMatrix<f64>,
     /// s.
     pub drive: DVector<f64>,
+    /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
+    /// associated does not prove that the load cannot be carried.
+    pub from_nothing: bool,
 }
 
 struct Attempt {
@@ -521,7 +524,7 @@ impl RateProblem<'_> {
             let facets: Vec<Vec<PointFacet>> =
                 self.points.iter().map(|p| p.facets.iter().map(turned).collect()).collect();
             let points = self.points.iter().zip(&facets).map(|(p, facets)| Verge { facets, ..p.clone() }).collect();
-            let problem = RateProblem { points, s: self.s.clone(), drive: self.drive.clone() };
+            let problem = RateProblem { points, s: self.s.clone(), drive: self.drive.clone(), from_nothing: false };
             match problem.corrected(pieces.clone(), counters) {
                 Some(rate) if own == 1.0 => return Some(rate),
                 Some(rate) => pieces = rate.pieces,
@@ -533,16 +536,29 @@ impl RateProblem<'_> {
 
     /// By the piecewise linear path, from several guesses.
     fn by_homotopy(&self, starts: u64, counters: &mut u64) -> Option<Rate> {
+        let mut mechanism = None;
         for number in 0..starts {
             let Some((pieces, gaps)) = self.followed(1.0, number, counters) else { continue };
             if let Some(rate) = self.corrected(pieces.clone(), counters) {
                 return Some(rate);
             }
-            if let Some(rate) = self.mechanism(&pieces, &gaps) {
-                return Some(rate);
+            mechanism = mechanism.or_else(|| self.mechanism(&pieces, &gaps));
+            // With associated flow a mechanism excludes that the load grows.
+            if mechanism.is_some() && self.associated() {
+                break;
             }
         }
-        None
+        mechanism.filter(|_| self.proves(counters))
+    }
+
+    fn associated(&self) -> bool {
+        self.points.iter().flat_map(|p| p.facets).all(|f| f.flow == f.normal)
+    }
+
+    /// Whether a mechanism means that the load does not grow: from nothing only where slip with
+    /// associated flow does not carry it either.
+    fn proves(&self, counters: &mut u64) -> bool {
+        !self.from_nothing || self.associated() || matches!(self.pivoted(true, counters), Some(Pivoted::Ray(_)))
     }
 
     /// How many other solutions paths from random guesses find.
@@ -628,8 +644,8 @@ impl RateProblem<'_> {
                         return Verdict::Found(rate, None);
                     }
                 }
-                Some(Pivoted::Ray(rate)) => return Verdict::Found(rate, None),
-                None => {}
+                Some(Pivoted::Ray(rate)) if self.proves(counters) => return Verdict::Found(rate, None),
+                _ => {}
             }
             if let Some(rate) = self.by_homotopy(STARTS, counters) {
                 return Verdict::Found(rate, None);

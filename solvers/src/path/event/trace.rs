@@ -7,6 +7,7 @@ use super::point::Point;
 use super::system::{Load, System};
 use super::unique::unique;
 use voussoir_core::limit::{Counters, Status};
+use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
 /// Follows one problem.
@@ -102,7 +103,7 @@ impl<'a> Tracer<'a> {
             while (target - self.factor) * sense > 0.0 {
                 steps += 1;
                 if steps > greatest_events {
-                    return self.lost(format!("{greatest_events} events without an end"));
+                    return self.lost(format!("{greatest_events} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them"));
                 }
                 let (direction, falling) = match self.direction(&load) {
                     Next::Go(direction) => (direction, false),
@@ -259,7 +260,7 @@ impl<'a> Tracer<'a> {
         // p·q̇ = 1 in physical units.
         let physical = power * self.system.force_unit * size * sense;
         let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
-        let motion = bodies.into_iter().map(|b| b.map(|v| v * scale)).collect();
+        let motion: Vec<[f64; 3]> = bodies.into_iter().map(|b| b.map(|v| v * scale)).collect();
         if direction.factor < 0.0 {
             let mut this = self;
             this.notes.push("behind the limit point λ falls without end".into());
@@ -270,7 +271,11 @@ impl<'a> Tracer<'a> {
         let factor = (!gravity).then_some(self.factor);
         let limit = self.limit_point.is_some();
         let unique = unique(&self.system, &self.points, &direction.gaps);
-        let mut answer = self.finish(if limit { Status::LimitPoint } else { status }, factor, Some(motion), None);
+        // The mechanism belongs to the last state; the one at the limit point may not allow it.
+        let motion = Some(motion).filter(|motion| {
+            self.limit_point.as_ref().is_none_or(|state| flow_residual(self.problem, &state.force, motion) <= 1e-6)
+        });
+        let mut answer = self.finish(if limit { Status::LimitPoint } else { status }, factor, motion, None);
         if limit {
             answer.notes.push("behind the limit point the path ends in a mechanism".into());
         }

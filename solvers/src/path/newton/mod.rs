@@ -67,6 +67,8 @@ voussoir_core::inventory::submit! {
             "Wriggers 2006, Computational Contact Mechanics, Springer",
             "de Borst 1987, Computers & Structures 25, 211-224",
             "Judice & Pires 1994, Computers & Operations Research 21, 587-596",
+            "Ralph 1994, Math. Operations Research 19, 352-389",
+            "Dirkse & Ferris 1995, Optim. Methods Software 5, 123-156",
         ],
         file: file!(),
         page: include_str!("newton_path.md"),

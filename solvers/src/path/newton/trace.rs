@@ -8,6 +8,7 @@ use super::softening::MOST_REFINEMENTS;
 use std::sync::Arc;
 use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
+use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{
     Continuation, Drive, DriveEnd, Increment, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
@@ -25,6 +26,8 @@ const LARGEST_SLIP: f64 = 0.05;
 /// Relative change of the factor, while the displacement doubles, below which blocks flow at a constant
 /// load.
 const PLATEAU: f64 = 1e-5;
+/// Why there is no first state.
+const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
 
 /// How a drive ended.
 enum Outcome {
@@ -164,9 +167,15 @@ impl<'a> Tracer<'a, '_> {
         let (state, last, factor, motion) = match self.peak {
             Some(peak) => {
                 // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
-                let of_peak = peak.motion.filter(|_| self.model.finite() || self.model.responses.is_empty());
-                let motion =
-                    if self.model.responses.is_empty() { of_peak.or(self.motion) } else { self.motion.or(of_peak) };
+                let problem = self.model.problem;
+                let softens = !self.model.responses.is_empty();
+                // The mechanism of the last state may not be one at the peak.
+                let fits = |motion: &Vec<[f64; 3]>| {
+                    softens || self.model.finite() || flow_residual(problem, &peak.state.force, motion) <= 1e-6
+                };
+                let of_peak = peak.motion.filter(|_| self.model.finite() || !softens).filter(fits);
+                let of_end = self.motion.filter(fits);
+                let motion = if softens { of_end.or(of_peak) } else { of_peak.or(of_end) };
                 (peak.state, Some(self.recorded), Some(peak.factor), motion)
             }
             None => {
@@ -295,8 +304,16 @@ impl<'a> Tracer<'a, '_> {
         let direction = if factor < drive.start { -1.0 } else { 1.0 };
         let control = Control::Spring { weight: self.spring(), length: direction };
         let nothing = 1e-9 * self.model.units.factor;
+        if !self.model.monotone()
+            && let Some(next) = self.model.turned(&self.state, factor)
+        {
+            return if self.commit(next) { Outcome::Reached } else { Outcome::Ended };
+        }
         let own = self.model.pivoted(&self.state, &self.state.clone(), &control);
-        let Ok((state, _)) = own else { return self.follow(drive, factor) };
+        let Ok((state, _)) = own else {
+            self.end(Status::Stalled, NO_START.into());
+            return Outcome::Ended;
+        };
         if (state.factor - drive.start) * direction > nothing {
             let guess = self.model.in_proportion(&state, (factor - drive.start) / (state.factor - drive.start));
             return match self.model.iterate(&self.state, guess, &Control::Factor(factor), 8) {
@@ -310,10 +327,7 @@ impl<'a> Tracer<'a, '_> {
             let other = self.model.pivoted(&self.state, &self.state.clone(), &control);
             self.model.polygons = polygons;
             if !other.is_ok_and(|(other, _)| (other.factor - drive.start) * direction <= nothing) {
-                self.end(
-                    Status::Stalled,
-                    "the first load has no state that Newton's method or pivoting found, though associated slip would carry it: friction without dilatancy may have none, or several; try event_path, smaller stages, or limit_least".into(),
-                );
+                self.end(Status::Stalled, NO_START.into());
                 return Outcome::Ended;
             }
         }
@@ -599,7 +613,7 @@ impl<'a> Tracer<'a, '_> {
         }
         self.end(
             Status::Stalled,
-            format!("{MOST_STEPS} steps were not enough; the last state is at factor {}", self.state.factor),
+            format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended
     }
