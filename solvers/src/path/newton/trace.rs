@@ -366,6 +366,31 @@ impl<'a> Tracer<'a, '_> {
                 Err(refusal) => {
                     self.model.count("cutbacks", 1);
                     let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
+                    let steps = self.model.counters.get("steps").copied();
+                    if length <= 1e-3 * initial
+                        && switched_at != steps
+                        && let Some(other) = self.beyond_yield(&rate, 1e-3 * initial / per_rate)
+                    {
+                        // A block at its strength softens: the path turns where it begins to yield.
+                        switched_at = steps;
+                        if other.factor * direction <= 0.0 {
+                            if !strategy.passes_limit_points() {
+                                self.no_step(&refusal, &other, direction);
+                                return Outcome::Ended;
+                            }
+                            if self.peak.is_none() {
+                                let motion = self.scaled_motion(&self.state, &other);
+                                self.peak =
+                                    Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                            }
+                        }
+                        rate = other;
+                        yielding = None;
+                        before_peak_rate = rate.factor * direction;
+                        previous = None;
+                        length = 0.1 * initial;
+                        continue;
+                    }
                     if slip <= 1e-9 * share.max(initial / per_rate)
                         && switched_at != self.model.counters.get("steps").copied()
                     {
@@ -477,6 +502,22 @@ impl<'a> Tracer<'a, '_> {
             return None;
         }
         self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
+    }
+
+    /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
+    /// in which they dissipate. Their next predictor is that of the yielding tangent.
+    fn beyond_yield(&mut self, rate: &Rate, share: f64) -> Option<Rate> {
+        let mut ahead = self.moved(rate, share);
+        self.model.deform(&mut ahead).ok()?;
+        let mut turning = self.state.clone();
+        turning.blocks = ahead.blocks;
+        if !turning.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0) {
+            return None;
+        }
+        let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;
+        let power = self.model.plastic_power(&turning, &other);
+        self.state.blocks = turning.blocks;
+        Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
     }
 
     /// Share of the rate after which the first stuck point whose slip is not associated would slide.
