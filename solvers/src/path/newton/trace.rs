@@ -21,10 +21,6 @@ const LARGEST_FINITE_STEP: f64 = 0.002;
 /// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
 const LARGEST_SLIP: f64 = 0.05;
 
-/// Relative change of the factor, while the displacement doubles, below which blocks flow at a constant
-/// load.
-const PLATEAU: f64 = 1e-5;
-
 /// How a drive ended.
 enum Outcome {
     /// At its factor.
@@ -367,9 +363,9 @@ impl<'a> Tracer<'a, '_> {
                     self.model.count("cutbacks", 1);
                     let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
                     let steps = self.model.counters.get("steps").copied();
-                    if length <= 1e-3 * initial
+                    if length <= 1e-7 * initial
                         && switched_at != steps
-                        && let Some(other) = self.beyond_yield(&rate, 1e-3 * initial / per_rate)
+                        && let Some(other) = self.beyond_yield(&rate, 1e-5 * initial / per_rate)
                     {
                         // A block at its strength softens: the path turns where it begins to yield.
                         switched_at = steps;
@@ -457,9 +453,6 @@ impl<'a> Tracer<'a, '_> {
             rate = next_rate;
             yielding = None;
             if !self.model.finite() && !self.flows() && self.ray_ends(&rate, direction, target) {
-                return Outcome::Ended;
-            }
-            if !self.model.finite() && self.flows() && self.plateau(&rate) {
                 return Outcome::Ended;
             }
             if self.stops(drive, direction) {
@@ -734,24 +727,6 @@ impl<'a> Tracer<'a, '_> {
     /// Whether a block yields in the last step.
     fn flows(&self) -> bool {
         self.state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
-    }
-
-    /// Whether blocks flow at a load that has stopped growing: as much displacement again would change λ
-    /// by less than [`PLATEAU`] of itself.
-    fn plateau(&mut self, rate: &Rate) -> bool {
-        let speed = self.model.increment_of(&self.state, rate).displacement * self.model.units.displacement;
-        let change = rate.factor * self.recorded.displacement / speed;
-        if speed == 0.0 || self.peak.is_some() || change.is_nan() || change.abs() > PLATEAU * self.state.factor.abs() {
-            return false;
-        }
-        self.end(
-            Status::LimitPoint,
-            format!(
-                "blocks flow at factor {}: as much displacement again would change it by less than {PLATEAU:.0e} of itself",
-                self.state.factor
-            ),
-        );
-        true
     }
 
     /// Whether the path went as far behind its peak as was asked for.
