@@ -252,6 +252,7 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         mass: if held { 0.0 } else { weight / 10.0 },
         points: Vec::new(),
         flexibility: None,
+        inelastic: None,
     };
     let contact = |x: f64, law, compliance| Contact {
         joint: 0,
@@ -280,6 +281,7 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         body_of: vec![0, 1],
         contacts: feet.iter().map(|x| foot(*x)).chain([pulling]).collect(),
         facets: vec![facets],
+        responses: vec![],
         drives,
         length: 2.0,
         counters: BTreeMap::new(),

@@ -54,7 +54,7 @@ fn two_bars(rise: f64) -> PathProblem {
         mass: 0.0,
         points: vec![],
         flexibility: None,
-        gravity: None,
+        inelastic: None,
     };
     let contact = |joint: usize, position: Vec2, normal: Vec2, compliance: [f64; 2]| Contact {
         joint,
@@ -82,6 +82,7 @@ fn two_bars(rise: f64) -> PathProblem {
             contact(2, Vec2::new(SPAN, 0.0), mirrored, PIN),
         ],
         facets: vec![],
+        responses: vec![],
         drives: vec![Drive {
             stage: 0,
             gravity: false,

@@ -42,6 +42,9 @@ const RESIDUAL: f64 = 1e-10;
 /// slows the iteration down; what it converges to is the same.
 const SOFTEST: f64 = 1e-6;
 
+/// Flexibility, relative to the elastic body's, from which a tangent counts as singular.
+const LARGEST: f64 = 1e7;
+
 /// √A of the greatest element \[m\] of a polygon's mesh, or why there is no mesh.
 pub fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, String> {
     let mesh = Mesh::new(vertices, density)?;
@@ -454,6 +457,10 @@ impl InelasticBody {
         let all = factors.solve(&right, 1)?;
         let mut all = DMatrix::from_fn(size, all.len(), |i, j| all[j][i]);
         self.shape.without_rigid_motion(&mut all);
+        let largest = all.columns(0, right.len() - 1).amax();
+        if largest.is_nan() || largest > LARGEST * self.response.amax() {
+            return None;
+        }
         let mut left = DMatrix::from_fn(size, right.len(), |i, j| right[j][i]);
         for &(i, j, value) in entries.iter().skip(SPRINGS.len()) {
             for c in 0..left.ncols() {

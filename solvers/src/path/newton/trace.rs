@@ -23,9 +23,6 @@ const LARGEST_FINITE_STEP: f64 = 0.002;
 /// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
 const LARGEST_SLIP: f64 = 0.05;
 
-/// Relative change of the factor, while the displacement doubles, below which blocks flow at a constant
-/// load.
-const PLATEAU: f64 = 1e-5;
 /// Why there is no first state.
 const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
 
@@ -508,6 +505,31 @@ impl<'a> Tracer<'a, '_> {
                 Err(refusal) => {
                     self.model.count("cutbacks", 1);
                     let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
+                    let steps = self.model.counters.get("steps").copied();
+                    if length <= 1e-7 * initial
+                        && switched_at != steps
+                        && let Some(other) = self.beyond_yield(&rate, 1e-5 * initial / per_rate)
+                    {
+                        // A block at its strength softens: the path turns where it begins to yield.
+                        switched_at = steps;
+                        if other.factor * direction <= 0.0 {
+                            if !strategy.passes_limit_points() {
+                                self.no_step(&refusal, &other, direction);
+                                return Outcome::Ended;
+                            }
+                            if self.peak.is_none() {
+                                let motion = self.scaled_motion(&self.state, &other);
+                                self.peak =
+                                    Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                            }
+                        }
+                        rate = other;
+                        yielding = None;
+                        before_peak_rate = rate.factor * direction;
+                        previous = None;
+                        length = 0.1 * initial;
+                        continue;
+                    }
                     if slip <= 1e-9 * share.max(initial / per_rate)
                         && switched_at != self.model.counters.get("steps").copied()
                     {
@@ -594,9 +616,6 @@ impl<'a> Tracer<'a, '_> {
             if !self.model.finite() && !self.flows() && self.ray_ends(&rate, direction, target) {
                 return Outcome::Ended;
             }
-            if !self.model.finite() && self.flows() && self.plateau(&rate) {
-                return Outcome::Ended;
-            }
             if self.stops(drive, direction) {
                 return Outcome::Ended;
             }
@@ -651,6 +670,22 @@ impl<'a> Tracer<'a, '_> {
             return None;
         }
         self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
+    }
+
+    /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
+    /// in which they dissipate. Their next predictor is that of the yielding tangent.
+    fn beyond_yield(&mut self, rate: &Rate, share: f64) -> Option<Rate> {
+        let mut ahead = self.moved(rate, share);
+        self.model.deform(&mut ahead).ok()?;
+        let mut turning = self.state.clone();
+        turning.blocks = ahead.blocks;
+        if !turning.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0) {
+            return None;
+        }
+        let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;
+        let power = self.model.plastic_power(&turning, &other);
+        self.state.blocks = turning.blocks;
+        Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
     }
 
     /// Share of the rate after which the first stuck point whose slip is not associated would slide.
@@ -882,24 +917,6 @@ impl<'a> Tracer<'a, '_> {
     /// Whether a block yields in the last step.
     fn flows(&self) -> bool {
         self.state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
-    }
-
-    /// Whether blocks flow at a load that has stopped growing: as much displacement again would change λ
-    /// by less than [`PLATEAU`] of itself.
-    fn plateau(&mut self, rate: &Rate) -> bool {
-        let speed = self.model.increment_of(&self.state, rate).displacement * self.model.units.displacement;
-        let change = rate.factor * self.recorded.displacement / speed;
-        if speed == 0.0 || self.peak.is_some() || change.is_nan() || change.abs() > PLATEAU * self.state.factor.abs() {
-            return false;
-        }
-        self.end(
-            Status::LimitPoint,
-            format!(
-                "blocks flow at factor {}: as much displacement again would change it by less than {PLATEAU:.0e} of itself",
-                self.state.factor
-            ),
-        );
-        true
     }
 
     /// Whether the path went as far behind its peak as was asked for.
