@@ -54,7 +54,10 @@ impl Model<'_> {
         let found = self.iterate(start, guess.clone(), control, 8);
         match (found, control) {
             (Err(_), _) if self.finite() => self.iterate(start, guess, control, 0),
-            (Err(_), Control::Factor(factor)) => self.pivoted(start, &State { factor: *factor, ..guess }, control),
+            // Where flow is not associated pivoting may step over a limit point: from nothing only.
+            (Err(_), Control::Factor(factor)) if self.monotone() || start.force.iter().flatten().all(|r| *r == 0.0) => {
+                self.pivoted(start, &State { factor: *factor, ..guess }, control)
+            }
             (found, _) => found,
         }
     }
