@@ -55,11 +55,14 @@ impl Model<'_> {
         if found.is_ok() || (!self.responses.is_empty() && self.polygons.iter().all(|law| law.facets.is_empty())) {
             return found;
         }
+        if self.finite() || !self.piecewise_linear() {
+            return self.iterate(start, guess, control, 0);
+        }
+        // Where flow is not associated pivoting may step over a limit point: from nothing only.
         match control {
-            Control::Factor(factor) if !self.finite() && self.piecewise_linear() => {
+            Control::Factor(factor) if self.monotone() || start.force.iter().flatten().all(|r| *r == 0.0) => {
                 self.pivoted(start, &State { factor: *factor, ..guess }, control)
             }
-            _ if self.finite() || !self.piecewise_linear() => self.iterate(start, guess, control, 0),
             _ => found,
         }
     }

@@ -477,7 +477,9 @@ impl<'a> Tracer<'a, '_> {
             }
             let mut control = control;
             let mut found = self.model.newton(&self.state, guess.clone(), &control);
-            if found.is_err() && !self.model.finite() && !reaches {
+            // Where flow is not associated pivoting may step over a limit point: the last resort.
+            let last = strategy.passes_limit_points() && length < 1e-8 * initial;
+            if found.is_err() && !self.model.finite() && !reaches && (self.model.monotone() || last) {
                 if strategy.passes_limit_points() {
                     let along = weight * rate.factor / unit + self.model.work_along(&rate);
                     control = Control::Spring { weight, length: step * along };
