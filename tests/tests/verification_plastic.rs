@@ -34,6 +34,7 @@ struct Press {
     order: usize,
     plane: &'static str,
     sides: bool,
+    guided: bool,
     stages: String,
     angle: f64,
     scale: f64,
@@ -49,6 +50,7 @@ impl Press {
             order: 2,
             plane: "strain",
             sides: false,
+            guided: false,
             stages: stages.into(),
             angle: 0.0,
             scale: 1.0,
@@ -84,6 +86,10 @@ impl Press {
         if self.sides {
             blocks += &block("left", [-0.1, 0.0], [0.0, top], fixed);
             blocks += &block("right", [w, w + 0.1], [0.0, top], fixed);
+        }
+        if self.guided {
+            blocks += &block("left guide", [-0.1, 0.0], [top, top + 0.1], fixed);
+            blocks += &block("right guide", [w, w + 0.1], [top, top + 0.1], fixed);
         }
         let mut materials = String::from("[materials.rigid]\nlaw = \"rigid\"\ndensity = 1.0\n");
         for (name, text) in &self.materials {
@@ -327,8 +333,8 @@ fn a_softening_bar_does_not_depend_on_the_mesh() {
             .materials
             .push(("sound", "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0".into()));
         press.blocks = vec![("weak", "stone", 0.0, layer), ("rest", "sound", layer, 1.2)];
-        // One element across: as many as the plate can turn on bifurcate from the uniform answer.
-        (press.width, press.elements) = (layer, [1, 1]);
+        // A plate that can turn, and rows of Gauss points of order 2, bifurcate from the uniform answer.
+        (press.width, press.elements, press.guided, press.order) = (layer, [1, 1], true, 1);
         press.plane = "stress";
         // R / (1 − A) = 10 MPa.
         let strength = 10e6 * layer / LOAD;
