@@ -187,9 +187,9 @@ impl InelasticBody {
                 }
                 // Point (i, j) is the one at i + n j; sides 0 and 2 run along i.
                 let rule: f64 = points[..n].iter().map(|p| p.weight).sum();
-                for row in 0..n {
+                for (row, point) in points[..n].iter().enumerate() {
                     let inwards = (0..n).map(|k| if side % 2 == 0 { row + n * k } else { k + n * row });
-                    let share = points[row].weight / rule;
+                    let share = point.weight / rule;
                     rows.push(((b - a).norm() * share, inwards.map(|k| element * n * n + k).collect()));
                 }
             }
