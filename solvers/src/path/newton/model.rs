@@ -406,7 +406,7 @@ impl<'a> Model<'a> {
     pub fn increment_of(&self, state: &State, rate: &Rate) -> Increment {
         let mut moved = state.clone();
         let mut small = 1e-6 / self.rate_size(rate).max(1e-300);
-        if !self.finite() {
+        if !self.finite() && self.responses.is_empty() {
             // Everything is linear: from nothing, without a difference of what may be large.
             moved.gap.fill([0.0; 2]);
             moved.motion.fill([0.0; 3]);

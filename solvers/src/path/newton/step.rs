@@ -39,7 +39,8 @@ impl Model<'_> {
                     let rho = self.compliance[c].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean });
                     let gap = self.step_gap(start, state, c);
                     let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
-                    let tolerance = (1e-11 * largest).max(rounding * rho[0].max(rho[1]));
+                    // A certificate allows 1e-8 of the greatest force.
+                    let tolerance = (rounding * rho[0].max(rho[1])).clamp(1e-11 * largest, 3e-9 * largest);
                     law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, tolerance)
                 }
             })

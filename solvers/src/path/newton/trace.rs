@@ -532,11 +532,11 @@ impl<'a> Tracer<'a, '_> {
                         length = 0.1 * initial;
                         continue;
                     }
-                    if slip <= 1e-9 * share.max(initial / per_rate)
-                        && switched_at != self.model.counters.get("steps").copied()
-                    {
+                    // With finite displacements points that open together turn the path as sharply as slip does.
+                    let at_corner = self.model.finite() && length <= 1e-7 * initial;
+                    if (slip <= 1e-9 * share.max(initial / per_rate) || at_corner) && switched_at != steps {
                         // At the very event: another branch, on which the points at their limit yield.
-                        switched_at = self.model.counters.get("steps").copied();
+                        switched_at = steps;
                         if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
                             let falls = other.factor * direction <= 0.0;
                             if falls && !strategy.passes_limit_points() {
