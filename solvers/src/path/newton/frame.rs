@@ -10,6 +10,7 @@ use super::system::SHIFT;
 use crate::lu::SparseLu;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
@@ -148,9 +149,9 @@ impl Frame {
             e
         };
         for &c in changed {
-            if !self.columns.contains_key(&c) {
+            if let Entry::Vacant(column) = self.columns.entry(c) {
                 let mut x = factors.solve(&[unit(2 * c), unit(2 * c + 1)], 0)?.into_iter();
-                self.columns.insert(c, [x.next()?, x.next()?]);
+                column.insert([x.next()?, x.next()?]);
             }
         }
         let new: Vec<[Row; 2]> = changed.iter().map(|c| self.rows_of(model, *c, regimes[*c])).collect();

@@ -160,11 +160,11 @@ impl Model<'_> {
                     sense = if speed < 0.0 { -1.0 } else { 1.0 };
                 }
                 let mut next: Option<(f64, f64, usize, usize)> = None;
-                for c in 0..points {
+                for (c, gap_rate) in gap_rate.iter().enumerate() {
                     let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) else { continue };
                     let area = self.problem.contacts[c].area;
                     for (index, wall) in law.cells.cells[cell].1.iter().enumerate() {
-                        let speed = sense * wall.speed(rate.force[c], gap_rate[c]);
+                        let speed = sense * wall.speed(rate.force[c], *gap_rate);
                         if speed >= 0.0 {
                             continue;
                         }
@@ -181,13 +181,12 @@ impl Model<'_> {
                     return Err("the path of pivoting leaves along a ray".into());
                 }
                 let along = sense * step.min(rest);
-                for c in 0..points {
-                    for k in 0..2 {
-                        place.state.force[c][k] += along * rate.force[c][k];
-                        place.step_gap[c][k] += along * gap_rate[c][k];
-                        place.state.gap[c][k] += along * rate.gap[c][k];
-                    }
-                }
+                let advance = |to: &mut [[f64; 2]], by: &[[f64; 2]]| {
+                    to.iter_mut().flatten().zip(by.iter().flatten()).for_each(|(x, rate)| *x += along * rate);
+                };
+                advance(&mut place.state.force, &rate.force);
+                advance(&mut place.step_gap, &gap_rate);
+                advance(&mut place.state.gap, &rate.gap);
                 for (q, dq) in place.state.motion.iter_mut().zip(&rate.motion) {
                     (0..3).for_each(|k| q[k] += along * dq[k]);
                 }

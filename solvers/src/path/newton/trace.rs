@@ -288,7 +288,7 @@ impl<'a> Tracer<'a, '_> {
             }
         }
         if small && self.proportional() {
-            return self.from_nothing(drive, factor);
+            return self.started(drive, factor);
         }
         self.follow(drive, factor)
     }
@@ -297,7 +297,7 @@ impl<'a> Tracer<'a, '_> {
     /// has a solution whatever the load. If λ grows with it, that state in proportion is the one looked
     /// for. If λ stays at nothing, the motion is a mechanism. Where flow is not associated that proves
     /// something only if λ stays at nothing with associated flow too.
-    fn from_nothing(&mut self, drive: &Drive, factor: f64) -> Outcome {
+    fn started(&mut self, drive: &Drive, factor: f64) -> Outcome {
         let direction = if factor < drive.start { -1.0 } else { 1.0 };
         let control = Control::Spring { weight: self.spring(), length: direction };
         let nothing = 1e-9 * self.model.units.factor;
