@@ -151,8 +151,20 @@ pub fn mechanism(
     unique: Option<bool>,
     flow: FlowReading,
 ) -> Option<Mechanism> {
+    mechanism_above(TOLERANCE, assembly, motion, unique, flow)
+}
+
+/// Reads a mechanism off rates of bodies that also deform: jumps below `share` of the greatest are
+/// deformation.
+pub fn mechanism_above(
+    share: f64,
+    assembly: &Assembly,
+    motion: &[CentroidVelocity],
+    unique: Option<bool>,
+    flow: FlowReading,
+) -> Option<Mechanism> {
     let jumps = jumps(assembly, motion);
-    let tolerance = TOLERANCE * jumps.iter().map(Jump::size).fold(0.0, f64::max);
+    let tolerance = share * jumps.iter().map(Jump::size).fold(0.0, f64::max);
     if tolerance == 0.0 {
         return None;
     }

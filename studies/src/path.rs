@@ -9,7 +9,7 @@ use voussoir_core::certificate::{Certificate, ContactForce, largest_jump};
 use voussoir_core::geometry::{Vec2, turned};
 use voussoir_core::interface::FlowReading;
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
+use voussoir_core::mechanism::{CentroidVelocity, Mechanism, jumps, mechanism, mechanism_above};
 use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
 use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints};
 
@@ -17,6 +17,27 @@ use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem, Pat
 fn small(name: &str, value: f64) -> bool {
     let bound = tolerance(name).result;
     value <= bound || bound.is_infinite()
+}
+
+/// Jumps below this share of the greatest are the blocks' deformation: where a path ends in rates on which
+/// forces change (peaks of finite displacements, blocks that yield) every joint moves a little.
+const DEFORMATION: f64 = 0.05;
+
+/// The mechanism of a motion at a state.
+fn mechanism_of(
+    (assembly, problem): (&Assembly, &PathProblem),
+    state: &PathState,
+    motion: &[CentroidVelocity],
+    unique: Option<bool>,
+    finite: bool,
+) -> Option<Mechanism> {
+    let deforming = finite || !state.yielded.iter().all(Option::is_none);
+    let found = if deforming {
+        mechanism_above(DEFORMATION, assembly, motion, unique, FlowReading::Own)
+    } else {
+        mechanism(assembly, motion, unique, FlowReading::Own)
+    };
+    found.map(|found| crate::yielded::with_crushing(found, assembly, problem, &state.yielded))
 }
 
 /// A path's certificate, with somebody else who looks on.
@@ -170,9 +191,8 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
     // The mechanism is read at the undeformed place, velocities are those at the displaced one.
-    let mechanism = motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, FlowReading::Own));
-    let yielded = &solved.state.yielded;
-    let mechanism = mechanism.map(|found| crate::yielded::with_crushing(found, assembly, problem, yielded));
+    let read = |motion| mechanism_of((assembly, problem), &solved.state, motion, solved.unique, finite);
+    let mechanism = motion.as_deref().and_then(read);
     let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
     let mut stages: Vec<StageResult> = question.stages[..stage]
         .iter()
@@ -339,9 +359,8 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
             let power = power_residual(&problem, &problem.drives[drive].loading, &rates);
             expect(small("path_power", power), "the mechanism is not scaled to p·q̇ = 1");
         }
-        let found =
-            mechanism(assembly, &velocities, result.mechanism.as_ref().and_then(|m| m.unique), FlowReading::Own);
-        let found = found.map(|found| crate::yielded::with_crushing(found, assembly, &problem, &state.yielded));
+        let unique = result.mechanism.as_ref().and_then(|m| m.unique);
+        let found = mechanism_of((assembly, &problem), &state, &velocities, unique, finite);
         let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }

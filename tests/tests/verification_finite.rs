@@ -4,6 +4,7 @@
 use std::sync::Arc;
 use voussoir::core::geometry::Vec2;
 use voussoir::core::limit::{Counters, Status};
+use voussoir::core::mechanism::MechanismKind;
 use voussoir::core::path::{
     Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver,
     PathProblem, PathSettings, PathSolver, PathState,
@@ -351,6 +352,9 @@ fn the_peak_of_the_reference_bridge_and_the_branch_behind_it() {
         assert!(pair[1][0] > pair[0][0] && pair[1][1] < pair[0][1], "{pair:?}");
     }
     assert!(behind[behind.len() - 1][1] < 0.98 * peak);
+    let mechanism = result.mechanism.expect("a mechanism");
+    assert_eq!(mechanism.kind, MechanismKind::FourHinge);
+    assert_eq!(mechanism.hinges.iter().map(|hinge| hinge.joint).collect::<Vec<_>>(), [1, 5, 10, 14]);
 }
 
 /// The semicircular arch of the benchmark: radii 13 and 16, 19 voussoirs of 2 kN, the one at the crown
