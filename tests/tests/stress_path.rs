@@ -166,12 +166,11 @@ fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
 ///
 /// The 24 scenes of the default (35 s on two busy cores): every exact path and every monotone Newton path
 /// is solved and all loads agree; 2 of 9 Newton paths that are not associated stall (a limit point that
-/// is not proven). SCENES=220 was last run before three changes (mechanisms on rays of exact paths; dead loads
-/// without associated proof; no pivoting over limit points): 108 walls, 113 with sliding, 32 with a history,
-/// 100 not associated, median 108 events; Newton path: 0 of 120 monotone scenes stalled, 8 of 100 others, more
-/// since the last change; exact path: 8 stalled, and 17 of 21 with strengths, before the first change. No pair
-/// of results disagreed where flow is associated; one exact path claimed `no_equilibrium` falsely (scene
-/// 158, before the second change).
+/// is not proven). SCENES=220 (11 minutes on one of two busy cores): 108 walls, 128 with sliding, 32 with a history,
+/// 100 not associated, median 109 events. Associated and stuck flow: all loads agree, Newton path 0 of 120
+/// stalled, exact path 1 (events without an end). Not associated: exact path 3 stalled, and 3 of 21 with
+/// strengths; Newton path 20 of 100 (limit points that are not proven, most of them); no load above the
+/// associated one, 6 pairs on different branches that their notes name, none apart without a reason.
 #[test]
 fn paths_end_where_limit_analysis_does() {
     let cases = std::env::var("SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(24);

@@ -146,10 +146,17 @@ fn draw(
     let (x_low, x_high) = range(abscissas).ok_or("no finite point")?;
     let (y_low, y_high) = range(ordinates).unwrap_or((0.0, 1.0));
     let open = series.iter().any(|s| !s.open_points.is_empty());
-    let (bottom, top) = (
-        if y_low > -0.05 * y_high { 0.0 } else { y_low },
-        y_high + if open { 0.12 * (y_high - y_low.min(0.0)) } else { 0.0 },
-    );
+    // Values that lie close together would be one line on an axis from zero.
+    let close = !open && y_low > 0.8 * y_high && y_high > y_low;
+    let (bottom, top) = if close {
+        (y_low - 0.2 * (y_high - y_low), y_high + 0.05 * (y_high - y_low))
+    } else {
+        (
+            if y_low > -0.05 * y_high { 0.0 } else { y_low },
+            y_high + if open { 0.12 * (y_high - y_low.min(0.0)) } else { 0.0 },
+        )
+    };
+    let broken = close.then(|| "The vertical axis does not begin at zero.".to_string());
 
     let mut kinds: Vec<(&str, Marker)> = Vec::new();
     for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
@@ -179,7 +186,8 @@ fn draw(
         x += width;
     }
     let titles = wrapped(title, 18.0, f64::from(WIDTH) - 40.0);
-    let lines: Vec<String> = notes.iter().flat_map(|note| wrapped(note, 13.0, f64::from(WIDTH) - 100.0)).collect();
+    let lines: Vec<String> =
+        notes.iter().chain(&broken).flat_map(|note| wrapped(note, 13.0, f64::from(WIDTH) - 100.0)).collect();
     let head = 16 + ROW * titles.len() as u32;
     let height = head + PLOT + ROW * (row as u32 + 1) + 20 * lines.len() as u32 + 22;
 
