@@ -2,6 +2,8 @@
 #![doc = include_str!("newton_path.md")]
 
 mod claims;
+mod ends;
+mod follow;
 mod frame;
 mod inelastic;
 mod kinematics;
@@ -9,6 +11,7 @@ pub(super) mod law;
 mod ledger;
 mod model;
 mod pivot;
+mod reach;
 mod response;
 mod softening;
 mod step;

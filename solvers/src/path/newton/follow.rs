@@ -1,0 +1,390 @@
+//! Following a drive by its strategy: steps, cut-backs, other branches, peaks on the way.
+
+use super::law::Regime;
+use super::model::{Control, Model, Rate, Refusal, State};
+use super::softening::MOST_REFINEMENTS;
+use super::trace::{Outcome, Peak, Tracer};
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Drive, DriveEnd, Increment};
+
+/// Greatest number of steps of a drive.
+const MOST_STEPS: u64 = 5000;
+
+/// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
+/// scene's size.
+const LARGEST_FINITE_STEP: f64 = 0.002;
+
+impl Tracer<'_, '_> {
+    /// By the strategy, up to a factor or the end of the path.
+    pub(super) fn follow(&mut self, drive: &Drive, target: f64) -> Outcome {
+        let direction = if target < drive.start { -1.0 } else { 1.0 };
+        let strategy = self.strategy.clone();
+        let unit = self.model.units.factor;
+        if target == self.state.factor {
+            return Outcome::Reached;
+        }
+        let to_factor = matches!(drive.end, DriveEnd::Factor(_));
+        self.model.rest(&mut self.state);
+        let Some(first) = self.model.rate(&self.state, &self.state, &Control::Factor(target)) else {
+            self.end(
+                Status::Stalled,
+                format!("at factor {} there is no rate of equilibrium under the growing load", self.state.factor),
+            );
+            return Outcome::Ended;
+        };
+        // The rate is per unit Λ of the factor.
+        let mut rate = first.scaled(direction);
+        let mut previous: Option<Increment> = None;
+        let measure = |model: &Model, state: &State, rate: &Rate, previous: Option<&Increment>| {
+            strategy.constraint(&model.increment_of(state, rate), previous).value
+        };
+        let weight = self.spring();
+        let one = measure(&self.model, &self.state, &rate, None);
+        if one.is_nan() || one <= 1e-14 * self.model.rate_size(&rate) {
+            self.end(Status::Stalled, "what the continuation strategy controls does not change under this load".into());
+            return Outcome::Ended;
+        }
+        let mut length = strategy.first_step() * one;
+        if to_factor {
+            // A load history: never coarser than a sixteenth of it.
+            length = length.min(one * (target - self.state.factor).abs() / unit / 16.0);
+        }
+        let initial = length;
+        let largest = match strategy.largest_step() {
+            step if step.is_finite() => step,
+            _ if self.model.finite() => LARGEST_FINITE_STEP,
+            step => step,
+        } * self.model.units.length
+            / self.model.units.displacement;
+        let mut switched_at: Option<u64> = None;
+        let mut yielding: Option<Vec<Regime>> = None;
+        let mut inaccurate = 0;
+        let mut before_peak_rate = rate.factor * direction;
+        for _ in 0..MOST_STEPS {
+            let per_rate = measure(&self.model, &self.state, &rate, previous.as_ref());
+            if per_rate.is_nan() || per_rate <= 0.0 {
+                previous = None;
+                if measure(&self.model, &self.state, &rate, None) <= 0.0 {
+                    self.end(Status::Stalled, "what the continuation strategy controls stopped changing".into());
+                    return Outcome::Ended;
+                }
+                continue;
+            }
+            let mut share = length / per_rate;
+            let moves = self.model.increment_of(&self.state, &rate).motion * share;
+            if moves > largest {
+                share *= largest / moves;
+                length = share * per_rate;
+            }
+            if to_factor && rate.factor != 0.0 {
+                let most = (target - drive.start).abs() / 16.0 / rate.factor.abs();
+                if share > most {
+                    share = most;
+                    length = share * per_rate;
+                }
+            }
+            if !strategy.passes_limit_points()
+                && let Some(slip) = self.first_slip(&rate).filter(|slip| *slip < share)
+            {
+                share = slip.max(1e-6 * share) * (1.0 + 1e-9);
+                length = share * per_rate;
+            }
+            let reaches = (self.state.factor + rate.factor * share - target) * direction >= -1e-12 * unit;
+            let control = if reaches {
+                Control::Factor(target)
+            } else {
+                Control::Strategy { strategy: &*strategy, previous, length }
+            };
+            let step = if reaches { (target - self.state.factor) / rate.factor } else { share };
+            let mut guess = self.moved(&rate, step);
+            if let Some(regimes) = &yielding {
+                guess.regime = regimes.clone();
+            }
+            let mut control = control;
+            let mut found = self.model.newton(&self.state, guess.clone(), &control);
+            // Where flow is not associated pivoting may step over a limit point: the last resort.
+            let last = strategy.passes_limit_points() && length < 1e-8 * initial;
+            if found.is_err() && !self.model.finite() && !reaches && (self.model.monotone() || last) {
+                if strategy.passes_limit_points() {
+                    let along = weight * rate.factor / unit + self.model.work_along(&rate);
+                    control = Control::Spring { weight, length: step * along };
+                }
+                found = self.model.pivoted(&self.state, &guess, &control);
+            }
+            let found = found.and_then(|(next, iterations)| {
+                if yielding.is_some() && next.regime == self.state.regime {
+                    return Err(Refusal { why: "the step went back the way it came".into(), restless: Vec::new() });
+                }
+                let judged = self.judge(&rate, step, &next, target, direction, reaches);
+                judged.map(|()| (next, iterations))
+            });
+            let (found, local) = match found {
+                Err(refusal) => match self.softened(&rate, step, target, direction) {
+                    Some((next, iterations, local)) => (Ok((next, iterations)), Some(local)),
+                    None => (Err(refusal), None),
+                },
+                found => (found, None),
+            };
+            let reaches = reaches && local.is_none();
+            let control = local.as_ref().map_or(control, |local| local.control(step));
+            let (next, iterations) = match found {
+                Ok(found) => found,
+                Err(refusal) => {
+                    self.model.count("cutbacks", 1);
+                    let slip = self.first_slip(&rate).unwrap_or(f64::INFINITY);
+                    let steps = self.model.counters.get("steps").copied();
+                    if length <= 1e-7 * initial
+                        && switched_at != steps
+                        && let Some(other) = self.beyond_yield(&rate, 1e-5 * initial / per_rate)
+                    {
+                        // A block at its strength softens: the path turns where it begins to yield.
+                        switched_at = steps;
+                        if other.factor * direction <= 0.0 {
+                            if !strategy.passes_limit_points() {
+                                self.no_step(&refusal, &other, direction);
+                                return Outcome::Ended;
+                            }
+                            if self.peak.is_none() {
+                                let motion = self.scaled_motion(&self.state, &other);
+                                self.peak =
+                                    Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                            }
+                        }
+                        rate = other;
+                        yielding = None;
+                        before_peak_rate = rate.factor * direction;
+                        previous = None;
+                        length = 0.1 * initial;
+                        continue;
+                    }
+                    // With finite displacements points that open together turn the path as sharply as slip does.
+                    let at_corner = self.model.finite() && length <= 1e-7 * initial;
+                    if (slip <= 1e-9 * share.max(initial / per_rate) || at_corner) && switched_at != steps {
+                        // At the very event: another branch, on which the points at their limit yield.
+                        switched_at = steps;
+                        if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
+                            let falls = other.factor * direction <= 0.0;
+                            if falls && !strategy.passes_limit_points() {
+                                self.no_step(&refusal, &other, direction);
+                                return Outcome::Ended;
+                            }
+                            if falls && self.peak.is_none() {
+                                let motion = self.scaled_motion(&self.state, &other);
+                                self.doubt(&self.state.clone(), direction);
+                                self.peak =
+                                    Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                            }
+                            rate = other;
+                            yielding = Some(regimes);
+                            before_peak_rate = rate.factor * direction;
+                            previous = None;
+                            length = 0.1 * initial;
+                            continue;
+                        }
+                    }
+                    length = if slip > 1e-9 * share && slip < share { slip * per_rate } else { 0.3 * length };
+                    if length < 1e-10 * initial {
+                        self.no_step(&refusal, &rate, direction);
+                        return Outcome::Ended;
+                    }
+                    continue;
+                }
+            };
+            let accuracy = self.softening_accuracy(&next);
+            if accuracy < 1.0 && inaccurate < MOST_REFINEMENTS {
+                self.model.count("cutbacks", 1);
+                inaccurate += 1;
+                length *= accuracy.max(0.25);
+                continue;
+            }
+            inaccurate = 0;
+            let increment = self.model.increment(&self.state, &next);
+            let next_rate = self.model.rate(&self.state, &next, &control);
+            let Some(next_rate) = next_rate else {
+                self.model.count("cutbacks", 1);
+                length *= 0.3;
+                if length < 1e-10 * initial {
+                    let refusal = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
+                    self.no_step(&refusal, &rate, direction);
+                    return Outcome::Ended;
+                }
+                continue;
+            };
+            let next_rate = match control {
+                Control::Spring { length, .. } => next_rate.scaled(length.signum()),
+                _ if reaches => next_rate.scaled(direction),
+                _ => self.onwards(&next, next_rate),
+            };
+            let size = next.factor.abs().max(unit * 1e-3);
+            let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
+            let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
+            if self.peak.is_none()
+                && self.model.responses.is_empty()
+                && (fell || (falls && before_peak_rate > 0.0))
+                && !reaches
+            {
+                self.peak = self.locate_peak(&rate, previous, length, direction);
+            }
+            self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
+            before_peak_rate = next_rate.factor * direction;
+            let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
+            let softening = self.model.response_changes(&self.state, &next);
+            if !self.commit(next) {
+                return Outcome::Ended;
+            }
+            if reaches {
+                if self.peak.is_some() {
+                    self.notes.push(format!("after a limit point the path came back to the factor {target}"));
+                }
+                return Outcome::Reached;
+            }
+            rate = next_rate;
+            yielding = None;
+            if !self.model.finite() && !self.flows() && self.ray_ends(&rate, direction, target) {
+                return Outcome::Ended;
+            }
+            if self.stops(drive, direction) {
+                return Outcome::Ended;
+            }
+            previous = Some(increment);
+            let growth = match (changes, iterations) {
+                (0, 0..=5) if softening > 0 => 1.5,
+                (0, 0..=6) => 2.0,
+                (0..=2, 0..=6) => 1.5,
+                (_, 0..=12) => 1.0,
+                _ => 0.5,
+            };
+            let growth = accuracy.clamp(0.25, growth);
+            length = growth * strategy.constraint(&increment, previous.as_ref()).value;
+        }
+        self.end(
+            Status::Stalled,
+            format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
+        );
+        Outcome::Ended
+    }
+
+    /// Weight of the factor in a control by a spring: with it every step of associated flow is a
+    /// monotone problem. Between weight × λ + ∂Π/∂λ and λ there must be a growing relation even with
+    /// all points stuck, where ∂Π/∂λ may fall (a settlement pulls at its reaction).
+    pub(super) fn spring(&mut self) -> f64 {
+        let mut stuck = self.state.clone();
+        stuck.regime.fill(Regime::Stuck);
+        let factor = stuck.factor;
+        let rate = self.model.rate(&self.state, &stuck, &Control::Factor(factor));
+        let work = rate.map_or(0.0, |rate| self.model.work_along(&rate) * self.model.units.factor / rate.factor);
+        (-2.0 * work).max(work).max(1e-3)
+    }
+
+    pub(super) fn moved(&self, rate: &Rate, share: f64) -> State {
+        let mut guess = self.state.clone();
+        for (r, dr) in guess.force.iter_mut().zip(&rate.force) {
+            (0..2).for_each(|k| r[k] += share * dr[k]);
+        }
+        for (q, dq) in guess.motion.iter_mut().zip(&rate.motion) {
+            (0..3).for_each(|k| q[k] += share * dq[k]);
+        }
+        guess.factor += share * rate.factor;
+        guess
+    }
+
+    /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
+    pub(super) fn yielding(&mut self, rate: &Rate, share: f64) -> Option<(Rate, Vec<Regime>)> {
+        let ahead = self.moved(rate, 1e-3 * share);
+        let state = self.state.clone();
+        let regimes = self.model.regimes_ahead(&state, &ahead);
+        if regimes == state.regime {
+            return None;
+        }
+        self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
+    }
+
+    /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
+    /// in which they dissipate. Their next predictor is that of the yielding tangent.
+    pub(super) fn beyond_yield(&mut self, rate: &Rate, share: f64) -> Option<Rate> {
+        let mut ahead = self.moved(rate, share);
+        self.model.deform(&mut ahead).ok()?;
+        let mut turning = self.state.clone();
+        turning.blocks = ahead.blocks;
+        if !turning.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0) {
+            return None;
+        }
+        let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;
+        let power = self.model.plastic_power(&turning, &other);
+        self.state.blocks = turning.blocks;
+        Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
+    }
+
+    /// Share of the rate after which the first stuck point whose slip is not associated would slide.
+    pub(super) fn first_slip(&self, rate: &Rate) -> Option<f64> {
+        let mut first = f64::INFINITY;
+        for c in 0..self.state.gap.len() {
+            let (Regime::Stuck, Some(law)) = (self.state.regime[c], self.model.law(c)) else { continue };
+            for f in law.facets.iter().filter(|f| f.flow != f.normal) {
+                let (r, dr) = (self.state.force[c], rate.force[c]);
+                let slack = f.bound * self.model.problem.contacts[c].area - f.normal[0] * r[0] - f.normal[1] * r[1];
+                let speed = f.normal[0] * dr[0] + f.normal[1] * dr[1];
+                if speed > 0.0 {
+                    first = first.min(slack.max(0.0) / speed);
+                }
+            }
+        }
+        first.is_finite().then_some(first)
+    }
+
+    /// Whether a converged step is one along the path.
+    pub(super) fn judge(
+        &mut self,
+        rate: &Rate,
+        share: f64,
+        next: &State,
+        target: f64,
+        direction: f64,
+        reaches: bool,
+    ) -> Result<(), Refusal> {
+        let no = |why: &str| Err(Refusal { why: why.into(), restless: Vec::new() });
+        if !reaches && (next.factor - target) * direction > 0.0 {
+            return no("the step went beyond the factor asked for");
+        }
+        let u = self.model.units;
+        let (mut along, mut size) = (0.0, 0.0);
+        let mut force_jump = 0.0;
+        for c in 0..next.gap.len() {
+            for k in 0..2 {
+                let moved = (next.gap[c][k] - self.state.gap[c][k]) / u.displacement;
+                along += moved * rate.gap[c][k] / u.displacement;
+                size += moved * moved;
+                force_jump += ((next.force[c][k] - self.state.force[c][k]) / u.force).powi(2);
+            }
+        }
+        for b in 0..next.motion.len() {
+            for k in 0..3 {
+                let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
+                let moved = (next.motion[b][k] - self.state.motion[b][k]) / unit;
+                along += moved * rate.motion[b][k] / unit;
+                size += moved * moved;
+            }
+        }
+        along += (next.factor - self.state.factor) * rate.factor / (u.factor * u.factor);
+        // Where a block softens the path may snap back sharply: what dissipates does not go back.
+        if along <= 0.0 && self.model.plastic_work(&self.state, next) <= 1e-9 * size {
+            return no("the step turned back");
+        }
+        // Friction that is not associated: several states may belong to one load. A state far from
+        // what both ends' rates can reach is another branch.
+        let slides = (0..next.regime.len()).any(|c| {
+            next.regime[c] != self.state.regime[c] && self.model.law(c).is_some_and(|law| law.has_other_flow())
+        });
+        if slides && !self.strategy.passes_limit_points() {
+            let after = self.model.rate(&self.state, next, &Control::Factor(next.factor));
+            let Some(after) = after else { return no("the state has no rate under growing load") };
+            let before = self.model.rate_size(rate) * share;
+            let after = self.model.rate_size(&after) * (next.factor - self.state.factor).abs() / u.factor;
+            let jump = (size + force_jump).sqrt();
+            if jump > 2.0 * (before + after) {
+                return no("the state jumps to another branch");
+            }
+        }
+        Ok(())
+    }
+}
