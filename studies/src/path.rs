@@ -21,7 +21,7 @@ fn small(name: &str, value: f64) -> bool {
 
 /// Jumps below this share of the greatest are the blocks' deformation: where a path ends in rates on which
 /// forces change (peaks of finite displacements, blocks that yield) every joint moves a little.
-const DEFORMATION: f64 = 0.05;
+const DEFORMATION: f64 = 0.1;
 
 /// The mechanism of a motion at a state.
 fn mechanism_of(
