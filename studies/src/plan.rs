@@ -1,11 +1,12 @@
 //! The plan of a study: what will be solved, after everything that the scene does not need is gone.
 
-use crate::answer::start_of;
-use crate::kinds::run::choice;
+use crate::answer::{Question, path_solver, start_of};
+use crate::kinds::run::{choice, settings};
 use crate::study::{Case, Study};
 use std::fmt::Write;
 use voussoir_core::assembly::{Bond, Target, stage_loads};
 use voussoir_core::limit::LimitProblem;
+use voussoir_core::path::{ContactLaw, DriveEnd, PathProblem};
 use voussoir_core::strength::Tangential;
 
 /// The plan in words, for the first case; the others differ by their parameters only.
@@ -27,6 +28,17 @@ fn plan_case(case: &Case, text: &mut String) {
         assembly.bodies.len(),
         assembly.joints.len()
     );
+    let (solver, settings) = (choice(case), settings(case));
+    let question = Question {
+        assembly,
+        stages: &case.stages,
+        solver: &solver,
+        tolerance: case.solver.tolerance,
+        settings: &settings,
+    };
+    if let Some((tag, _)) = path_solver(&question) {
+        return plan_path(case, &tag, settings.finite, text);
+    }
     for (stage, loads) in case.stages.iter().zip(stage_loads(assembly, &case.stages)) {
         let problem = match LimitProblem::new(assembly, &loads) {
             Ok(problem) => problem,
@@ -47,7 +59,7 @@ fn plan_case(case: &Case, text: &mut String) {
             count(Tangential::Stuck),
             count(Tangential::Free),
         );
-        let tag = crate::answer::first_solver(&choice(case), &problem);
+        let tag = crate::answer::first_solver(&solver, &problem);
         let _ = match stage.target {
             Target::Collapse => {
                 writeln!(text, "  {tag}: stands at factor {}? then the greatest factor", start_of(stage))
@@ -63,5 +75,45 @@ fn plan_case(case: &Case, text: &mut String) {
                 3 * problem.groups
             );
         }
+    }
+}
+
+fn plan_path(case: &Case, tag: &str, finite: bool, text: &mut String) {
+    let problem = match PathProblem::new(&case.assembly, &case.stages) {
+        Ok(problem) => problem,
+        Err(why) => {
+            let _ = writeln!(text, "{tag}: {why}");
+            return;
+        }
+    };
+    let free = || problem.bodies.iter().filter(|body| !body.held);
+    let yields = free().filter(|body| body.inelastic.is_some()).count();
+    let elastic = free().filter(|body| body.flexibility.is_some()).count() - yields;
+    let factorisations = problem.counters.get("condensation_factorisations").copied().unwrap_or(0);
+    let _ = writeln!(
+        text,
+        "path: {} free bodies: {} rigid (no mesh), {elastic} elastic (condensed on their contact and load points) and {yields} that may \
+         yield (condensed too until they do); {factorisations} factorisation(s), one for each shape",
+        free().count(),
+        free().count() - elastic - yields,
+    );
+    let points = problem.contacts.len();
+    let bonded = problem.contacts.iter().filter(|contact| contact.law == ContactLaw::Bonded).count();
+    let softening = (0..points).filter(|contact| problem.response(*contact).is_some()).count();
+    let _ = writeln!(
+        text,
+        "{points} contact points: {bonded} bonded, {} with facets, {softening} with tractions from gaps",
+        points - bonded - softening,
+    );
+    let kinematics = if finite { "finite" } else { "small" };
+    for drive in &problem.drives {
+        let what = if drive.gravity { "gravity" } else { "loads" };
+        let end = match drive.end {
+            DriveEnd::Factor(factor) => format!("to factor {factor}"),
+            DriveEnd::Collapse(most) if most.is_finite() => format!("until collapse, up to factor {most}"),
+            DriveEnd::Collapse(_) => "until collapse".into(),
+        };
+        let stage = &case.stages[drive.stage].name;
+        let _ = writeln!(text, "  stage \"{stage}\", {what}: {tag}, {kinematics} displacements, {end}");
     }
 }

@@ -113,6 +113,9 @@ fn the_program_explains_itself() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("did you mean \"coulomb\"?"));
     let plan = voussoir(&["explain", study().to_str().expect("a path")]);
     assert!(String::from_utf8_lossy(&plan.stdout).contains("limit_chain"));
+    let path = voussoir(&["explain", study().with_file_name("strathmashie_elastic.toml").to_str().expect("a path")]);
+    let path = String::from_utf8_lossy(&path.stdout).into_owned();
+    assert!(path.contains("event_path, small displacements") && path.contains("1 factorisation"), "{path}");
     let schema = voussoir(&["schema"]);
     assert!(serde_json::from_slice::<serde_json::Value>(&schema.stdout).expect("JSON").is_object());
     assert_eq!(code(&voussoir(&["check", study().to_str().expect("a path")])), 0);
