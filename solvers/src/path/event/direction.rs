@@ -217,7 +217,9 @@ impl Tracer<'_> {
         let Some(mut base) = Base::new(&self.system, pieces.clone()) else { return x };
         let Some(direct) = base.drive(&self.system, self.drive, load) else { return x };
         let direct: Vec<f64> = direct.iter().map(|v| v * factor).collect();
-        if self.residual(&direct, factor, load, &pieces) < self.residual(&x, factor, load, &pieces) {
+        // Where the matrix is singular the sense of its solution is rounding.
+        let along: f64 = direct.iter().zip(&x).map(|(a, b)| a * b).sum();
+        if along > 0.0 && self.residual(&direct, factor, load, &pieces) < self.residual(&x, factor, load, &pieces) {
             self.base = Some(base);
             return direct;
         }

@@ -1,6 +1,7 @@
 //! A step along a direction: how far it is to the next events, and what they change.
 
 use super::direction::{Direction, MECHANISM};
+use super::point::Point;
 use super::rate::{Piece, corner, dilatancy};
 use super::system::dot;
 use super::trace::Tracer;
@@ -77,6 +78,30 @@ impl Tracer<'_> {
         }
     }
 
+    /// Rate of the gap without the opening, which is reversible: a tensile strength that opens stores
+    /// the work of its force and gives it back.
+    fn irreversible(&self, c: usize, direction: &Direction) -> [f64; 2] {
+        let (gap, opening) = (direction.gaps[c], self.opening_rate(c, direction));
+        match (&self.system.facets[c], self.points[c].opening_facet) {
+            (Some(facets), Some(open)) if self.points[c].piece != Piece::Free => {
+                [0, 1].map(|i| gap[i] + opening * facets[open].flow[i])
+            }
+            _ => gap,
+        }
+    }
+
+    /// Energy that the tensile strength of open points has stored \[J\].
+    pub fn stored_by_opening(&self) -> f64 {
+        let held = |(c, point): (usize, &Point)| match (&self.system.facets[c], point.opening_facet) {
+            (Some(facets), Some(open)) if point.open() && !point.apex => {
+                dot(facets[open].flow, self.force(c)) * point.opening
+            }
+            _ => 0.0,
+        };
+        let sum: f64 = self.points.iter().enumerate().map(held).sum();
+        sum * self.system.force_unit * self.system.displacement_unit
+    }
+
     /// Goes a step along a direction and notes the events at its end.
     pub fn advance(&mut self, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
         let unit = self.system.force_unit * self.system.displacement_unit;
@@ -85,7 +110,8 @@ impl Tracer<'_> {
                 continue;
             }
             let mean = [0, 1].map(|i| self.x[2 * c + i] + 0.5 * step * direction.x[2 * c + i]);
-            self.dissipated -= dot(mean, direction.gaps[c]) * step * unit;
+            let flow = self.irreversible(c, direction);
+            self.dissipated -= dot(mean, flow) * step * unit;
         }
         let before = self.factor;
         let openings: Vec<f64> = (0..self.points.len()).map(|c| self.opening_rate(c, direction)).collect();

@@ -233,7 +233,8 @@ impl<'a> Tracer<'a> {
     /// Energy balance and observer. Returns whether to go on.
     fn record(&mut self) -> bool {
         let mut state = self.state();
-        let now = snapshot(self.problem, &state);
+        let mut now = snapshot(self.problem, &state);
+        now.stored += self.stored_by_opening();
         let applied = self.problem.applied(self.drive, self.factor);
         if let Some((before, earlier)) = &self.last {
             self.work += work(before, &now, [earlier, &applied]);
