@@ -343,3 +343,59 @@ fn a_mechanism_is_not_unique_where_two_are_possible() {
         assert_eq!(result.mechanism.unwrap().unique, (count == 1).then_some(true));
     }
 }
+
+/// A block on a bed with tensile strength, pushed until it opens and let go: nothing slips or crushes,
+/// so that nothing is dissipated, and the work is stored and given back.
+#[test]
+fn a_tensile_strength_that_opens_gives_its_work_back() {
+    let case = first_case(
+        r#"name = "bed"
+[scene]
+scene = "blocks"
+width = 1.0
+material = "stone"
+joint = "bed"
+blocks = [
+    { name = "ground", vertices = [[0.0, -0.2], [1.0, -0.2], [1.0, 0.0], [0.0, 0.0]], fixed = true },
+    { name = "block", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] },
+]
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.bed]
+law = "mohr_coulomb"
+friction = 2.0
+cohesion = 1e5
+tensile_strength = 1e4
+normal_stiffness = 1e9
+shear_stiffness = 1e9
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "push"
+loads = [{ kind = "body", acceleration = [7.0, 0.0] }]
+[[stages]]
+name = "let go"
+loads = [{ kind = "body", acceleration = [-7.0, 0.0] }]
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{ kind = "body", acceleration = [-9.81, 0.0] }]
+"#,
+    );
+    let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
+    let mut record = Record::default();
+    let answer = EventPath {}.trace(&problem, &settings(), &mut record);
+    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+    let opened = record.0.iter().filter(|s| s.force.iter().any(|f| f[0] < 0.0)).count();
+    let at = |drive: usize| record.0.iter().rfind(|s| s.drive == drive).expect("a state");
+    let (dead, pushed, back) = (at(0), at(1), at(2));
+    assert!(opened > 4 && pushed.stored > 2.0 * dead.stored);
+    for state in &record.0 {
+        let size = 1e-12 * pushed.work.max(state.work);
+        assert!(state.dissipated.abs() <= size, "{} of {}", state.dissipated, state.work);
+        assert!((state.work - state.stored).abs() <= size, "{} of {}", state.stored, state.work);
+    }
+    assert_close(back.stored, dead.stored, 1e-9);
+}
