@@ -179,7 +179,7 @@ impl Tracer<'_> {
                     self.counts.bifurcations += 1;
                     if self.counts.bifurcations == 1 {
                         self.notes.push(format!(
-                            "at λ = {:.9} the rate problem with friction has at least {} solutions; the one taken keeps the pieces of the contact points as far as it can",
+                            "at λ = {:.9} the rate problem has at least {} solutions; the one taken keeps the pieces of the contact points as far as it can",
                             self.factor,
                             others.unwrap_or(0) + 1
                         ));

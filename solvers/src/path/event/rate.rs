@@ -249,6 +249,12 @@ struct Attempt {
     singular: bool,
 }
 
+impl Attempt {
+    fn gaps_of_points(&self) -> Vec<[f64; 2]> {
+        self.gaps.as_slice().chunks_exact(2).map(|gap| [gap[0], gap[1]]).collect()
+    }
+}
+
 /// A direction at a point.
 type At = (usize, [f64; 2]);
 
@@ -361,8 +367,22 @@ impl RateProblem<'_> {
     }
 
     fn rate(&self, pieces: &[Piece], attempt: &Attempt, sign: f64, factor: f64) -> Rate {
-        let gaps = (0..self.points.len()).map(|k| [attempt.gaps[2 * k] * sign, attempt.gaps[2 * k + 1] * sign]);
+        let gaps = attempt.gaps_of_points().into_iter().map(|gap| gap.map(|g| g * sign));
         Rate { factor, pieces: pieces.to_vec(), gaps: gaps.collect() }
+    }
+
+    /// Work of the load on a motion without forces, by virtual work with the forces that a growing
+    /// load causes at points that do not move (exact where all else sticks or flows associated). At
+    /// a constant load a path goes on in the sense in which the load does work, not back.
+    fn power(&self, gaps: &[[f64; 2]]) -> f64 {
+        -gaps.iter().flatten().zip(&self.drive).map(|(gap, force)| gap * force).sum::<f64>()
+    }
+
+    /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
+    fn leads_on(&self, rate: &Rate) -> bool {
+        let gaps = rate.gaps.iter().flatten();
+        let size = gaps.zip(&self.drive).map(|(gap, force)| (gap * force).abs()).sum::<f64>();
+        rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
     }
 
     /// Guess and correction with λ̇ = 1.
@@ -611,7 +631,8 @@ impl RateProblem<'_> {
         }
         let v: Vec<f64> = v.iter().copied().collect();
         let attempt = self.completed(&flows, &v, 1.0, true)?;
-        let sign = [1.0, -1.0].into_iter().find(|sign| self.violations(pieces, &attempt, *sign).is_empty())?;
+        let forward = if self.power(&attempt.gaps_of_points()) < 0.0 { -1.0 } else { 1.0 };
+        let sign = [forward, -forward].into_iter().find(|sign| self.violations(pieces, &attempt, *sign).is_empty())?;
         Some(self.rate(pieces, &attempt, sign, 0.0))
     }
 
@@ -625,7 +646,7 @@ impl RateProblem<'_> {
                 _ if !examine => None,
                 0..=super::direction::EXAMINED => {
                     let all = self.enumerated(counters);
-                    Some(all.iter().filter(|r| r.factor >= 0.0).count().saturating_sub(1))
+                    Some(all.iter().filter(|r| self.leads_on(r)).count().saturating_sub(1))
                 }
                 _ if self.points.len() <= EXAMINED => Some(self.others(&rate, counters)),
                 _ => None,
@@ -656,10 +677,13 @@ impl RateProblem<'_> {
             return Verdict::Undecided(combinations);
         }
         let all = self.enumerated(counters);
-        let rising = all.iter().filter(|r| r.factor >= 0.0).count();
-        let best = all.iter().filter(|r| r.factor >= 0.0).max_by(|a, b| a.factor.total_cmp(&b.factor));
+        let rising = all.iter().filter(|r| self.leads_on(r)).count();
+        let better = |a: &&Rate, b: &&Rate| {
+            a.factor.total_cmp(&b.factor).then_with(|| self.power(&a.gaps).total_cmp(&self.power(&b.gaps)))
+        };
+        let best = all.iter().filter(|r| r.factor >= 0.0).max_by(better);
         if let Some(rate) = best {
-            return Verdict::Found(rate.clone(), Some(rising - 1));
+            return Verdict::Found(rate.clone(), Some(rising.saturating_sub(1)));
         }
         let goes_on = |rate: &&Rate| {
             rate.factor < 0.0
