@@ -263,7 +263,7 @@ impl Assembly {
 }
 
 /// The root of i in a forest of groups (union–find), paths halved on the way.
-pub(crate) fn root(parent: &mut [usize], mut i: usize) -> usize {
+pub fn root(parent: &mut [usize], mut i: usize) -> usize {
     while parent[i] != i {
         parent[i] = parent[parent[i]];
         i = parent[i];

@@ -6,7 +6,7 @@
 
 use super::displaced::Placement;
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::assembly::Assembly;
+use voussoir_core::assembly::{Assembly, root};
 use voussoir_core::geometry::{Vec2, turned};
 use voussoir_core::mechanism::Mechanism;
 
@@ -75,13 +75,6 @@ pub fn closed(assembly: &Assembly, mechanism: &Mechanism, mut placements: Vec<Pl
 /// For each body the number of its link, `None` where it rests, and how many links there are:
 /// neighbours whose joint keeps both its ends together move as one.
 fn links(assembly: &Assembly, placements: &[Placement]) -> (Vec<Option<usize>>, usize) {
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
     let tolerance = 1e-6 * assembly.size();
     let mut parent: Vec<usize> = (0..placements.len()).collect();
     for joint in &assembly.joints {
