@@ -1,0 +1,166 @@
+//! The keys of a study file.
+
+use crate::loads::LOAD;
+use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
+use voussoir_core::units::Quantity;
+
+const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
+    Parameter { name, doc, shape, need }
+}
+
+static LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
+static ACCELERATION: Shape = Shape::Number(Quantity::Acceleration, Range::ANY);
+static FREE: Shape = Shape::Free;
+static MATERIAL: Shape = Shape::Plugin(PluginKind::BulkMaterial);
+static LAW: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
+
+static SETTLEMENT: Shape = Shape::Table(&[
+    key("support", Shape::Text, Need::Required, "left, right, or the name of a fixed block"),
+    key("displacement", Shape::List { of: &LENGTH, min: 2, max: 2 }, Need::Default("[0.0, 0.0]"), "movement [x, y]"),
+    Parameter::number(
+        "rotation",
+        Quantity::Radians,
+        Range::ANY,
+        "rotation about the middle of the springing joint, anticlockwise",
+    )
+    .default("0.0"),
+]);
+
+static STAGE: Shape = Shape::Table(&[
+    key("name", Shape::Text, Need::Required, "name of the stage, unique in the study"),
+    key(
+        "gravity",
+        Shape::Either(&[
+            Shape::Number(Quantity::Acceleration, Range::NON_NEGATIVE),
+            Shape::List { of: &ACCELERATION, min: 2, max: 2 },
+        ]),
+        Need::Optional("gravity stays as it was"),
+        "gravity from this stage on: downwards, or a vector [gx, gy]",
+    ),
+    key(
+        "loads",
+        Shape::List { of: &LOAD, min: 0, max: usize::MAX },
+        Need::Default("[]"),
+        "loads, multiplied by the stage's factor",
+    ),
+    key(
+        "until",
+        Shape::Choice(&["collapse"]),
+        Need::Optional("the stage goes to its factor"),
+        "\"collapse\": raise the factor until collapse",
+    ),
+    Parameter::number("factor", Quantity::Ratio, Range::ANY, "factor of this stage's loads")
+        .optional("1.0, unless until is given"),
+    Parameter::number("factor_min", Quantity::Ratio, Range::ANY, "least factor searched").optional("0"),
+    Parameter::number("factor_max", Quantity::Ratio, Range::ANY, "greatest factor searched").optional("unlimited"),
+    key(
+        "settlement",
+        Shape::List { of: &SETTLEMENT, min: 0, max: usize::MAX },
+        Need::Default("[]"),
+        "movements of supports",
+    ),
+]);
+
+static STOP: Shape = Shape::Table(&[
+    Parameter::number(
+        "displacement",
+        Quantity::Length,
+        Range::POSITIVE,
+        "displacement of the load point behind a peak",
+    )
+    .optional("not a limit"),
+    Parameter::number("factor", Quantity::Ratio, Range::ANY, "load factor at which a path ends")
+        .optional("not a limit"),
+]);
+
+/// Keys of `[solver]` that every solver has.
+pub static SOLVER: &[Parameter] = &[
+    key("kinematics", Shape::Choice(&["small", "finite"]), Need::Default("\"small\""), "small or finite displacements"),
+    key(
+        "continuation",
+        Shape::Plugin(PluginKind::Continuation),
+        Need::Optional("the solver's own"),
+        "strategy of path solvers: { strategy = \"arc_length\" }",
+    ),
+    Parameter::number(
+        "tolerance",
+        Quantity::Ratio,
+        Range::new(0.0, true, 0.01, false),
+        "relative tolerance of certificates",
+    )
+    .default("1e-9"),
+    key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go behind a peak"),
+];
+
+static AXIS: Shape = Shape::Table(&[
+    key(
+        "list",
+        Shape::List { of: &FREE, min: 1, max: usize::MAX },
+        Need::Optional("from and to are given"),
+        "the values",
+    ),
+    Parameter::number("from", Quantity::Ratio, Range::ANY, "first value").optional("list is given"),
+    Parameter::number("to", Quantity::Ratio, Range::ANY, "last value").optional("list is given"),
+    Parameter::number("step", Quantity::Ratio, Range::ANY, "step towards `to`").optional("count is given"),
+    key("count", Shape::Integer { min: 1, max: 1_000_000 }, Need::Optional("step is given"), "number of values"),
+]);
+static AXES: Shape = Shape::Either(&[AXIS, Shape::Map(&AXIS)]);
+
+/// A variant, and a scene of a comparison.
+pub(crate) static VARIANT: Shape = Shape::Table(&[
+    key("name", Shape::Text, Need::Required, "its name, unique in the study"),
+    key("set", Shape::Map(&FREE), Need::Default("{}"), "dotted keys in quotes, with the values they take"),
+]);
+
+/// Keys of `[output]`.
+pub(crate) static OUTPUT: Shape = Shape::Table(&[
+    key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
+    key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
+    key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
+]);
+
+/// The keys of a study file.
+pub static STUDY: &[Parameter] = &[
+    key("name", Shape::Text, Need::Required, "name of the study"),
+    key("kind", Shape::Text, Need::Default("\"run\""), "what is done with the cases"),
+    key("scene", Shape::Plugin(PluginKind::Scene), Need::Required, "the geometry"),
+    key("materials", Shape::Map(&MATERIAL), Need::Required, "materials of blocks by name"),
+    key("joints", Shape::Map(&LAW), Need::Default("{}"), "laws of joints by name"),
+    key(
+        "stages",
+        Shape::List { of: &STAGE, min: 1, max: usize::MAX },
+        Need::Required,
+        "stages of loading, [[stages]], in order",
+    ),
+    key(
+        "solver",
+        Shape::Plugin(PluginKind::LimitSolver),
+        Need::Default("{ solver = \"auto\" }"),
+        "how the cases are answered",
+    ),
+    key(
+        "sweep",
+        Shape::Map(&AXES),
+        Need::Optional("one case"),
+        "axes by dotted key in quotes; keys under zip change together",
+    ),
+    key(
+        "variants",
+        Shape::List { of: &VARIANT, min: 0, max: usize::MAX },
+        Need::Optional("no variants"),
+        "each overrides any keys",
+    ),
+    key(
+        "compare",
+        Shape::Table(crate::kinds::compare::KEYS),
+        Need::Optional("one scene"),
+        "what kind = \"compare\" sets beside each other",
+    ),
+    key(
+        "map",
+        Shape::Table(crate::kinds::map::KEYS),
+        Need::Optional("the first two variants are compared"),
+        "what kind = \"map\" draws",
+    ),
+    key("output", OUTPUT, Need::Default("{}"), "what is written besides the results"),
+];
