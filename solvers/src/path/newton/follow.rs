@@ -27,6 +27,7 @@ impl Tracer<'_, '_> {
             return Outcome::Reached;
         }
         let to_factor = matches!(drive.end, DriveEnd::Factor(_));
+        self.rose = None;
         self.model.rest(&mut self.state);
         let Some(first) = self.model.rate(&self.state, &self.state, &Control::Factor(target)) else {
             self.end(
