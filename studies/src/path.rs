@@ -11,7 +11,7 @@ use voussoir_core::interface::FlowReading;
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{CentroidVelocity, Mechanism, jumps, mechanism, mechanism_above};
 use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
-use voussoir_core::path::{ContactLaw, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints};
+use voussoir_core::path::{ContactLaw, Displaced, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints};
 
 /// Whether a residual is within its bound for results; NaN is not, where there is one.
 fn small(name: &str, value: f64) -> bool {
@@ -326,17 +326,9 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     state.memory = result.joint_states.clone().unwrap_or_default();
     state.yielded = crate::yielded::read(assembly, &problem, &result.yielded)?;
     let mut watch = Watch::new(finite);
-    if !finite {
-        let mut gaps = state.gap.clone();
-        problem.small_gaps(&state, &mut gaps);
-        state.gap = gaps;
-    }
+    state.gap = Displaced::new(&problem, &state, finite).gaps();
     watch.state(&problem, &state);
     for (name, value) in &watch.worst {
-        // Gaps of finite displacements are not stored.
-        if finite && *name == "path_law" {
-            continue;
-        }
         expect(small(name, *value), &format!("{name} is {value:.2e}"));
     }
     if matches!(result.status, Status::Collapse | Status::LimitPoint) && result.load_factor.is_some() {

@@ -399,3 +399,51 @@ loads = [{ kind = "body", acceleration = [-9.81, 0.0] }]
     }
     assert_close(back.stored, dead.stored, 1e-9);
 }
+
+/// A body force that lifts a block off the ground: at its own weight nothing holds it, and it may rise, turn
+/// and shift. The mechanism is not the only one; a push that makes it rock about one corner is.
+#[test]
+fn a_block_that_is_lifted_has_many_mechanisms_and_one_that_rocks_has_one() {
+    let text = |acceleration: [f64; 2]| {
+        format!(
+            r#"name = "lifted"
+[scene]
+scene = "blocks"
+width = 1.0
+material = "stone"
+joint = "dry"
+blocks = [
+  {{ name = "ground", vertices = [[-1.0, -0.5], [3.0, -0.5], [3.0, 0.0], [-1.0, 0.0]], fixed = true }},
+  {{ name = "a", vertices = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]] }},
+]
+[scene.mesh]
+elements = [2, 2]
+[materials.stone]
+law = "elastic"
+young_modulus = 1e9
+poisson_ratio = 0.2
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = 0.7
+[solver]
+solver = "event_path"
+[[stages]]
+name = "dead"
+gravity = 10.0
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{{ kind = "body", acceleration = {acceleration:?} }}]
+"#
+        )
+    };
+    for (acceleration, factor, unique) in [([0.0, 10.0], 1.0, false), ([10.0, 0.0], 0.4, true)] {
+        let case = first_case(&text(acceleration));
+        let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
+        let answer = EventPath {}.trace(&problem, &settings(), &mut Watch::default());
+        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+        assert_close(answer.factor.expect("a factor"), factor, 1e-12);
+        assert_eq!(answer.unique, Some(unique), "{acceleration:?}");
+    }
+}

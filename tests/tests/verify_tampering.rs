@@ -123,3 +123,81 @@ fn every_changed_word_is_found() {
         assert!(findings(&study, &changed) > 0, "{path} was changed and not found");
     }
 }
+
+/// A state with finite displacements: an arch whose right support has moved out, of rigid blocks with
+/// compliant joints and of elastic ones.
+fn spread(material: &str, joint: &str) -> String {
+    format!(
+        r#"name = "spread"
+[scene]
+scene = "arch"
+profile = {{ shape = "segmental", span = 4.0, rise = 1.0 }}
+thickness = 0.5
+width = 1.0
+voussoirs = 7
+ends = "jointed"
+material = "stone"
+joint = "dry"
+[scene.mesh]
+elements = [1, 2]
+[materials.stone]
+{material}
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = 0.7
+{joint}
+[solver]
+solver = "newton_path"
+kinematics = "finite"
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "spread"
+settlement = [{{ support = "right", displacement = [0.05, -0.01], rotation = 0.002 }}]
+[[stages]]
+name = "live"
+loads = [{{ kind = "point", span_fraction = 0.4, force = [0.0, -100.0] }}]
+"#
+    )
+}
+
+/// Equilibrium and gaps of a state with finite displacements are those of its displaced places:
+/// every changed force, displacement and factor is found, and so is the state taken for one of small displacements.
+#[test]
+fn every_changed_number_of_finite_displacements_is_found() {
+    for (material, joint) in [
+        ("law = \"rigid\"", "normal_stiffness = 1e9\nshear_stiffness = 1e9"),
+        ("law = \"elastic\"\nyoung_modulus = 2e9\npoisson_ratio = 0.2", ""),
+    ] {
+        let text = spread(material, joint);
+        let (study, original) = results(&text);
+        let case = &original["cases"][0];
+        assert_eq!(case["status"], json!("stands"), "{:?}", case["notes"]);
+        let residual = case["certificate"]["residuals"]["path_equilibrium"].as_f64().expect("a residual");
+        assert!(residual < 1e-10, "{residual}");
+        let text = serde_json::to_string(&original).expect("JSON");
+        assert_eq!(verify(&study, &serde_json::from_str(&text).expect("results")), vec![]);
+        let (small, _) = results(&spread(material, joint).replace("kinematics = \"finite\"", "kinematics = \"small\""));
+        assert!(findings(&small, &original) > 0, "small displacements were confirmed");
+        let mut tried = 0;
+        for part in ["field", "displacements", "field_factor"] {
+            each_number(&case[part], 1e-5, &format!("/cases/0/{part}"), &mut |path, value| {
+                if path.contains("/point/") || path.contains("/between/") {
+                    return;
+                }
+                let slot = original.pointer(path).and_then(Value::as_f64).expect("a float");
+                let greatest = if part == "field" { greatest(&case["field"]) } else { 0.05 };
+                if slot.abs() < 1e-2 * greatest {
+                    return;
+                }
+                let mut changed = original.clone();
+                *changed.pointer_mut(path).expect("the path exists") = json!(value);
+                tried += 1;
+                assert!(findings(&study, &changed) > 0, "{path} was changed from {slot} and not found");
+            });
+        }
+        assert!(tried > 30, "only {tried} numbers were tried");
+    }
+}

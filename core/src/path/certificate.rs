@@ -1,8 +1,10 @@
 //! Certificates of paths: every state that an observer sees is checked from the problem alone.
 //!
 //! - `path_equilibrium`: resultants of loads and contact forces on each free body, relative to the
-//!   sum of all forces (moments divided by the scene's length);
-//! - `path_kinematics`: gaps recomputed from motions, forces and loads (small displacements);
+//!   sum of all forces (moments divided by the scene's length), in displaced positions where
+//!   displacements are finite ([`Displaced`]);
+//! - `path_kinematics`: gaps recomputed from motions, forces and loads, relative to the greatest gap or
+//!   displacement; where displacements are finite the rounding of positions is granted;
 //! - `path_strength`: greatest excess of a facet over its bound, relative to the greatest contact force;
 //! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
 //! - `path_complementarity`: greatest force × gap of open contact points, relative to both;
@@ -23,7 +25,7 @@
 //! - `path_power`: |p·q̇ − 1| of a mechanism;
 //! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
 
-use super::{ContactLaw, Loading, PathObserver, PathProblem, PathState};
+use super::{ContactLaw, Displaced, Loading, PathObserver, PathProblem, PathState};
 use crate::interface::FacetMode;
 use std::collections::BTreeMap;
 
@@ -76,8 +78,7 @@ pub struct Watch {
     pub states: u64,
     /// (displacement \[m\], λ) of the states of the last drive.
     pub curve: Vec<[f64; 2]>,
-    /// Whether equilibrium holds in displaced positions, so that small-displacement checks do not
-    /// apply.
+    /// Whether equilibrium holds in displaced positions.
     pub finite: bool,
     last: Option<(usize, f64)>,
     memory: Option<Vec<f64>>,
@@ -100,23 +101,13 @@ impl Watch {
     /// Checks one state.
     fn check(&mut self, problem: &PathProblem, state: &PathState) {
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
-        let mut wrench = vec![[0.0; 3]; problem.bodies.len()];
         let mut size = 0.0;
-        let mut gaps = vec![[0.0; 2]; problem.contacts.len()];
         for (drive, factor) in problem.drives.iter().zip(problem.applied(state.drive, state.factor)) {
-            for (sum, add) in wrench.iter_mut().zip(problem.wrenches(&drive.loading)) {
-                (0..3).for_each(|i| sum[i] += factor * add[i]);
-                size += (factor * add[0].hypot(add[1])).abs();
+            for [x, y, _] in problem.wrenches(&drive.loading) {
+                size += (factor * x.hypot(y)).abs();
             }
         }
-        for (contact, force) in problem.contacts.iter().zip(&state.force) {
-            for plus in [false, true] {
-                let rows = problem.kinematics(contact, plus);
-                let body = if plus { contact.plus.body } else { contact.minus.body };
-                (0..3).for_each(|i| wrench[body][i] += rows[0][i] * force[0] + rows[1][i] * force[1]);
-            }
-            size += force[0].hypot(force[1]);
-        }
+        size += state.force.iter().map(|f| f[0].hypot(f[1])).sum::<f64>();
         // Where everything has come apart the forces are rounding of what they were.
         self.greatest = self.greatest.max(size);
         let size = size.max(NOTHING * self.greatest);
@@ -125,20 +116,21 @@ impl Watch {
             deformation = deformation.max(motion[0].abs()).max(motion[1].abs());
         }
         let deformation = deformation.max(1e-300);
-        if !self.finite {
-            for (w, _) in wrench.iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
-                self.note("path_equilibrium", w[0].hypot(w[1]).max(w[2].abs() / problem.length) / size.max(1e-300));
-            }
-            problem.small_gaps(state, &mut gaps);
-            for (g, own) in gaps.iter().zip(&state.gap) {
-                self.note("path_kinematics", (g[0] - own[0]).abs().max((g[1] - own[1]).abs()) / deformation);
-            }
+        let displaced = Displaced::new(problem, state, self.finite);
+        for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
+            self.note("path_equilibrium", w[0].hypot(w[1]).max(w[2].abs() / problem.length) / size.max(1e-300));
+        }
+        // Gaps of finite displacements are differences of positions.
+        let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
+        for (g, own) in displaced.gaps().iter().zip(&state.gap) {
+            let off = (g[0] - own[0]).abs().max((g[1] - own[1]).abs());
+            self.note("path_kinematics", (off - rounding) / deformation);
         }
         self.check_blocks(problem, state);
         let force_scale = largest.max(1e-300);
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
             let ContactLaw::Law(law) = contact.law else {
-                self.note("path_kinematics", gap[0].abs().max(gap[1].abs()) / deformation);
+                self.note("path_kinematics", (gap[0].abs().max(gap[1].abs()) - rounding) / deformation);
                 continue;
             };
             let facets = &problem.facets[law];
@@ -149,11 +141,11 @@ impl Watch {
             if facets.iter().any(|f| f.mode == FacetMode::Opening && f.bound == 0.0) {
                 let crushes = facets.iter().any(|f| f.mode == FacetMode::Crushing);
                 if !crushes {
-                    self.note("path_penetration", -gap[0] / deformation);
+                    self.note("path_penetration", (-gap[0] - rounding) / deformation);
                 }
                 let dilates = facets.iter().any(|f| f.mode == FacetMode::Sliding && f.flow[0] != 0.0);
                 if !dilates && !crushes {
-                    let product = (force[0] / force_scale).max(0.0).min((gap[0] / deformation).max(0.0));
+                    let product = (force[0] / force_scale).max(0.0).min(((gap[0] - rounding) / deformation).max(0.0));
                     self.note("path_complementarity", product);
                 }
             }

@@ -10,9 +10,11 @@
 //! ```
 
 pub mod certificate;
+mod displaced;
 mod problem;
 mod response;
 
+pub use displaced::Displaced;
 pub use problem::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
 pub use response::{SoftensOver, coarse_joints};
 

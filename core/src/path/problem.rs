@@ -531,42 +531,4 @@ impl PathProblem {
         }
         forces
     }
-
-    /// Gaps of all contact points from motions, forces and loads of a state, small displacements
-    /// \[m\]; written into `gaps`.
-    pub fn small_gaps(&self, state: &super::PathState, gaps: &mut [[f64; 2]]) {
-        let forces = self.forces_on_points(state, false);
-        let elastic: Vec<Vec<Vec2>> = self
-            .bodies
-            .iter()
-            .zip(&forces)
-            .enumerate()
-            .map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
-                (None, ..) => Vec::new(),
-                (Some(_), Some(inelastic), Some(recorded)) => {
-                    let u = inelastic.at_points(&recorded.displacement);
-                    u.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect()
-                }
-                (Some(flexibility), ..) => {
-                    let flat = nalgebra::DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
-                    let u = &**flexibility * flat;
-                    (0..f.len()).map(|i| Vec2::new(u[2 * i], u[2 * i + 1])).collect()
-                }
-            })
-            .collect();
-        for ((contact, force), gap) in self.contacts.iter().zip(&state.force).zip(gaps) {
-            let side = |attachment: Attachment| {
-                let [x, y, theta] = state.motion[attachment.body];
-                let arm = contact.position - self.bodies[attachment.body].pole;
-                Vec2::new(x, y)
-                    + turned(arm) * theta
-                    + attachment.slot.map_or(Vec2::zeros(), |slot| elastic[attachment.body][slot])
-            };
-            let jump = side(contact.plus) - side(contact.minus);
-            *gap = [
-                contact.gap + jump.dot(&contact.normal) + contact.compliance[0] * force[0],
-                jump.dot(&contact.tangent) + contact.compliance[1] * force[1],
-            ];
-        }
-    }
 }

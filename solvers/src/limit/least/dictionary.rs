@@ -42,6 +42,8 @@ pub struct Dictionary {
     cost: Vec<f64>,
     original: Original,
     since_audit: u64,
+    /// Row and sense of the last refutation.
+    refuted: Option<(usize, f64)>,
     /// Pivots done.
     pub pivots: u64,
 }
@@ -153,7 +155,8 @@ fn irregular(index: usize) -> f64 {
 }
 
 impl Dictionary {
-    fn new(variables: usize, basic: Vec<usize>, nonbasic: Vec<usize>, beta: Vec<f64>, matrix: Vec<f64>) -> Self {
+    /// x_B = β + M x_N, M row by row; variables in neither list are zero.
+    pub fn new(variables: usize, basic: Vec<usize>, nonbasic: Vec<usize>, beta: Vec<f64>, matrix: Vec<f64>) -> Self {
         let mut place = vec![Place::Absent; variables];
         basic.iter().enumerate().for_each(|(i, &x)| place[x] = Place::Row(i));
         nonbasic.iter().enumerate().for_each(|(j, &x)| place[x] = Place::Column(j));
@@ -172,6 +175,7 @@ impl Dictionary {
             cost,
             original,
             since_audit: 0,
+            refuted: None,
             pivots: 0,
         }
     }
@@ -351,6 +355,7 @@ impl Dictionary {
     /// Looks for a point with x ≥ 0 and the fixed variables at zero, by the dual simplex method.
     pub fn feasible(&mut self) -> Feasibility {
         self.shift_costs();
+        self.refuted = None;
         let limit = 20 * (self.rows + self.columns) as u64 + 200;
         let mut restored = false;
         for step in 0..limit {
@@ -379,6 +384,7 @@ impl Dictionary {
                     if repairable && violation < DOUBTFUL {
                         return Feasibility::Undecided;
                     }
+                    self.refuted = Some((r, sense));
                     return Feasibility::Reason(self.reason(r, sense));
                 }
             }
@@ -414,6 +420,15 @@ impl Dictionary {
             }
         }
         best.map(|b| b.0)
+    }
+
+    /// What the last [`Feasibility::Reason`] rests on: Σ c x = β for all points of the affine space, as
+    /// (x, c), and the sense (1 or −1) by which to multiply it so that β < 0.
+    pub fn refutation(&self) -> Option<(Vec<(usize, f64)>, f64)> {
+        let (r, sense) = self.refuted?;
+        let mut row = vec![(self.basic[r], 1.0)];
+        row.extend(self.nonbasic.iter().copied().zip(self.row(r).iter().map(|m| -m)));
+        Some((row, sense))
     }
 
     /// The fixed variables that keep row `r` from being repaired.

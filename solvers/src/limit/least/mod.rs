@@ -3,7 +3,7 @@
 
 mod bracket;
 mod descent;
-pub(super) mod dictionary;
+pub(crate) mod dictionary;
 mod products;
 mod search;
 

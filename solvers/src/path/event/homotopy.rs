@@ -17,6 +17,8 @@
 use super::rate::{Piece, RateProblem, Verge};
 use crate::path::cells::{Cell, Cells};
 use crate::path::newton::law::Polygon;
+use crate::path::shuffle::Shuffle;
+use crate::path::walk::{Met, Standing, Walk};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::interface::Facet;
 
@@ -26,19 +28,6 @@ const SHIFT: f64 = 1e-9;
 const FRESH: usize = 60;
 /// Residual of a direction above which it is.
 const RESIDUAL: f64 = 1e-7;
-/// Values of t behind which a path that turned back is given up.
-const LOST: f64 = -30.0;
-
-/// Numbers in [−1, 1), the same in every run.
-struct Shuffle(u64);
-
-impl Shuffle {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 /// The cells of a point.
 struct Law {
     polygon: Polygon,
@@ -118,7 +107,7 @@ impl RateProblem<'_> {
         let s = DMatrix::from_fn(n, n, |i, j| self.s[(i, j)] / (unit[i] * unit[j]) - if i == j { SHIFT } else { 0.0 });
         let drive = DVector::from_fn(n, |i, _| self.drive[i] * factor / unit[i]);
         let size = drive.amax().max(1e-300);
-        let mut random = Shuffle(0x51_7CC1 + 7919 * number);
+        let mut random = Shuffle::new(0x51_7CC1 + 7919 * number);
         let (mut force, mut gap) = (DVector::zeros(n), DVector::zeros(n));
         let mut cells = Vec::with_capacity(laws.len());
         for (k, law) in laws.iter().enumerate() {
@@ -171,8 +160,7 @@ impl RateProblem<'_> {
         }
         let mut inverse: Option<DMatrix<f64>> = None;
         let mut updates = 0;
-        let (mut t, mut sense) = (0.0, 1.0);
-        let mut entered: Option<(usize, usize)> = None;
+        let mut walk = Walk::new();
         for _ in 0..200 + 4 * n {
             *counters += 1;
             let mut by = inverse.as_ref().filter(|_| updates <= FRESH).map(|inverse| inverse * &right);
@@ -192,49 +180,35 @@ impl RateProblem<'_> {
             let force_rate = &s * &gap_rate - &error;
             let pair = |v: &DVector<f64>, k: usize| [v[2 * k], v[2 * k + 1]];
             let changed = loop {
-                if let Some((k, wall)) = entered.take() {
-                    let speed = laws[k].cells.cells[cells[k]].1[wall].speed(pair(&force_rate, k), pair(&gap_rate, k));
-                    sense = if speed < 0.0 { -1.0 } else { 1.0 };
-                }
-                let mut next: Option<(f64, f64, usize, usize)> = None;
-                for (k, law) in laws.iter().enumerate() {
-                    for (index, wall) in law.cells.cells[cells[k]].1.iter().enumerate() {
-                        let speed = sense * wall.speed(pair(&force_rate, k), pair(&gap_rate, k));
-                        if speed < 0.0 {
-                            let slack = wall.slack(pair(&force, k), pair(&gap, k), 1.0);
-                            let when = slack.max(0.0) / -speed;
-                            if next.is_none_or(|n| when < n.0 || (when == n.0 && -speed > n.1)) {
-                                next = Some((when, -speed, k, index));
-                            }
-                        }
-                    }
-                }
-                let rest = if sense > 0.0 { 1.0 - t } else { f64::INFINITY };
-                let step = next.map_or(f64::INFINITY, |n| n.0);
+                let (along, met) = walk.on(laws.len(), |k| {
+                    Some(Standing {
+                        walls: &laws[k].cells.cells[cells[k]].1,
+                        force: pair(&force, k),
+                        gap: pair(&gap, k),
+                        area: 1.0,
+                        force_rate: pair(&force_rate, k),
+                        gap_rate: pair(&gap_rate, k),
+                    })
+                });
                 let read = |gap: &DVector<f64>, by: f64| {
                     let pieces = laws.iter().zip(&cells).map(|(law, cell)| law.piece(*cell)).collect();
                     let gaps = (0..laws.len()).map(|k| [0, 1].map(|i| by * gap[2 * k + i] / unit[2 * k + i]));
                     Some((pieces, gaps.collect()))
                 };
-                if step.min(rest).is_infinite() {
-                    // A ray: where forces stand still on it, a mechanism.
-                    return read(&gap_rate, sense);
+                if matches!(met, Met::Ray) {
+                    // Where forces stand still on a ray, it is a mechanism.
+                    return read(&gap_rate, walk.sense);
                 }
-                let along = sense * step.min(rest);
                 force += &force_rate * along;
                 gap += &gap_rate * along;
-                t += along;
-                if rest <= step {
-                    return read(&gap, 1.0);
-                }
-                if t < LOST {
+                let Met::Wall(k, index) = met else { return read(&gap, 1.0) };
+                if walk.is_lost() {
                     return None;
                 }
-                let (_, _, k, index) = next?;
                 let (to, wall) = laws[k].cells.cells[cells[k]].1[index].behind;
                 let before = laws[k].cells.cells[cells[k]].0;
                 cells[k] = to;
-                entered = Some((k, wall));
+                walk.enters(k, wall);
                 let same = matches!((before, laws[k].cells.cells[to].0), (Cell::Pair(..), Cell::Pair(..)));
                 if !same {
                     break k;

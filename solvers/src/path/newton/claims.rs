@@ -5,23 +5,15 @@
 //! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the
 //!   dead load is no proof: with friction that is not associated another path may carry it;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;
-//! - limit point: no combination of regimes of the points at the verge of a change has a rate with
-//!   growing λ (all are tried).
+//! - limit point: no regimes of the points at the verge of a change have a rate with growing λ
+//!   (`rising`).
 
-use super::law::Regime;
-use super::model::{Control, Model, State};
 use voussoir_core::limit::Status;
 use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
-/// Slack, relative to the greatest force, up to which a facet may yield in a rate.
-const VERGE: f64 = 1e-8;
-
 /// How close the factor of a claim and of its state are, relative to them.
 const SAME: f64 = 1e-9;
-
-/// Combinations of regimes that are tried.
-const COMBINATIONS: usize = 3000;
 
 /// The answer, or a stall with the reason where its claim is not confirmed.
 pub(super) fn confirmed(problem: &PathProblem, finite: bool, mut answer: PathAnswer) -> PathAnswer {
@@ -100,66 +92,6 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
 fn ray(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(ray) = &answer.ray else { return Err("there is no ray".into()) };
     small("path_ray", ray_residual(problem, &problem.drives[answer.drive].loading, ray))
-}
-
-impl Model<'_> {
-    /// Proves that no rate with growing λ starts at a converged state: every combination of regimes
-    /// of the points at the verge of a change is tried. An error says why that is not so.
-    pub fn none_rises(&mut self, state: &State, direction: f64) -> Result<(), String> {
-        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-        let points = state.gap.len();
-        let mut active = vec![Vec::new(); points];
-        let mut open = vec![false; points];
-        let mut choices: Vec<(usize, Vec<Regime>)> = Vec::new();
-        for c in 0..points {
-            let (Some(law), area, r) = (self.law(c), self.problem.contacts[c].area, state.force[c]) else { continue };
-            let slack = |i: usize| {
-                let f = &law.facets[i];
-                f.bound * area - f.normal[0] * r[0] - f.normal[1] * r[1]
-            };
-            active[c] = (0..law.facets.len()).filter(|i| slack(*i) <= VERGE * largest).collect();
-            let (_, opening) = law.irreversible(state.regime[c], self.step_gap(state, state, c));
-            open[c] = law.opens(state.regime[c]) && opening > 1e-9 * self.units.displacement;
-            if open[c] || active[c].is_empty() {
-                continue;
-            }
-            let mut regimes = vec![Regime::Stuck];
-            regimes.extend(active[c].iter().map(|i| Regime::Facet(*i as u8)));
-            let at = |k: &usize| law.corners[*k].1.iter().flatten().all(|i| active[c].contains(i));
-            regimes.extend((0..law.corners.len()).filter(at).map(|k| Regime::Corner(k as u8)));
-            choices.push((c, regimes));
-        }
-        let count = choices.iter().fold(1usize, |n, (_, regimes)| n.saturating_mul(regimes.len()));
-        if count > COMBINATIONS {
-            return Err(format!("{count} combinations of regimes are too many to exclude that the load grows"));
-        }
-        let mut trial = state.clone();
-        for number in 0..count {
-            let mut rest = number;
-            for (c, regimes) in &choices {
-                trial.regime[*c] = regimes[rest % regimes.len()];
-                rest /= regimes.len();
-            }
-            let Some(rate) = self.rate(state, &trial, &Control::Factor(state.factor)) else { continue };
-            let rate = rate.scaled(direction);
-            let force = rate.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
-            let gap = self.motion_size(&rate) * self.units.displacement;
-            let fits = choices.iter().all(|(c, _)| {
-                let Some(law) = self.law(*c) else { return true };
-                let v = rate.gap[*c].map(|g| g / gap.max(1e-300));
-                let r = rate.force[*c].map(|r| r / force);
-                let inside = active[*c].iter().all(|i| {
-                    let a = law.facets[*i].normal;
-                    a[0] * r[0] + a[1] * r[1] <= 1e-9
-                });
-                inside && law.ray_violation(trial.regime[*c], [0.0; 2], v) <= 1e-9
-            });
-            if fits {
-                return Err("there is a rate on which the load grows".into());
-            }
-        }
-        Ok(())
-    }
 }
 
 #[cfg(test)]

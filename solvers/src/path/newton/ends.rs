@@ -1,7 +1,9 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
 use super::super::continuation::arc_length::ArcLength;
+use super::law::Regime;
 use super::model::{Control, Rate, Refusal, State, load_size};
+use super::rising::Rising;
 use super::trace::{Peak, Tracer};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, Drive, Increment};
@@ -19,7 +21,7 @@ impl Tracer<'_, '_> {
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
         let falls = rate.factor * direction <= 0.0;
         if !self.strategy.passes_limit_points() && (falls || self.turns_back(rate, direction)) {
-            self.doubt(&self.state.clone(), direction);
+            self.doubted(&self.state.clone(), direction);
             self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
         } else {
             self.end(Status::Stalled, why);
@@ -44,29 +46,40 @@ impl Tracer<'_, '_> {
         false
     }
 
-    /// Looks, with small displacements, for a rate with growing λ where there should be none.
-    pub(super) fn doubt(&mut self, state: &State, direction: f64) {
-        if !self.model.finite() && self.model.responses.is_empty() {
-            self.doubt = self.model.none_rises(state, direction).err();
+    /// Looks, with small displacements, for a rate with growing λ where there should be none. Where that
+    /// is not decided, or not gone on with, the limit point is not proven.
+    pub(super) fn doubted(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
+        if self.model.finite() || !self.model.responses.is_empty() {
+            return None;
         }
+        match self.model.rising(state, direction) {
+            Rising::None => self.doubt = None,
+            Rising::Unknown(why) => self.doubt = Some(why),
+            Rising::Rate(rate, regimes) => {
+                self.doubt = Some("there is a rate on which the load grows".into());
+                return Some((rate, regimes));
+            }
+        }
+        None
     }
 
-    /// Bisects the step from the present state for the point where λ stops growing.
+    /// Bisects the step from the present state for the point where λ stops growing: the state there and
+    /// the rate just behind it.
     pub(super) fn locate_peak(
         &mut self,
         rate: &Rate,
         previous: Option<Increment>,
         length: f64,
         direction: f64,
-    ) -> Option<Peak> {
+    ) -> (State, Rate) {
         let strategy = self.strategy.clone();
+        let per_rate = strategy.constraint(&self.model.increment_of(&self.state, rate), previous.as_ref()).value;
         let (mut low, mut high) = (0.0, length);
         let mut best = (self.state.clone(), rate.clone());
         let mut behind = rate.clone();
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             let control = Control::Strategy { strategy: &*strategy, previous, length: middle };
-            let per_rate = strategy.constraint(&self.model.increment_of(&self.state, rate), previous.as_ref()).value;
             let guess = self.moved(rate, middle / per_rate);
             let Ok((state, _)) = self.model.newton(&self.state, guess, &control) else { break };
             let Some(here) = self.model.rate(&self.state, &state, &control) else { break };
@@ -82,11 +95,11 @@ impl Tracer<'_, '_> {
                 break;
             }
         }
-        Some(self.peak_at(best.0, &behind, direction))
+        (best.0, behind)
     }
 
     /// A peak at a state between the last one and the next, with the rate just behind it.
-    pub(super) fn peak_at(&mut self, mut state: State, behind: &Rate, direction: f64) -> Peak {
+    pub(super) fn peak_at(&mut self, mut state: State, behind: &Rate) -> Peak {
         let slopes = self.model.slopes(&state);
         let mut ledger = self.ledger;
         ledger.add(&self.model, &self.state, &state, [&self.slopes, &slopes]);
@@ -94,7 +107,6 @@ impl Tracer<'_, '_> {
         self.model.keep(&start, &mut state);
         let recorded = ledger.recorded(&self.model, self.drive, &state, &slopes);
         let motion = self.scaled_motion(&state, behind);
-        self.doubt(&state, direction);
         Peak { factor: state.factor, state: recorded, motion }
     }
 
@@ -164,11 +176,6 @@ impl Tracer<'_, '_> {
             return true;
         }
         false
-    }
-
-    /// Whether a block yields in the last step.
-    pub(super) fn flows(&self) -> bool {
-        self.state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
     }
 
     /// Whether the path went as far behind its peak as was asked for.

@@ -10,6 +10,9 @@ use voussoir_core::path::{Drive, DriveEnd, Increment};
 /// Greatest number of steps of a drive.
 const MOST_STEPS: u64 = 5000;
 
+/// Branches with growing λ that are taken at one factor.
+const MOST_BRANCHES: u32 = 3;
+
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
@@ -24,6 +27,7 @@ impl Tracer<'_, '_> {
             return Outcome::Reached;
         }
         let to_factor = matches!(drive.end, DriveEnd::Factor(_));
+        self.rose = None;
         self.model.rest(&mut self.state);
         let Some(first) = self.model.rate(&self.state, &self.state, &Control::Factor(target)) else {
             self.end(
@@ -164,13 +168,18 @@ impl Tracer<'_, '_> {
                         switched_at = steps;
                         if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
                             let falls = other.factor * direction <= 0.0;
+                            let state = self.state.clone();
+                            let rises = if falls { self.rises(&state, direction) } else { None };
+                            let (other, regimes, falls) = match rises {
+                                Some((rate, regimes)) => (rate, regimes, false),
+                                None => (other, regimes, falls),
+                            };
                             if falls && !strategy.passes_limit_points() {
                                 self.no_step(&refusal, &other, direction);
                                 return Outcome::Ended;
                             }
                             if falls && self.peak.is_none() {
                                 let motion = self.scaled_motion(&self.state, &other);
-                                self.doubt(&self.state.clone(), direction);
                                 self.peak =
                                     Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
                             }
@@ -184,6 +193,15 @@ impl Tracer<'_, '_> {
                     }
                     length = if slip > 1e-9 * share && slip < share { slip * per_rate } else { 0.3 * length };
                     if length < 1e-10 * initial {
+                        let state = self.state.clone();
+                        let rises = if self.peak.is_none() { self.rises(&state, direction) } else { None };
+                        if let Some((other, regimes)) = rises {
+                            before_peak_rate = other.factor * direction;
+                            (rate, yielding) = (other, Some(regimes));
+                            previous = None;
+                            length = 0.1 * initial;
+                            continue;
+                        }
                         self.no_step(&refusal, &rate, direction);
                         return Outcome::Ended;
                     }
@@ -223,7 +241,19 @@ impl Tracer<'_, '_> {
                 && (fell || (falls && before_peak_rate > 0.0))
                 && !reaches
             {
-                self.peak = self.locate_peak(&rate, previous, length, direction);
+                let (state, behind) = self.locate_peak(&rate, previous, length, direction);
+                if let Some((other, regimes)) = self.rises(&state, direction) {
+                    // Newton's method went over to a falling branch where another one rises.
+                    if !self.commit(state) {
+                        return Outcome::Ended;
+                    }
+                    before_peak_rate = other.factor * direction;
+                    (rate, yielding) = (other, Some(regimes));
+                    previous = None;
+                    length = 0.1 * initial;
+                    continue;
+                }
+                self.peak = Some(self.peak_at(state, &behind));
             }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
             before_peak_rate = next_rate.factor * direction;
@@ -240,7 +270,7 @@ impl Tracer<'_, '_> {
             }
             rate = next_rate;
             yielding = None;
-            if !self.model.finite() && !self.flows() && self.ray_ends(&rate, direction, target) {
+            if !self.model.finite() && !self.state.yields() && self.ray_ends(&rate, direction, target) {
                 return Outcome::Ended;
             }
             if self.stops(drive, direction) {
@@ -262,6 +292,24 @@ impl Tracer<'_, '_> {
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended
+    }
+
+    /// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise
+    /// the limit point is proven, or in doubt.
+    fn rises(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
+        let other = self.doubted(state, direction)?;
+        let same = |factor: f64| (state.factor - factor) * direction <= 1e-10 * factor.abs();
+        let times = match self.rose {
+            Some((factor, times)) if same(factor) => times + 1,
+            _ => 1,
+        };
+        if times > MOST_BRANCHES {
+            return None;
+        }
+        self.rose = Some((state.factor, times));
+        self.doubt = None;
+        self.model.count("branches", 1);
+        Some(other)
     }
 
     /// Weight of the factor in a control by a spring: with it every step of associated flow is a
@@ -306,7 +354,7 @@ impl Tracer<'_, '_> {
         self.model.deform(&mut ahead).ok()?;
         let mut turning = self.state.clone();
         turning.blocks = ahead.blocks;
-        if !turning.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0) {
+        if !turning.yields() {
             return None;
         }
         let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;

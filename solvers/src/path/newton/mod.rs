@@ -13,6 +13,7 @@ mod model;
 mod pivot;
 mod reach;
 mod response;
+mod rising;
 mod softening;
 mod step;
 mod system;

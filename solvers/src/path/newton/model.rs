@@ -37,6 +37,13 @@ pub(super) struct State {
     pub blocks: Vec<Option<Inner>>,
 }
 
+impl State {
+    /// Whether a block yields in the step that ends here.
+    pub fn yields(&self) -> bool {
+        self.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
+    }
+}
+
 /// Rate of a state per unit of its control.
 #[derive(Debug, Clone)]
 pub(super) struct Rate {
@@ -331,7 +338,7 @@ impl<'a> Model<'a> {
     }
 
     pub fn curvature(&mut self, state: &State, slopes: &Slopes) -> std::rc::Rc<Curvature> {
-        let yields = state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
+        let yields = state.yields();
         if let Some(constant) = self.constant.as_ref().filter(|_| !yields) {
             return constant.clone();
         }

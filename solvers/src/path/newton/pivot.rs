@@ -20,22 +20,11 @@
 use super::frame::Frame;
 use super::law::Regime;
 use super::model::{Control, Model, Refusal, State};
+use crate::path::shuffle::Shuffle;
+use crate::path::walk::{Met, Standing, Walk};
 
 /// Sizes of the shift of the guess that are tried, relative to forces.
 const SHIFTS: [f64; 3] = [1e-3, 0.03, 0.5];
-/// Values of t behind which a path that turned back is given up.
-const LOST: f64 = -30.0;
-
-/// Numbers in [−1, 1), the same in every run.
-struct Shuffle(u64);
-
-impl Shuffle {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 /// A point of the path.
 struct Place {
     state: State,
@@ -44,7 +33,6 @@ struct Place {
     cells: Vec<Option<usize>>,
     /// Residual of the gaps at t = 0 \[m\].
     offset: Vec<[f64; 2]>,
-    t: f64,
 }
 
 impl Model<'_> {
@@ -77,7 +65,7 @@ impl Model<'_> {
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
         let mean = self.units.displacement / self.units.force;
         let typical = largest.max(1e-3 * self.units.force) / (points as f64).sqrt();
-        let mut random = Shuffle(0x9E37_79B9 + 77 * seed);
+        let mut random = Shuffle::new(0x9E37_79B9 + 77 * seed);
         let (mut cells, mut step_gap) = (vec![None; points], vec![[0.0; 2]; points]);
         for c in 0..points {
             let noise = [random.next(), random.next()];
@@ -94,7 +82,7 @@ impl Model<'_> {
         }
         state.gap = self.slopes(&state).gap;
         let offset = (0..points).map(|c| [0, 1].map(|k| state.gap[c][k] - start.slip[c][k] - step_gap[c][k])).collect();
-        Place { state, step_gap, cells, offset, t: 0.0 }
+        Place { state, step_gap, cells, offset }
     }
 
     fn walked(
@@ -115,9 +103,7 @@ impl Model<'_> {
         let size = self.size();
         let mut frame = Frame::new(self, &curvature, &row);
         let most = 400 + 20 * points;
-        // The wall by which a cell was entered, and the sense of t.
-        let mut entered: Option<(usize, usize)> = None;
-        let mut sense = 1.0;
+        let mut walk = Walk::new();
         for _ in 0..most {
             for c in 0..points {
                 place.state.regime[c] = match (place.cells[c], self.law(c)) {
@@ -153,34 +139,20 @@ impl Model<'_> {
                 (0..points).map(|c| [0, 1].map(|k| rate.gap[c][k] + place.offset[c][k])).collect();
             // Over walls without a change of equations the direction stays.
             loop {
-                if let Some((c, wall)) = entered.take()
-                    && let (Some(cell), Some(law)) = (place.cells[c], self.law(c))
-                {
-                    let speed = law.cells.cells[cell].1[wall].speed(rate.force[c], gap_rate[c]);
-                    sense = if speed < 0.0 { -1.0 } else { 1.0 };
-                }
-                let mut next: Option<(f64, f64, usize, usize)> = None;
-                for (c, gap_rate) in gap_rate.iter().enumerate() {
-                    let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) else { continue };
-                    let area = self.problem.contacts[c].area;
-                    for (index, wall) in law.cells.cells[cell].1.iter().enumerate() {
-                        let speed = sense * wall.speed(rate.force[c], *gap_rate);
-                        if speed >= 0.0 {
-                            continue;
-                        }
-                        let slack = wall.slack(place.state.force[c], place.step_gap[c], area);
-                        let when = slack.max(0.0) / -speed;
-                        if next.is_none_or(|n| when < n.0 || (when == n.0 && -speed > n.1)) {
-                            next = Some((when, -speed, c, index));
-                        }
-                    }
-                }
-                let rest = if sense > 0.0 { 1.0 - place.t } else { f64::INFINITY };
-                let step = next.map_or(f64::INFINITY, |n| n.0);
-                if step.min(rest).is_infinite() {
+                let (along, met) = walk.on(points, |c| {
+                    let (cell, law) = (place.cells[c]?, self.law(c)?);
+                    Some(Standing {
+                        walls: &law.cells.cells[cell].1,
+                        force: place.state.force[c],
+                        gap: place.step_gap[c],
+                        area: self.problem.contacts[c].area,
+                        force_rate: rate.force[c],
+                        gap_rate: gap_rate[c],
+                    })
+                });
+                if matches!(met, Met::Ray) {
                     return Err("the path of pivoting leaves along a ray".into());
                 }
-                let along = sense * step.min(rest);
                 let advance = |to: &mut [[f64; 2]], by: &[[f64; 2]]| {
                     to.iter_mut().flatten().zip(by.iter().flatten()).for_each(|(x, rate)| *x += along * rate);
                 };
@@ -191,18 +163,14 @@ impl Model<'_> {
                     (0..3).for_each(|k| q[k] += along * dq[k]);
                 }
                 place.state.factor += along * rate.factor;
-                place.t += along;
-                if rest <= step {
-                    return Ok(place.state);
-                }
-                if place.t < LOST {
+                let Met::Wall(c, index) = met else { return Ok(place.state) };
+                if walk.is_lost() {
                     return Err("the path of pivoting turned back".into());
                 }
-                let Some((_, _, c, index)) = next else { continue };
                 let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) else { continue };
                 let (to, wall) = law.cells.cells[cell].1[index].behind;
                 place.cells[c] = Some(to);
-                entered = Some((c, wall));
+                walk.enters(c, wall);
                 if law.regime_of(to) != place.state.regime[c] {
                     break;
                 }

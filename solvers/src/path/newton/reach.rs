@@ -21,7 +21,7 @@ impl Tracer<'_, '_> {
                     !law.opens(next.regime[c]) && law.irreversible(next.regime[c], gap).0 != [0.0; 2]
                 })
             });
-            let slips = slips || next.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
+            let slips = slips || next.yields();
             let far = !small && iterations > 12;
             let straight = !slips && !far && !self.model.response_yields(&next);
             if straight || (small && self.proportional()) {

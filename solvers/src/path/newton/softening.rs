@@ -163,7 +163,7 @@ impl Tracer<'_, '_> {
             if let Some(earlier) = earlier {
                 self.notes.push(format!("behind a limit point at factor {earlier} the load rises above it again"));
             }
-            self.peak = Some(self.peak_at(best, &behind, direction));
+            self.peak = Some(self.peak_at(best, &behind));
         }
     }
 }

@@ -47,6 +47,8 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) peak: Option<Peak>,
     /// Why the first limit point is not proven to be one.
     pub(super) doubt: Option<String>,
+    /// Factor at which a branch with growing λ was taken last, and how often there.
+    pub(super) rose: Option<(f64, u32)>,
 }
 
 /// Follows all drives.
@@ -80,6 +82,7 @@ pub(super) fn trace(
         ray: None,
         peak: None,
         doubt: None,
+        rose: None,
     };
     tracer.run(problem);
     tracer.answer()

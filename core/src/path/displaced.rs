@@ -1,0 +1,105 @@
+//! Gaps and equilibrium of a recorded state, from the problem alone: at undeformed places where
+//! displacements are small, else at displaced ones.
+//!
+//! With finite displacements a body's point is at x = X + u + R(θ)(ξ + v): X the pole, ξ the point from
+//! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
+//! axes. A contact's n and t turn by the mean rotation of its two bodies, its gaps are those of x⁺ − x⁻ in
+//! them, and its force acts on both bodies midway between x⁺ and x⁻: that is the place for which its
+//! virtual work is r·δg. Bodies balance about their displaced poles.
+
+use super::{Attachment, Contact, PathProblem, PathState};
+use crate::geometry::{Vec2, cross, turned};
+use nalgebra::DVector;
+
+/// A state with the deformations of its bodies.
+pub struct Displaced<'a> {
+    problem: &'a PathProblem,
+    state: &'a PathState,
+    finite: bool,
+    /// Deformation of every body's points in its axes \[m\].
+    deformation: Vec<Vec<Vec2>>,
+}
+
+/// v turned by an angle \[rad\].
+fn rotated(v: Vec2, angle: f64) -> Vec2 {
+    v * angle.cos() + turned(v) * angle.sin()
+}
+
+impl<'a> Displaced<'a> {
+    /// With small or `finite` displacements.
+    pub fn new(problem: &'a PathProblem, state: &'a PathState, finite: bool) -> Self {
+        let forces = problem.forces_on_points(state, finite);
+        let bodies = problem.bodies.iter().zip(&forces).enumerate();
+        let of = |u: &[f64]| u.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect();
+        let deformation = bodies.map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
+            (None, ..) => Vec::new(),
+            (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
+            (Some(flexibility), ..) => {
+                let flat = DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
+                of((&**flexibility * flat).as_slice())
+            }
+        });
+        Displaced { problem, state, finite, deformation: deformation.collect() }
+    }
+
+    /// Displacement of a point of a body \[m\].
+    fn displacement(&self, body: usize, slot: Option<usize>, point: Vec2) -> Vec2 {
+        let [x, y, theta] = self.state.motion[body];
+        let arm = point - self.problem.bodies[body].pole;
+        let deformed = slot.and_then(|slot| self.deformation[body].get(slot)).copied().unwrap_or_default();
+        let swing = if self.finite { rotated(arm + deformed, theta) - arm } else { turned(arm) * theta + deformed };
+        Vec2::new(x, y) + swing
+    }
+
+    fn side(&self, contact: &Contact, side: Attachment) -> Vec2 {
+        self.displacement(side.body, side.slot, contact.position)
+    }
+
+    /// (n, t) of a contact point.
+    fn axes(&self, contact: &Contact) -> [Vec2; 2] {
+        let mean = (self.state.motion[contact.minus.body][2] + self.state.motion[contact.plus.body][2]) / 2.0;
+        [contact.normal, contact.tangent].map(|e| if self.finite { rotated(e, mean) } else { e })
+    }
+
+    /// Gaps (n, t) of all contact points from motions, forces and loads \[m\].
+    pub fn gaps(&self) -> Vec<[f64; 2]> {
+        let gap = |(contact, force): (&Contact, &[f64; 2])| {
+            let jump = self.side(contact, contact.plus) - self.side(contact, contact.minus);
+            let [n, t] = self.axes(contact);
+            [
+                contact.gap + jump.dot(&n) + contact.compliance[0] * force[0],
+                jump.dot(&t) + contact.compliance[1] * force[1],
+            ]
+        };
+        self.problem.contacts.iter().zip(&self.state.force).map(gap).collect()
+    }
+
+    /// What loads and contact forces leave on each body, about its pole \[N, N m\].
+    pub fn unbalanced(&self) -> Vec<[f64; 3]> {
+        let problem = self.problem;
+        let mut wrench = vec![[0.0; 3]; problem.bodies.len()];
+        let mut add = |body: usize, displacement: Vec2, point: Vec2, force: Vec2| {
+            let [x, y, _] = self.state.motion[body];
+            let moved = if self.finite { displacement - Vec2::new(x, y) } else { Vec2::zeros() };
+            let moment = cross(point + moved - problem.bodies[body].pole, force);
+            wrench[body] = [wrench[body][0] + force.x, wrench[body][1] + force.y, wrench[body][2] + moment];
+        };
+        for (drive, factor) in problem.drives.iter().zip(problem.applied(self.state.drive, self.state.factor)) {
+            for &(body, slot, point, force) in &drive.loading.forces {
+                add(body, self.displacement(body, slot, point), point, force * factor);
+            }
+            for (index, body) in problem.bodies.iter().enumerate() {
+                let [x, y, _] = self.state.motion[index];
+                add(index, Vec2::new(x, y), body.pole, drive.loading.acceleration * (body.mass * factor));
+            }
+        }
+        for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
+            let [n, t] = self.axes(contact);
+            let push = n * r[0] + t * r[1];
+            let middle = (self.side(contact, contact.plus) + self.side(contact, contact.minus)) / 2.0;
+            add(contact.plus.body, middle, contact.position, push);
+            add(contact.minus.body, middle, contact.position, -push);
+        }
+        wrench
+    }
+}

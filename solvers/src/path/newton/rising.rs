@@ -1,0 +1,236 @@
+//! Whether a rate with growing λ starts at a converged state (small displacements).
+//!
+//! Points with slack in all facets stay stuck, open ones open. At the others, which are at the verge of a change,
+//!
+//! ```text
+//! ġ = −Σ γ_i d_i,   ṡ_i = −a_i·ṙ,   0 ≤ γ_i ⟂ ṡ_i ≥ 0   over the facets without slack
+//! ```
+//!
+//! (all three facets of dry friction at its apex together give opening and slip). With these points
+//! taken as stuck equilibrium and elasticity are one factorisation, ṡ = q λ̇ + M γ, and λ̇ = 1 leaves a
+//! linear complementarity problem (Klarbring 1990, Ing.-Arch. 60), which is searched to its end. Where
+//! an opening facet with strength is open already its multiplier has any sign: it belongs to the
+//! factorised regimes, and only the point's other facets are pairs.
+
+use super::law::Regime;
+use super::model::{Model, Rate, State};
+use crate::lu::{Entries, SparseLu};
+use crate::path::complementarity::{Complementarity, Known};
+use nalgebra::{DMatrix, DVector};
+use voussoir_core::interface::FacetMode;
+
+/// Slack, relative to the greatest force, up to which a facet may yield in a rate.
+const VERGE: f64 = 1e-8;
+/// Residual of a response, relative to what it is made of.
+const RESIDUAL: f64 = 1e-9;
+/// Shift of the factorised matrix, taken out by refinement.
+const SHIFT: f64 = 1e-11;
+/// Linear programs of a search.
+const MOST: u64 = 20_000;
+
+/// Contact points at the verge of a change.
+struct Verge {
+    /// (contact point, facet) without slack.
+    facets: Vec<(usize, usize)>,
+    /// Regimes that are factorised.
+    regimes: Vec<Regime>,
+}
+
+/// The rate problem of a state.
+struct RateProblem {
+    problem: Complementarity,
+    /// Multiplier of each facet per unit of z.
+    units: Vec<f64>,
+    /// Rates of all unknowns but λ by each multiplier and, last, by λ̇ in the sense asked for.
+    responses: Vec<Vec<f64>>,
+}
+
+/// What is known of rates with growing λ.
+pub(super) enum Rising {
+    /// There is none.
+    None,
+    /// One, with its regimes.
+    Rate(Rate, Vec<Regime>),
+    /// Not decided, and why.
+    Unknown(String),
+}
+
+impl Model<'_> {
+    /// Looks for a rate with λ growing in the sense `direction` at a converged state, or proves that there is none.
+    pub fn rising(&mut self, state: &State, direction: f64) -> Rising {
+        let verge = self.verge(state);
+        let facets = verge.facets.len();
+        self.count("factorisations", 1);
+        let Some(rate) = self.rate_problem(state, &verge, direction) else {
+            return Rising::Unknown(format!("the stiffness of {facets} facets at the verge of yielding was not found"));
+        };
+        let (known, programs) = rate.problem.search(MOST);
+        self.count("rate_programs", programs);
+        match known {
+            Known::None => Rising::None,
+            Known::Undecided(why) => {
+                Rising::Unknown(format!("{facets} facets at the verge of yielding may let the load grow: {why}"))
+            }
+            Known::Solution(z) => {
+                let mut x = rate.responses[facets].clone();
+                for ((by, z), unit) in rate.responses.iter().zip(&z).zip(&rate.units) {
+                    x.iter_mut().zip(by).for_each(|(x, by)| *x += z * unit * by);
+                }
+                x.push(direction);
+                let slopes = self.slopes(state);
+                let curvature = self.curvature(state, &slopes);
+                let found = self.rate_from(&x, state, &curvature);
+                Rising::Rate(found, self.regimes_of(&verge, &z))
+            }
+        }
+    }
+
+    /// Regimes in which the facets with z > 0 yield.
+    fn regimes_of(&self, verge: &Verge, z: &[f64]) -> Vec<Regime> {
+        let largest = z.iter().fold(0.0, |a: f64, z| a.max(*z));
+        let mut regimes = verge.regimes.clone();
+        for (&(c, i), _) in verge.facets.iter().zip(z).filter(|(_, z)| **z > 1e-9 * largest) {
+            let Some(law) = self.law(c) else { continue };
+            let at = |j: u8| {
+                let pair = |p: &[usize; 2]| p.contains(&i) && p.contains(&(j as usize));
+                let own = law.corners.iter().position(|(_, pairs)| pairs.iter().any(pair));
+                // Both senses of slip at the apex: it opens.
+                own.or_else(|| law.corners.iter().position(|(place, _)| *place == [0.0; 2]))
+            };
+            regimes[c] = match regimes[c] {
+                Regime::Stuck => Regime::Facet(i as u8),
+                Regime::Facet(j) => at(j).map_or(Regime::Facet(j), |k| Regime::Corner(k as u8)),
+                corner => corner,
+            };
+        }
+        regimes
+    }
+
+    fn verge(&self, state: &State) -> Verge {
+        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+        let (mut facets, mut regimes) = (Vec::new(), state.regime.clone());
+        for c in 0..state.gap.len() {
+            let (Some(law), area, r) = (self.law(c), self.problem.contacts[c].area, state.force[c]) else { continue };
+            let slack = |i: usize| {
+                let f = &law.facets[i];
+                f.bound * area - f.normal[0] * r[0] - f.normal[1] * r[1]
+            };
+            let active = (0..law.facets.len()).filter(|i| slack(*i) <= VERGE * largest);
+            let (_, opening) = law.irreversible(state.regime[c], self.step_gap(state, state, c));
+            if !(law.opens(state.regime[c]) && opening > 1e-9 * self.units.displacement) {
+                regimes[c] = Regime::Stuck;
+                facets.extend(active.map(|i| (c, i)));
+                continue;
+            }
+            let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
+            if let Some(facet) = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0) {
+                regimes[c] = Regime::Facet(facet as u8);
+                facets.extend(active.filter(|i| !opens(i)).map(|i| (c, i)));
+            }
+        }
+        Verge { facets, regimes }
+    }
+
+    /// Slack rates by multipliers and by λ̇ in the sense `direction`. `None` where linear algebra fails.
+    fn rate_problem(&mut self, state: &State, verge: &Verge, direction: f64) -> Option<RateProblem> {
+        let slopes = self.slopes(state);
+        let curvature = self.curvature(state, &slopes);
+        let (u, points) = (self.units, state.gap.len());
+        let size = self.size() - 1;
+        let rotates = |row: usize| (row - 2 * points) % 3 == 2;
+        // Gap rows by the regimes, equilibrium of the bodies; and −∂/∂λ of both.
+        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); size];
+        let mut driven = vec![0.0; size];
+        let row_of = |i: usize, value: f64| {
+            if i < 2 * points {
+                return Some((i, value / u.displacement));
+            }
+            let (row, _) = self.column(i)?;
+            Some((row, value / if rotates(row) { u.force * u.length } else { u.force }))
+        };
+        for &(i, j, value) in &curvature.entries {
+            if let (Some((row, value)), Some((column, unit))) = (row_of(i, value), self.column(j)) {
+                rows[row].push((column, value * unit));
+            }
+        }
+        for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+            if let Some((row, value)) = row_of(i, value * u.factor) {
+                driven[row] -= value * direction;
+            }
+        }
+        let weighted = |c: usize, weight: [f64; 2]| {
+            let [n, t] = [0, 1].map(|k| rows[2 * c + k].iter().map(move |&(j, v)| (j, v * weight[k])));
+            n.chain(t).collect::<Vec<_>>()
+        };
+        let (mut entries, mut shift): (Entries, Entries) = (Vec::new(), Vec::new());
+        let mut right = driven.clone();
+        for (c, regime) in verge.regimes.iter().enumerate() {
+            let own: [Vec<(usize, f64)>; 2] = match (regime, self.law(c)) {
+                (Regime::Facet(i), Some(law)) => {
+                    let f = &law.facets[*i as usize];
+                    right[2 * c] = 0.0;
+                    right[2 * c + 1] = driven[2 * c] * f.flow[1] - driven[2 * c + 1] * f.flow[0];
+                    [vec![(2 * c, f.normal[0]), (2 * c + 1, f.normal[1])], weighted(c, [f.flow[1], -f.flow[0]])]
+                }
+                (Regime::Corner(_), Some(_)) => {
+                    (0..2).for_each(|k| right[2 * c + k] = 0.0);
+                    [vec![(2 * c, 1.0)], vec![(2 * c + 1, 1.0)]]
+                }
+                _ => {
+                    shift.extend((0..2).map(|k| (2 * c + k, 2 * c + k, SHIFT)));
+                    [weighted(c, [1.0, 0.0]), weighted(c, [0.0, 1.0])]
+                }
+            };
+            for (k, row) in own.into_iter().enumerate() {
+                entries.extend(row.into_iter().map(|(j, v)| (2 * c + k, j, v)));
+            }
+        }
+        for (row, own) in rows.iter().enumerate().skip(2 * points) {
+            entries.extend(own.iter().map(|&(j, v)| (row, j, v)));
+            shift.push((row, row, -SHIFT));
+        }
+        let facet = |&(c, i): &(usize, usize)| self.law(c).map(|law| law.facets[i]);
+        let mut all = Vec::with_capacity(verge.facets.len() + 1);
+        for at in &verge.facets {
+            let (c, flow) = (at.0, facet(at)?.flow);
+            let mut unit = vec![0.0; size];
+            match (verge.regimes[c], self.law(c)) {
+                (Regime::Facet(o), Some(law)) => {
+                    let d = law.facets[o as usize].flow;
+                    unit[2 * c + 1] = -flow[0] * d[1] + flow[1] * d[0];
+                }
+                _ => (0..2).for_each(|k| unit[2 * c + k] = -flow[k]),
+            }
+            all.push(unit);
+        }
+        all.push(right);
+        let x = SparseLu::shifted(size, &entries, &shift)?.solve(&all, 3)?;
+        for (x, right) in x.iter().zip(&all) {
+            let (mut rest, mut parts) = (right.clone(), 0.0f64);
+            for &(i, j, v) in &entries {
+                rest[i] -= v * x[j];
+                parts = parts.max((v * x[j]).abs());
+            }
+            if rest.iter().any(|r| r.is_nan() || r.abs() > RESIDUAL * parts) {
+                return None;
+            }
+        }
+        let n = verge.facets.len();
+        let slack = |i: usize, x: &[f64]| {
+            let (c, normal) = (verge.facets[i].0, facet(&verge.facets[i]).map_or([0.0; 2], |f| f.normal));
+            -normal[0] * x[2 * c] - normal[1] * x[2 * c + 1]
+        };
+        let matrix = DMatrix::from_fn(n, n, |i, j| slack(i, &x[j]));
+        let constant = DVector::from_fn(n, |i, _| slack(i, &x[n]));
+        // Entries of size one on the diagonal and in the constant.
+        let largest = if n > 0 { matrix.diagonal().amax() } else { 1.0 }.max(1e-300);
+        let own: Vec<f64> = matrix.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
+        let constant = DVector::from_fn(n, |i, _| constant[i] / own[i]);
+        let size = if n > 0 { constant.amax().max(1e-300) } else { 1.0 };
+        let problem = Complementarity {
+            matrix: DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (own[i] * own[j])),
+            constant: constant / size,
+        };
+        Some(RateProblem { problem, units: own.iter().map(|own| size / own).collect(), responses: x })
+    }
+}
