@@ -226,6 +226,7 @@ impl Tracer<'_, '_> {
                 self.peak = self.locate_peak(&rate, previous, length, direction);
             }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
+            self.plateau(&next, &next_rate, direction);
             before_peak_rate = next_rate.factor * direction;
             let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
             let softening = self.model.response_changes(&self.state, &next);
