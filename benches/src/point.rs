@@ -6,20 +6,7 @@ use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 
 /// β = 70°, d = 1 GPa, R = 0.005, α = 0.03, p_b = 10 MPa.
 pub fn paper_stone() -> DruckerPragerCap {
-    DruckerPragerCap {
-        young_modulus: 5e9,
-        poisson_ratio: 0.2,
-        density: 2200.0,
-        cap_friction_angle: 70.0,
-        cap_cohesion: 1e9,
-        cap_eccentricity: 0.005,
-        transition: 0.03,
-        hardening: Some(vec![[0.0, 10e6]]),
-        uniaxial_strength: None,
-        initial_compaction: 0.0,
-        crushing_fracture_energy: None,
-        residual_ratio: 0.1,
-    }
+    DruckerPragerCap::drosopoulos_2008(10e6)
 }
 
 /// The same model in the range of a soft stone, with hardening.

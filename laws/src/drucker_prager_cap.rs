@@ -2,17 +2,16 @@
 #![doc = include_str!("drucker_prager_cap.md")]
 
 pub mod surface;
+mod update;
 
 use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
-use crate::meridian::Trial;
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use surface::{Piece, Surface, Table};
+use surface::Surface;
+use update::{CapUpdate, Strength};
 use voussoir_core::card::{Capability, Card, check_as};
-use voussoir_core::material::{
-    BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt,
-};
+use voussoir_core::material::{BulkMaterial, Deformability, Isotropic, StressUpdate};
 use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
 use voussoir_core::units::Quantity;
 
@@ -54,6 +53,24 @@ fn residual_ratio() -> f64 {
 }
 
 impl DruckerPragerCap {
+    /// The stone of Drosopoulos, Stavroulakis & Massalas (2008), E = 5 GPa, ν = 0.2, with a constant p_b \[Pa\].
+    pub fn drosopoulos_2008(hydrostatic_strength: f64) -> Self {
+        DruckerPragerCap {
+            young_modulus: 5e9,
+            poisson_ratio: 0.2,
+            density: 2200.0,
+            cap_friction_angle: 70.0,
+            cap_cohesion: 1e9,
+            cap_eccentricity: 0.005,
+            transition: 0.03,
+            hardening: Some(vec![[0.0, hydrostatic_strength]]),
+            uniaxial_strength: None,
+            initial_compaction: 0.0,
+            crushing_fracture_energy: None,
+            residual_ratio: residual_ratio(),
+        }
+    }
+
     /// p_b over compaction: the table, or the constant p_b that gives the uniaxial strength. Empty
     /// where neither is possible.
     pub fn hardening(&self) -> Vec<[f64; 2]> {
@@ -236,143 +253,17 @@ impl BulkMaterial for DruckerPragerCap {
 
     fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
         let surface = self.surface();
-        let softening = self.softening();
         let pieces = surface.pieces(&self.hardening());
-        Some(match softening {
-            None => Arc::new(CapUpdate { pieces, surface, initial_compaction: self.initial_compaction }),
-            Some([drop, crushing]) => Arc::new(CrushingUpdate {
+        let strength = match self.softening() {
+            None => Strength::Hardening { pieces, initial_compaction: self.initial_compaction },
+            Some([drop, crushing]) => Strength::Softening {
                 intact: pieces[0].centre,
                 drop: drop / (1.0 + surface.eccentricity * surface.friction),
                 crushing,
                 largest_length: crushing * self.steepest_softening() / drop,
-                surface,
-            }),
-        })
-    }
-}
-
-/// Index of ε_v in the state.
-pub const COMPACTION: usize = 6;
-
-/// Index of the crushing in the state of a law that softens.
-pub const CRUSHING: usize = 7;
-
-const STATE: [&str; 8] = [
-    "plastic_strain_xx [-]",
-    "plastic_strain_yy [-]",
-    "plastic_strain_zz [-]",
-    "plastic_strain_xy [-]",
-    "plastic_strain_yz [-]",
-    "plastic_strain_zx [-]",
-    "compaction [-]",
-    "crushing [-]",
-];
-
-/// The law with hardening at a point. State: plastic strain (engineering shears) and compaction ε_v,
-/// which starts at `initial_compaction`.
-#[derive(Debug, Clone)]
-pub struct CapUpdate {
-    surface: Surface,
-    pieces: Vec<Piece>,
-    initial_compaction: f64,
-}
-
-/// The law with softening at a point. State: plastic strain, compaction, and crushing: the compaction
-/// by flow on the cap, which never falls.
-#[derive(Debug, Clone)]
-pub struct CrushingUpdate {
-    surface: Surface,
-    /// p_a of intact material, and its fall by crushing \[Pa\].
-    intact: f64,
-    drop: f64,
-    /// w_c \[m\].
-    crushing: f64,
-    largest_length: f64,
-}
-
-/// The update by a table over one entry of the state.
-fn update(
-    surface: &Surface,
-    table: Table,
-    strain: &Voigt,
-    old: &[f64],
-    new: &mut [f64],
-    at: usize,
-) -> Result<StressPoint, UpdateFailure> {
-    let elastic = &surface.elastic;
-    let trial = Trial::new(elastic, strain, old)?;
-    new.copy_from_slice(old);
-    let Some(back) = surface.project(table, [trial.pressure, trial.mises], old[at])? else {
-        return Ok(trial.elastic(elastic));
-    };
-    new[COMPACTION] += back.compaction;
-    if at == CRUSHING {
-        new[CRUSHING] += back.compaction.max(0.0);
-    }
-    Ok(trial.returned(elastic, &back, new))
-}
-
-impl StressUpdate for CapUpdate {
-    fn state_size(&self) -> usize {
-        7
-    }
-
-    fn initial_state(&self, state: &mut [f64]) {
-        state.fill(0.0);
-        state[COMPACTION] = self.initial_compaction;
-    }
-
-    fn state_names(&self) -> &'static [&'static str] {
-        &STATE[..7]
-    }
-
-    fn update_point(
-        &self,
-        strain: &Voigt,
-        _length: f64,
-        old: &[f64],
-        new: &mut [f64],
-    ) -> Result<StressPoint, UpdateFailure> {
-        let table = Table { pieces: &self.pieces, reversible: true };
-        update(&self.surface, table, strain, old, new, COMPACTION)
-    }
-}
-
-impl StressUpdate for CrushingUpdate {
-    fn state_size(&self) -> usize {
-        8
-    }
-
-    fn initial_state(&self, state: &mut [f64]) {
-        state.fill(0.0);
-    }
-
-    fn state_names(&self) -> &'static [&'static str] {
-        &STATE
-    }
-
-    fn largest_length(&self) -> f64 {
-        self.largest_length
-    }
-
-    fn update_point(
-        &self,
-        strain: &Voigt,
-        length: f64,
-        old: &[f64],
-        new: &mut [f64],
-    ) -> Result<StressPoint, UpdateFailure> {
-        // Also refuses a length that is no number.
-        if !(length > 0.0 && length <= self.largest_length) {
-            return Err(UpdateFailure::LengthTooLarge);
-        }
-        let (intact, end) = (self.intact, self.crushing / length);
-        let pieces = [
-            Piece { strain: f64::NEG_INFINITY, centre: intact, slope: 0.0 },
-            Piece { strain: 0.0, centre: intact, slope: -self.drop / end },
-            Piece { strain: end, centre: intact - self.drop, slope: 0.0 },
-        ];
-        update(&self.surface, Table { pieces: &pieces, reversible: false }, strain, old, new, CRUSHING)
+            },
+        };
+        Some(Arc::new(CapUpdate { surface, strength }))
     }
 }
 

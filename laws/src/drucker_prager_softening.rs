@@ -2,7 +2,7 @@
 #![doc = include_str!("drucker_prager_softening.md")]
 
 use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
-use crate::meridian::{Returned, Trial};
+use crate::meridian::{Returned, Trial, state_names};
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -108,6 +108,8 @@ pub struct SofteningUpdate {
 
 const KAPPA: usize = 6;
 
+static STATE: [&str; 7] = state_names(&["cumulated_plastic_strain [-]"]);
+
 impl SofteningUpdate {
     /// κ_u of a point with this characteristic length \[m\].
     fn ultimate(&self, length: f64) -> f64 {
@@ -138,15 +140,7 @@ impl StressUpdate for SofteningUpdate {
     }
 
     fn state_names(&self) -> &'static [&'static str] {
-        &[
-            "plastic_strain_xx [-]",
-            "plastic_strain_yy [-]",
-            "plastic_strain_zz [-]",
-            "plastic_strain_xy [-]",
-            "plastic_strain_yz [-]",
-            "plastic_strain_zx [-]",
-            "cumulated_plastic_strain [-]",
-        ]
+        &STATE
     }
 
     fn largest_length(&self) -> f64 {

@@ -10,6 +10,26 @@
 
 use voussoir_core::material::{Isotropic, Region, StressPoint, UpdateFailure, Voigt, von_mises};
 
+const PLASTIC_STRAIN: [&str; 6] = [
+    "plastic_strain_xx [-]",
+    "plastic_strain_yy [-]",
+    "plastic_strain_zz [-]",
+    "plastic_strain_xy [-]",
+    "plastic_strain_yz [-]",
+    "plastic_strain_zx [-]",
+];
+
+/// Names of the N numbers of a state: the plastic strain (engineering shears), then a law's own.
+pub const fn state_names<const N: usize>(own: &[&'static str]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut i = 0;
+    while i < N {
+        names[i] = if i < PLASTIC_STRAIN.len() { PLASTIC_STRAIN[i] } else { own[i - PLASTIC_STRAIN.len()] };
+        i += 1;
+    }
+    names
+}
+
 /// Stress before the plastic correction.
 #[derive(Debug, Clone, Copy)]
 pub struct Trial {

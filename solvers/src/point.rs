@@ -2,7 +2,8 @@
 //!
 //! For each component either the strain (the gap of a joint) or the stress (its traction) is given.
 //! Newton with the law's own tangent finds the free strains; a step that does not converge is
-//! halved. Stresses beyond what the law can carry end in [`Stop`], never in a number.
+//! halved. Stresses beyond what the law can carry end in [`Stop`], never in a number. A controlled stress
+//! that falls unloads the point; the falling branch of a law that softens is followed by controlled strains.
 
 use std::fmt;
 use std::sync::Arc;
@@ -182,7 +183,9 @@ pub struct DrivenPoint {
     law: PointLaw,
     state: Vec<f64>,
     scratch: Vec<f64>,
-    /// Greatest entry of the untouched point's tangent \[Pa\]: what rounding of strains is worth.
+    /// The untouched point's tangent.
+    elastic: [[f64; COMPONENTS]; COMPONENTS],
+    /// Its greatest entry \[Pa\]: what rounding of strains is worth.
     stiffness: f64,
     /// Where it is.
     pub response: PointResponse,
@@ -198,8 +201,9 @@ impl DrivenPoint {
         let state = law.initial_state();
         let mut scratch = state.clone();
         let response = law.update(&[0.0; COMPONENTS], &state, &mut scratch)?;
-        let stiffness = response.tangent.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
-        Ok(DrivenPoint { law, state, scratch, stiffness, response, evaluations: 1, halvings: 0 })
+        let elastic = response.tangent;
+        let stiffness = elastic.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
+        Ok(DrivenPoint { law, state, scratch, elastic, stiffness, response, evaluations: 1, halvings: 0 })
     }
 
     /// The law.
@@ -266,7 +270,35 @@ impl DrivenPoint {
         residual(controls, &self.response).iter().fold(0.0, |a, b| a.max(b.abs()))
     }
 
+    /// Where stresses are controlled, unloading comes first: behind a peak a stress that falls has two answers, unloading
+    /// and more softening, and only the first is stable (its second-order work Δσ·Δε is positive, Hill 1958).
     fn solve(&mut self, controls: &[Control]) -> Result<PointResponse, Stop> {
+        if controls.iter().any(|control| matches!(control, Control::Stress(_))) {
+            let unloading = self.unloading_tangent()?;
+            if let Ok(found) = self.solve_from(controls, &unloading)
+                && found.dissipated == 0.0
+            {
+                return Ok(found);
+            }
+        }
+        self.solve_from(controls, &self.response.tangent.clone())
+    }
+
+    /// Materials unload as they were loaded first, joints as the law says a little behind the present gap.
+    fn unloading_tangent(&mut self) -> Result<[[f64; COMPONENTS]; COMPONENTS], Stop> {
+        if !matches!(self.law, PointLaw::Joint(_)) {
+            return Ok(self.elastic);
+        }
+        let behind = self.response.strain.map(|gap| (1.0 - 1e-6) * gap);
+        self.evaluate(&behind).map(|found| found.tangent)
+    }
+
+    /// Newton's method from a predictor by this tangent.
+    fn solve_from(
+        &mut self,
+        controls: &[Control],
+        predictor: &[[f64; COMPONENTS]; COMPONENTS],
+    ) -> Result<PointResponse, Stop> {
         let mut strain = self.response.strain;
         for (entry, control) in strain.iter_mut().zip(controls) {
             if let Control::Strain(target) = control {
@@ -274,13 +306,13 @@ impl DrivenPoint {
             }
         }
         let free: Vec<usize> = (0..controls.len()).filter(|&i| matches!(controls[i], Control::Stress(_))).collect();
-        // Predictor: the old tangent carries the change of the given strains to the free ones.
+        // The predictor carries the change of the given strains to the free ones.
         let change: [f64; COMPONENTS] = std::array::from_fn(|i| strain[i] - self.response.strain[i]);
         let mut right = residual(controls, &self.response);
         for &i in &free {
-            right[i] += (0..controls.len()).map(|j| self.response.tangent[i][j] * change[j]).sum::<f64>();
+            right[i] += (0..controls.len()).map(|j| predictor[i][j] * change[j]).sum::<f64>();
         }
-        if let Some(delta) = solve_free(&self.response.tangent, &right, &free) {
+        if let Some(delta) = solve_free(predictor, &right, &free) {
             free.iter().for_each(|&i| strain[i] -= delta[i]);
         }
         let mut found = self.evaluate(&strain)?;

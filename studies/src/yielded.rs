@@ -18,10 +18,10 @@ pub fn entries(assembly: &Assembly, problem: &PathProblem, state: &PathState) ->
     let mut out = Vec::new();
     for (index, body) in problem.bodies.iter().enumerate() {
         let (Some(inelastic), Some(own)) = (&body.inelastic, state.inelastic(index)) else { continue };
-        let size = inelastic.state_size();
+        let (size, memory) = (inelastic.state_size(), inelastic.memory_size());
         let initial = inelastic.initial().history;
         let points = (0..inelastic.gauss_points())
-            .filter(|i| own.state.history[i * size..(i + 1) * size] != initial[i * size..(i + 1) * size])
+            .filter(|i| own.state.history[i * size..i * size + memory] != initial[i * size..i * size + memory])
             .map(|i| {
                 let state = own.state.history[i * size..(i + 1) * size].to_vec();
                 (i, own.state.equivalent[i], own.state.crushed[i], state)

@@ -9,20 +9,7 @@ const MPA: f64 = 1e6;
 
 /// The stone of Drosopoulos et al.: β = 70°, d = 1 GPa, R = 0.005, α = 0.03.
 fn paper(strength: f64, poisson_ratio: f64) -> DruckerPragerCap {
-    DruckerPragerCap {
-        young_modulus: 5e9,
-        poisson_ratio,
-        density: 2200.0,
-        cap_friction_angle: 70.0,
-        cap_cohesion: 1e9,
-        cap_eccentricity: 0.005,
-        transition: 0.03,
-        hardening: Some(vec![[0.0, strength]]),
-        uniaxial_strength: None,
-        initial_compaction: 0.0,
-        crushing_fracture_energy: None,
-        residual_ratio: 0.1,
-    }
+    DruckerPragerCap { poisson_ratio, ..DruckerPragerCap::drosopoulos_2008(strength) }
 }
 
 fn space(law: &DruckerPragerCap) -> DrivenPoint {

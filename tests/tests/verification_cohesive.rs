@@ -6,6 +6,7 @@ use voussoir::core::path::certificate::{TOLERANCES, Tolerance, Watch};
 use voussoir::core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
     arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
+    load_control::LoadControl,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::{Arch, answered, assert_close, first_case};
@@ -162,6 +163,72 @@ fn a_bar_in_tension_is_its_closed_form() {
         let last = states.last().expect("a state");
         assert_close(last.dissipated, area * MODE_ONE, 1e-8);
         assert!(last.factor.abs() <= 1e-9, "{}", last.factor);
+    }
+}
+
+/// The bar that snaps back, in steps of 16 µm at most: every state lies on the closed form, what is dissipated never falls
+/// and comes to G_I A. Load control says at the peak that the path goes on with a load that does not grow.
+#[test]
+fn snap_back_is_traced_without_loss_or_refused() {
+    let (length, modulus, area) = (8.0, 5e9, 0.02);
+    let largest_step = Some(2e-6);
+    let passing: [PathSettings; 3] = [
+        settings(ArcLength { largest_step, ..ArcLength::default() }),
+        settings(Dissipation { largest_step, ..Dissipation::default() }),
+        settings(DisplacementControl { largest_step, ..DisplacementControl::default() }),
+    ];
+    for settings in passing {
+        let (problem, answer, states) = traced(&bar(length, modulus), &settings);
+        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        assert_close(answer.factor.expect("a factor"), STRENGTH / 1e3, 1e-9);
+        let joint = problem.contacts.iter().position(|c| c.joint == 1).expect("a contact point");
+        let all = area * MODE_ONE;
+        let (mut before, mut largest, mut back) = (0.0, 0.0_f64, 0);
+        for pair in states.windows(2) {
+            let [from, to] = pair else { unreachable!("windows of two") };
+            let (gap, stress) = (to.gap[joint][0], to.factor * 1e3);
+            let displacement = 0.75 * stress * length / modulus + gap;
+            assert!((stress - tension(gap)).abs() <= 1e-8 * STRENGTH, "{stress} at {gap}");
+            assert!((to.displacement - displacement).abs() <= 1e-8 * 0.75 * STRENGTH * length / modulus);
+            assert!(to.dissipated >= before - 1e-12 * all, "{} after {before}", to.dissipated);
+            back += usize::from(to.displacement < from.displacement && to.factor < from.factor);
+            largest = largest.max(to.dissipated - before);
+            before = to.dissipated;
+        }
+        println!("{:?}: {} states, {back} back, {largest} J at once", settings.continuation, states.len());
+        assert!(back >= 5 && largest < all / 3.0, "{back} steps back, {largest} J at once");
+        assert_close(before, all, 1e-8);
+    }
+    let (_, answer, _) = traced(&bar(length, modulus), &settings(LoadControl::default()));
+    assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+    assert_close(answer.factor.expect("a factor"), STRENGTH / 1e3, 1e-6);
+    assert!(answer.notes.iter().any(|note| note.contains("does not grow")), "{:?}", answer.notes);
+}
+
+/// Steps of each strategy along both bars (printed: the table of docs/softening.md), none more than 40.
+#[test]
+fn strategies_need_few_steps() {
+    for length in [1.0, 8.0] {
+        let all: [(&str, PathSettings); 4] = [
+            ("arc_length", settings(ArcLength::default())),
+            ("dissipation", settings(Dissipation::default())),
+            ("displacement_control", settings(DisplacementControl::default())),
+            ("load_control", settings(LoadControl::default())),
+        ];
+        for (name, settings) in all {
+            let (_, answer, states) = traced(&bar(length, 5e9), &settings);
+            let of = |counter: &str| answer.counters[counter];
+            let last = states.last().expect("a state");
+            println!(
+                "{length} m, {name}: {} steps, {} cut back, {} iterations, dissipated {:.6} J, {:?}",
+                of("steps"),
+                of("cutbacks"),
+                of("newton_iterations"),
+                last.dissipated,
+                answer.notes
+            );
+            assert!(of("steps") <= 40, "{name}: {}", of("steps"));
+        }
     }
 }
 

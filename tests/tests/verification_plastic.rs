@@ -7,7 +7,10 @@ use voussoir::core::path::{
     Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState, Unobserved,
     certificate::Watch,
 };
-use voussoir::solvers::path::continuation::{arc_length::ArcLength, dissipation::Dissipation};
+use voussoir::solvers::path::continuation::{
+    arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
+    load_control::LoadControl,
+};
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
 use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
@@ -308,6 +311,40 @@ fn rotation_and_size_do_not_matter() {
         let found = of(angle, scale);
         assert_close(found.0, sunk, 1e-9);
         assert_close(found.1, dissipated, 1e-7);
+    }
+}
+
+/// A column of one block, and of three, of perfectly plastic stone crushed over its whole section: the load is that of the
+/// closed form (29.99250136 MPa) and stands there while the column shortens, plastic work is load × the shortening that is not
+/// elastic, and load control ends at a limit point with that load.
+#[test]
+fn a_column_crushed_through_is_followed() {
+    let strength = 29.99250136e6;
+    let followed: [Arc<dyn Continuation>; 3] =
+        [Arc::new(ArcLength::default()), Arc::new(Dissipation::default()), Arc::new(DisplacementControl::default())];
+    for (blocks, order) in [(1, 1), (1, 2), (3, 1), (3, 2)] {
+        let mut press = Press { order, plane: "stress", ..Press::new(stone("[[0.0, 10e6]]"), COLLAPSE) };
+        if blocks == 3 {
+            press.blocks = vec![("a", "stone", 0.0, 0.1), ("b", "stone", 0.1, 0.25), ("c", "stone", 0.25, 0.33)];
+        }
+        let (height, carried) = (press.top(), strength * 0.1 / LOAD);
+        for strategy in &followed {
+            let (problem, answer, seen) = traced(&press.study(), &settings(Some(strategy.clone())));
+            assert_eq!(answer.status, Status::LimitPoint, "{strategy:?}: {:?}", answer.notes);
+            assert_close(answer.factor.expect("a factor"), carried, 1e-8);
+            seen.is_certified();
+            let elastic = strength / 5e9 * height;
+            let last = answer.last.expect("the path goes on");
+            let shortening = sunk(&problem, &last, &press);
+            assert!(shortening > 1.9 * elastic, "{strategy:?}: {shortening} m");
+            assert_close(last.factor, carried, 1e-8);
+            assert_close(last.dissipated, carried * LOAD * (shortening - elastic), 1e-6);
+        }
+        let load: Arc<dyn Continuation> = Arc::new(LoadControl::default());
+        let (_, answer, seen) = traced(&press.study(), &settings(Some(load)));
+        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        assert_close(answer.factor.expect("a factor"), carried, 1e-8);
+        seen.is_certified();
     }
 }
 

@@ -98,18 +98,9 @@ fn crushing_takes_its_fracture_energy_at_any_length() {
 fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
     let energy = 20e3;
     let law = DruckerPragerCap {
-        young_modulus: 5e9,
-        poisson_ratio: 0.2,
-        density: 2200.0,
-        cap_friction_angle: 70.0,
-        cap_cohesion: 1e9,
-        cap_eccentricity: 0.005,
-        transition: 0.03,
-        hardening: Some(vec![[0.0, 10.0 * MPA]]),
-        uniaxial_strength: None,
-        initial_compaction: 0.0,
         crushing_fracture_energy: Some(energy),
         residual_ratio: 0.2,
+        ..DruckerPragerCap::drosopoulos_2008(10.0 * MPA)
     };
     assert_eq!(law.validate(), vec![]);
     let update = law.stress_update().unwrap();
@@ -151,6 +142,31 @@ fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
     }
     let refused = update.update_point(&[0.0; 6], largest * 1.001, &[0.0; 8], &mut [0.0; 8]);
     assert_eq!(refused, Err(UpdateFailure::LengthTooLarge));
+}
+
+/// Behind the peak a controlled stress that falls unloads the point along E (a cohesive joint along its secant) and softens
+/// nothing; one that rises again goes back the same way, and what is beyond the strength that is left is refused.
+#[test]
+fn a_stress_that_falls_unloads_a_softened_point() {
+    let update = rock().stress_update().unwrap();
+    let mut point = DrivenPoint::new(PointLaw::Space(update, 1.0)).unwrap();
+    point.step(&[Control::Strain(-2e-3), FREE, FREE, HELD, HELD, HELD]).unwrap();
+    let (strain, stress, state) = (point.response.strain[0], point.response.stress[0], point.state().to_vec());
+    assert!(state[6] > 0.0 && -stress < 0.98 * 2.57 * MPA / 0.67, "it has softened: {stress}");
+    for share in [0.99, 0.5, 0.0, 0.7, 1.0 - 1e-9] {
+        point.step(&[Control::Stress(share * stress), FREE, FREE, HELD, HELD, HELD]).unwrap();
+        near(point.response.strain[0], strain - (1.0 - share) * stress / 5800e6, 1e-9);
+        assert_eq!(point.state(), state);
+    }
+    assert!(point.step(&[Control::Stress(1.01 * stress), FREE, FREE, HELD, HELD, HELD]).is_err());
+    let mut joint = DrivenPoint::new(PointLaw::Joint(response(&mortar()))).unwrap();
+    joint.step(&[Control::Strain(5e-5), HELD]).unwrap();
+    let (traction, damage) = (joint.response.stress[0], joint.state()[0]);
+    for share in [0.9, 0.2, 0.8] {
+        joint.step(&[Control::Stress(share * traction), HELD]).unwrap();
+        near(joint.response.strain[0], share * 5e-5, 1e-9);
+        assert_eq!(joint.state()[0], damage);
+    }
 }
 
 /// At the tip of the cone stress is R/(3A) in all directions, and hydrostatic tension gives the closed form.

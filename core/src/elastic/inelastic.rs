@@ -22,28 +22,21 @@
 //! softening localises in a mesh of quadratic elements that are nearly square (Rots 1988, Computational
 //! modeling of concrete fracture, section 5; Feenstra & de Borst 1996, Int. J. Numer. Methods Eng. 39).
 
-use super::condensation::{Place, Placement, Response, SPRINGS, Shape, at_places, placed};
-use super::element::{stiffness_of_strains, strain_operators};
+mod linearisation;
+
+pub use linearisation::Linearisation;
+
+use super::condensation::Response;
+use super::element::strain_operators;
 use super::mesh::{Mesh, MeshDensity};
+use super::shape::{Place, Placement, Shape, at_places};
 use super::{IsotropicElastic, Recovered};
 use crate::assembly::Plane;
 use crate::geometry::{Vec2, area_and_centroid};
-use crate::lu::SparseLu;
-use crate::material::Region;
 use crate::material::plane::{PlanarPoint, PlanarUpdate};
-use crate::sparse::Entries;
 use nalgebra::{DMatrix, Matrix2};
 use std::fmt;
 use std::sync::Arc;
-
-/// Greatest residual of the equations of a tangent, relative to loads and stiffness × displacement.
-const RESIDUAL: f64 = 1e-10;
-/// Share of the elastic stiffness that yielding points get where their tangent has no inverse. It
-/// slows the iteration down; what it converges to is the same.
-const SOFTEST: f64 = 1e-6;
-
-/// Flexibility, relative to the elastic body's, from which a tangent counts as singular.
-const LARGEST: f64 = 1e7;
 
 /// √A of the greatest element \[m\] of a polygon's mesh, or why there is no mesh.
 pub fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, String> {
@@ -110,31 +103,6 @@ impl fmt::Debug for InelasticBody {
     }
 }
 
-/// A body linearised at nodal displacements: u = C f + c at its points.
-#[derive(Debug, Clone)]
-pub struct Linearisation {
-    /// C \[m/N\].
-    pub flexibility: Arc<DMatrix<f64>>,
-    /// c (x, y per point) \[m\].
-    pub offset: Vec<f64>,
-    /// X and x.
-    response: Arc<DMatrix<f64>>,
-    rest: Vec<f64>,
-    /// Where: displacements of the nodes (x, y) in the shape's frame, in units of its size.
-    pub displacement: Arc<Vec<f64>>,
-    internal: Vec<f64>,
-    /// What a step that ends here remembers.
-    pub end: Arc<InelasticState>,
-    /// Elastic energy \[J\].
-    pub stored: f64,
-    /// ∂(plastic work)/∂v \[J\].
-    slope: Vec<f64>,
-    /// Gauss points that yield in the step.
-    pub yielding: usize,
-    /// Matrices factorised for it.
-    pub factorisations: u64,
-}
-
 impl InelasticBody {
     #[allow(clippy::too_many_arguments)]
     pub(super) fn new(
@@ -169,6 +137,11 @@ impl InelasticBody {
     /// Numbers in the law's state of a Gauss point.
     pub fn state_size(&self) -> usize {
         self.update.state_size()
+    }
+
+    /// The first of them, which are memory: in plane stress the last one is only where the search for ε_zz begins.
+    pub fn memory_size(&self) -> usize {
+        self.update.law().state_size()
     }
 
     /// Rows of Gauss points of the elements with a side between two points \[m\], from that side
@@ -298,6 +271,7 @@ impl InelasticBody {
     }
 
     /// f_int of stresses.
+    /// f_int of stresses.
     fn internal(&self, points: &[PlanarPoint]) -> Vec<f64> {
         let mut internal = vec![0.0; 2 * self.nodes()];
         let mut next = points.iter();
@@ -313,185 +287,6 @@ impl InelasticBody {
         internal
     }
 
-    /// ε^p of a strain and its stress: what Hooke's law does not explain.
-    fn plastic_strain(&self, strain: &[f64; 3], point: &PlanarPoint) -> [f64; 4] {
-        let IsotropicElastic { young_modulus: e, poisson_ratio: nu, .. } = self.material;
-        let ([xx, yy, xy], zz) = (point.stress, point.stress_across);
-        let direct = |s: f64| ((1.0 + nu) * s - nu * (xx + yy + zz)) / e;
-        [
-            strain[0] - direct(xx),
-            strain[1] - direct(yy),
-            point.strain_across - direct(zz),
-            strain[2] - 2.0 * (1.0 + nu) * xy / e,
-        ]
-    }
-
-    /// ∂(σ · Δε^p)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\].
-    fn dissipation_slope(&self, point: &PlanarPoint, step: &[f64; 4]) -> [f64; 3] {
-        let IsotropicElastic { young_modulus: e, poisson_ratio: nu, .. } = self.material;
-        let ([xx, yy, xy], zz) = (point.stress, point.stress_across);
-        let mut slope = [0.0; 3];
-        for (j, slope) in slope.iter_mut().enumerate() {
-            let t = [point.tangent[0][j], point.tangent[1][j], point.tangent_across[j], point.tangent[2][j]];
-            let trace = t[0] + t[1] + t[2];
-            let direct = |s: f64| ((1.0 + nu) * s - nu * trace) / e;
-            let elastic = [direct(t[0]), direct(t[1]), direct(t[2]), 2.0 * (1.0 + nu) * t[3] / e];
-            let total = [f64::from(j == 0), f64::from(j == 1), 0.0, f64::from(j == 2)];
-            let stress = [xx, yy, zz, xy];
-            *slope = (0..4).map(|i| t[i] * step[i] + stress[i] * (total[i] - elastic[i])).sum();
-        }
-        slope
-    }
-
-    /// The body at displacements of its nodes, `start` being the state at the step's start. An error
-    /// says why there are no stresses or no tangent.
-    pub fn linearise(&self, displacement: Vec<f64>, start: &InelasticState) -> Result<Linearisation, String> {
-        let (e, volume) = (self.material.young_modulus, self.size.powi(2) * self.width);
-        let strains = self.strains_at(&displacement);
-        let mut end = start.clone();
-        let points = self.stresses(&strains, &start.history, &mut end.history)?;
-        let (mut stored, mut slope, mut yielding) = (0.0, vec![0.0; displacement.len()], 0);
-        let mut index = 0;
-        for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
-            for (b, weight) in operators {
-                let (point, strain) = (&points[index], &strains[index]);
-                let plastic = self.plastic_strain(strain, point);
-                let elastic = [strain[0], strain[1], point.strain_across, strain[2]];
-                let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
-                stored += 0.5 * weight * volume * (0..4).map(|i| stress[i] * (elastic[i] - plastic[i])).sum::<f64>();
-                if point.region != Region::Elastic {
-                    let before = start.plastic_strain[index];
-                    let step = [0, 1, 2, 3].map(|i| plastic[i] - before[i]);
-                    let [x, y, z, xy] = step;
-                    let equivalent = (2.0 / 3.0 * (x * x + y * y + z * z + 0.5 * xy * xy)).sqrt();
-                    end.plastic_strain[index] = plastic;
-                    end.equivalent[index] += equivalent;
-                    if point.region != Region::Apex && stress[0] + stress[1] + stress[2] < 0.0 {
-                        end.crushed[index] += equivalent;
-                    }
-                    end.dissipated += weight * volume * point.dissipation;
-                    let by_strain = self.dissipation_slope(point, &step).map(|s| s * weight * volume);
-                    for (j, column) in b.column_iter().enumerate() {
-                        slope[2 * nodes[j / 2] + j % 2] +=
-                            column[0] * by_strain[0] + column[1] * by_strain[1] + column[2] * by_strain[2];
-                    }
-                    yielding += 1;
-                }
-                index += 1;
-            }
-        }
-        end.yielded |= yielding > 0;
-        let internal = self.internal(&points);
-        let (mut rest, mut response, mut flexibility) =
-            (vec![0.0; displacement.len()], self.response.clone(), self.flexibility.clone());
-        let mut factorisations = 0;
-        if yielding > 0 {
-            let mut solved = None;
-            for share in [0.0, SOFTEST] {
-                factorisations += 1;
-                solved = self.solve(&points, &internal, share);
-                if solved.is_some() {
-                    break;
-                }
-            }
-            let (x, own) = solved.ok_or("the tangent stiffness of a block that yields has no inverse")?;
-            rest = displacement.iter().zip(own.iter()).map(|(v, own)| v - own).collect();
-            let scale = 1.0 / (e * self.width);
-            flexibility = Arc::new(placed(&at_places(&self.places, &x), self.rotation, scale, false));
-            response = Arc::new(x);
-        } else if start.yielded {
-            let own = self.shape.displacements(DMatrix::from_column_slice(internal.len(), 1, &internal))?;
-            rest = displacement.iter().zip(own.iter()).map(|(v, own)| v - own).collect();
-        }
-        let offset = self.at_points(&rest);
-        Ok(Linearisation {
-            flexibility,
-            offset,
-            response,
-            rest,
-            displacement: Arc::new(displacement),
-            internal,
-            end: Arc::new(end),
-            stored,
-            slope,
-            yielding,
-            factorisations,
-        })
-    }
-
-    /// P K⁺ Pᵀ Nᵀ and P K⁺ f_int for the tangents of points that yield, the elastic stiffness elsewhere.
-    fn solve(&self, points: &[PlanarPoint], internal: &[f64], share: f64) -> Option<(DMatrix<f64>, Vec<f64>)> {
-        let e = self.material.young_modulus;
-        let size = internal.len();
-        let mut entries: Entries = Vec::new();
-        entries.extend(SPRINGS.map(|dof| (dof, dof, 1.0)));
-        let mut first = 0;
-        let hooke = super::element::Hooke::new(self.update.plane(), self.material.poisson_ratio);
-        for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
-            let here = &points[first..first + operators.len()];
-            first += operators.len();
-            let k = if here.iter().all(|point| point.region == Region::Elastic) {
-                stiffness_of_strains(operators, hooke)
-            } else {
-                let mut k = DMatrix::zeros(2 * nodes.len(), 2 * nodes.len());
-                for ((b, weight), point) in operators.iter().zip(here) {
-                    let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / e);
-                    if point.region != Region::Elastic {
-                        d += hooke.stiffness() * share;
-                    }
-                    k += b.transpose() * (d * *weight) * b;
-                }
-                k
-            };
-            let row = |i: usize| 2 * nodes[i / 2] + i % 2;
-            for j in 0..k.ncols() {
-                entries.extend((0..k.nrows()).map(|i| (row(i), row(j), k[(i, j)])));
-            }
-        }
-        let stiffest = entries.iter().fold(0.0f64, |max, entry| max.max(entry.2.abs()));
-        let factors = SparseLu::new(size, &entries)?;
-        let mut loads = self.shape.loads_at(&self.places);
-        self.shape.balanced(&mut loads);
-        let mut right: Vec<Vec<f64>> = loads.column_iter().map(|c| c.iter().copied().collect()).collect();
-        right.push(internal.to_vec());
-        let all = factors.solve(&right, 1)?;
-        let mut all = DMatrix::from_fn(size, all.len(), |i, j| all[j][i]);
-        self.shape.without_rigid_motion(&mut all);
-        let largest = all.columns(0, right.len() - 1).amax();
-        if largest.is_nan() || largest > LARGEST * self.response.amax() {
-            return None;
-        }
-        let mut left = DMatrix::from_fn(size, right.len(), |i, j| right[j][i]);
-        for &(i, j, value) in entries.iter().skip(SPRINGS.len()) {
-            for c in 0..left.ncols() {
-                left[(i, c)] -= value * all[(j, c)];
-            }
-        }
-        for (c, right) in right.iter().enumerate() {
-            let load = right.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-            let error = left.column(c).amax() / (load + stiffest * all.column(c).amax()).max(f64::MIN_POSITIVE);
-            if error.is_nan() || error > RESIDUAL {
-                return None;
-            }
-        }
-        let own = all.column(right.len() - 1).iter().copied().collect();
-        Some((all.columns(0, right.len() - 1).into_owned(), own))
-    }
-
-    /// ∂(plastic work of the step)/∂(forces on the points) \[J/N\].
-    pub fn dissipation_by_force(&self, linear: &Linearisation) -> Vec<f64> {
-        if linear.yielding == 0 {
-            return vec![0.0; 2 * self.places.len()];
-        }
-        let scale = 1.0 / (self.material.young_modulus * self.width * self.size);
-        let local: Vec<f64> = linear
-            .response
-            .column_iter()
-            .map(|column| column.iter().zip(&linear.slope).map(|(x, s)| x * s).sum::<f64>() * scale)
-            .collect();
-        local.chunks(2).flat_map(|s| <[f64; 2]>::from(self.rotation * Vec2::new(s[0], s[1]))).collect()
-    }
-
     /// Recomputes a state from displacements and history alone: the greatest unbalanced force on a
     /// node \[N\] with stresses that the law itself gives there, and how much the law would still change
     /// the history, relative to the greatest strain: 0 where no stress lies beyond the yield surface.
@@ -503,8 +298,7 @@ impl InelasticBody {
         let mut new = history.to_vec();
         let points = self.stresses(&strains, history, &mut new)?;
         let largest = strains.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs())).max(f64::MIN_POSITIVE);
-        // ε_zz of plane stress is no memory.
-        let (size, own) = (self.state_size(), self.update.law().state_size());
+        let (size, own) = (self.state_size(), self.memory_size());
         let both = new.iter().zip(history).enumerate().filter(|(i, _)| i % size < own);
         let drift = both.map(|(_, (a, b))| (a - b).abs()).fold(0.0, f64::max) / largest;
         Ok([self.unbalanced(&self.internal(&points), forces), drift])

@@ -46,6 +46,7 @@ mod joint;
 mod mesh;
 mod polygon;
 mod quadrature;
+mod shape;
 mod stress;
 
 pub use condensation::{Condensed, Condenser, IsotropicElastic};

@@ -37,6 +37,9 @@ impl Tracer<'_, '_> {
             let control = Control::Strategy { strategy: &arc, previous: None, length };
             let guess = self.moved(rate, 10f64.powi(exponent));
             if let Ok((next, _)) = self.model.newton(&self.state, guess, &control) {
+                if self.stands_still(&next) {
+                    return true;
+                }
                 let Some(after) = self.model.rate(&self.state, &next, &control) else { continue };
                 if after.factor * direction <= 1e-9 * self.model.units.factor * self.model.motion_size(&after) {
                     return true;
@@ -47,9 +50,11 @@ impl Tracer<'_, '_> {
     }
 
     /// Looks, with small displacements, for a rate with growing λ where there should be none. Where that
-    /// is not decided, or not gone on with, the limit point is not proven.
+    /// is not decided, or not gone on with, the limit point is not proven. Where blocks flow, combinations
+    /// of regimes say nothing of their Gauss points: there the path itself shows its limit point.
     pub(super) fn doubted(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
-        if self.model.finite() || !self.model.responses.is_empty() {
+        let flows = state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
+        if self.model.finite() || !self.model.responses.is_empty() || flows {
             return None;
         }
         match self.model.rising(state, direction) {

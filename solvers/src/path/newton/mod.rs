@@ -3,6 +3,7 @@
 
 mod claims;
 mod ends;
+mod flowing;
 mod follow;
 mod frame;
 mod inelastic;

@@ -1,0 +1,331 @@
+//! A shape: a placed polygon's mesh in its own frame with its factorisation, for E = 1, width 1 and area 1
+//! (origin at the centroid, x along edge 0), and what forces on its points do to it.
+
+use super::element::{Hooke, Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
+use super::mesh::{Mesh, MeshDensity};
+use crate::assembly::Plane;
+use crate::geometry::{Vec2, area_and_centroid, bounding_box, turned};
+use crate::sparse::{Entries, Factorised};
+use nalgebra::{DMatrix, Matrix2};
+
+/// Shapes and points that differ by less than this share of the size are congruent.
+const CONGRUENT: f64 = 1e-9;
+/// How far outside an element a point may lie, in the element's coordinates: contact points are
+/// found to a tolerance that counts in sizes of the scene.
+const OUTSIDE: f64 = 1e-4;
+/// Greatest residual of the solved equations, relative to loads and to stiffness × displacement.
+const RESIDUAL: f64 = 1e-13;
+/// Springs that hold a free mesh: the ends of edge 0, which lies on the local x axis. They are
+/// statically determinate, so they carry nothing, whatever they are.
+pub(super) const SPRINGS: [usize; 3] = [0, 1, 3];
+
+/// A placed polygon: vertex i of the shape is `origin` + Q × local vertex × `size`.
+pub(super) struct Placement {
+    local: Vec<Vec2>,
+    pub origin: Vec2,
+    pub rotation: Matrix2<f64>,
+    pub size: f64,
+}
+
+impl Placement {
+    pub fn new(vertices: &[Vec2]) -> Result<Self, String> {
+        if vertices.len() < 3 || vertices.iter().any(|v| !(v.x.is_finite() && v.y.is_finite())) {
+            return Err("an elastic body needs three finite vertices or more".into());
+        }
+        let (area, origin) = area_and_centroid(vertices);
+        let (low, high) = bounding_box(vertices);
+        let edge = vertices[1] - vertices[0];
+        if !(area > 1e-12 * (high - low).norm_squared() && edge.norm() > 0.0) {
+            return Err(format!("an elastic body needs vertices that go round an area anticlockwise, not {area} m²"));
+        }
+        let size = area.sqrt();
+        let x = edge.normalize();
+        let rotation = Matrix2::from_columns(&[x, turned(x)]);
+        let placement = Placement { local: Vec::new(), origin, rotation, size };
+        Ok(Placement { local: vertices.iter().map(|v| placement.local(*v)).collect(), ..placement })
+    }
+
+    pub fn local(&self, point: Vec2) -> Vec2 {
+        self.rotation.transpose() * (point - self.origin) / self.size
+    }
+}
+
+/// Whether two lists of points agree within `CONGRUENT`.
+pub(super) fn agree(a: &[Vec2], b: &[Vec2]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).amax() <= CONGRUENT)
+}
+
+/// A point's place in the mesh: nodes with their shape functions.
+pub(super) type Place = Vec<(usize, f64)>;
+
+/// A mesh with its factorisation, for E = 1, width 1 and area 1, centroid at the origin.
+pub(super) struct Shape {
+    vertices: Vec<Vec2>,
+    /// √area \[m\].
+    size: f64,
+    poisson_ratio: f64,
+    density: MeshDensity,
+    /// Whether the elements are those of strains also where others are better for linear materials.
+    of_strains: bool,
+    pub reference: Reference,
+    pub hooke: Hooke,
+    pub mesh: Mesh,
+    /// Stiffness with springs of stiffness 1 at `SPRINGS`.
+    factorised: Factorised,
+    /// Greatest entry of the stiffness.
+    stiffest: f64,
+    /// M R: columns translation x, y, rotation about the centroid.
+    inertia: DMatrix<f64>,
+    /// R.
+    rigid: DMatrix<f64>,
+    /// Diagonal of Rᵀ M R: area twice, polar moment.
+    masses: [f64; 3],
+}
+
+impl Shape {
+    pub fn new(
+        placement: &Placement,
+        nu: f64,
+        density: &MeshDensity,
+        plane: Plane,
+        of_strains: bool,
+    ) -> Result<Self, String> {
+        let mesh = Mesh::new(&placement.local, density)?;
+        let (reference, hooke) = (Reference::new(density.order), Hooke::new(plane, nu));
+        let count = mesh.nodes.len();
+        let mut entries: Entries = Vec::with_capacity(mesh.elements.len() * (2 * mesh.elements[0].len()).pow(2));
+        entries.extend(SPRINGS.map(|dof| (dof, dof, 1.0)));
+        let mut moments = vec![(0.0, Vec2::zeros()); count];
+        for (index, nodes) in mesh.elements.iter().enumerate() {
+            let corners = mesh.corners(index);
+            let k = match of_strains {
+                true => stiffness_of_strains(&strain_operators(&reference, &corners, plane), hooke),
+                false => stiffness(&reference, &corners, hooke),
+            };
+            let row = |i: usize| 2 * nodes[i / 2] + i % 2;
+            for j in 0..k.ncols() {
+                entries.extend((0..k.nrows()).map(|i| (row(i), row(j), k[(i, j)])));
+            }
+            for (node, (mass, moment)) in nodes.iter().zip(inertia(&reference, &corners)) {
+                moments[*node].0 += mass;
+                moments[*node].1 += moment;
+            }
+        }
+        let stiffest = entries.iter().fold(0.0f64, |max, entry| max.max(entry.2.abs()));
+        let factorised =
+            Factorised::new(2 * count, 2 * count, &entries).ok_or("the stiffness of a body has no factorisation")?;
+        let columns = |mass: f64, place: Vec2, i: usize| match i {
+            0 => [mass, 0.0, -place.y],
+            _ => [0.0, mass, place.x],
+        };
+        let inertia = DMatrix::from_fn(2 * count, 3, |i, j| columns(moments[i / 2].0, moments[i / 2].1, i % 2)[j]);
+        let rigid = DMatrix::from_fn(2 * count, 3, |i, j| columns(1.0, mesh.nodes[i / 2], i % 2)[j]);
+        let masses = [0, 1, 2].map(|i| rigid.column(i).dot(&inertia.column(i)));
+        Ok(Shape {
+            vertices: placement.local.clone(),
+            size: placement.size,
+            poisson_ratio: nu,
+            density: *density,
+            of_strains,
+            reference,
+            hooke,
+            mesh,
+            factorised,
+            stiffest,
+            inertia,
+            rigid,
+            masses,
+        })
+    }
+
+    pub fn is(&self, placement: &Placement, nu: f64, density: &MeshDensity, of_strains: bool) -> bool {
+        self.poisson_ratio == nu
+            && self.of_strains == of_strains
+            && self.density == *density
+            && (self.size / placement.size - 1.0).abs() <= CONGRUENT
+            && agree(&self.vertices, &placement.local)
+    }
+
+    /// The element that holds a point, with the shape functions there; those of an element are also
+    /// right a little outside it, so that resultants stay exact.
+    fn place(&self, point: Vec2) -> Option<Place> {
+        let mut best: Option<(f64, usize, [f64; 2])> = None;
+        for element in 0..self.mesh.elements.len() {
+            let corners = self.mesh.corners(element);
+            let (low, high) = bounding_box(&corners);
+            let margin = OUTSIDE * (high - low).amax();
+            if (0..2).any(|i| point[i] < low[i] - margin || point[i] > high[i] + margin) {
+                continue;
+            }
+            let Some(place) = inverse(&corners, point) else { continue };
+            let outside = place[0].abs().max(place[1].abs()) - 1.0;
+            if best.is_none_or(|best| outside < best.0) {
+                best = Some((outside, element, place));
+            }
+            if outside <= 0.0 {
+                break;
+            }
+        }
+        let (_, element, place) = best.filter(|best| best.0 <= OUTSIDE)?;
+        let values = self.reference.at(place).values;
+        Some(self.mesh.elements[element].iter().copied().zip(values).collect())
+    }
+
+    /// The places of points given in the shape's frame; `asked` are the same in the world.
+    pub fn places(&self, points: &[Vec2], asked: &[Vec2]) -> Result<Vec<Place>, String> {
+        let place = |(point, asked): (&Vec2, &Vec2)| {
+            self.place(*point).ok_or_else(|| format!("the point ({}, {}) m lies outside its body", asked.x, asked.y))
+        };
+        points.iter().zip(asked).map(place).collect()
+    }
+
+    /// P x.
+    pub fn without_rigid_motion(&self, x: &mut DMatrix<f64>) {
+        self.project(x, &self.rigid, &self.inertia);
+    }
+
+    /// Pᵀ x.
+    pub fn balanced(&self, x: &mut DMatrix<f64>) {
+        self.project(x, &self.inertia, &self.rigid);
+    }
+
+    /// Nᵀ: unit forces (x, y) at places.
+    pub fn loads_at(&self, places: &[Place]) -> DMatrix<f64> {
+        let mut loads = DMatrix::zeros(2 * self.mesh.nodes.len(), 2 * places.len());
+        for (j, place) in places.iter().enumerate() {
+            for &(node, value) in place {
+                loads[(2 * node, 2 * j)] += value;
+                loads[(2 * node + 1, 2 * j + 1)] += value;
+            }
+        }
+        loads
+    }
+
+    /// Takes Bᵀ x off along A: x − A (Rᵀ M R)⁻¹ Bᵀ x. P with A = R, B = M R; Pᵀ the other way round.
+    fn project(&self, x: &mut DMatrix<f64>, along: &DMatrix<f64>, seen: &DMatrix<f64>) {
+        let mut motion = seen.tr_mul(x);
+        (0..3).for_each(|i| motion.row_mut(i).scale_mut(1.0 / self.masses[i]));
+        x.gemm(-1.0, along, &motion, 1.0);
+    }
+
+    /// P K⁺ Pᵀ times each column of `loads`, refined once and checked. Residuals are taken at
+    /// projected displacements: those of the held mesh may be large rigid motions, which cost digits.
+    pub fn displacements(&self, mut loads: DMatrix<f64>) -> Result<DMatrix<f64>, String> {
+        self.project(&mut loads, &self.inertia, &self.rigid);
+        let solve = |mut right: DMatrix<f64>| {
+            self.project(&mut right, &self.inertia, &self.rigid);
+            let mut all = self.factorised.solve_columns(right)?;
+            self.project(&mut all, &self.rigid, &self.inertia);
+            Some(all)
+        };
+        let rest = |x: &DMatrix<f64>| {
+            let mut rest = &loads - self.factorised.times(x);
+            SPRINGS
+                .iter()
+                .for_each(|&dof| rest.row_mut(dof).iter_mut().zip(x.row(dof).iter()).for_each(|(r, x)| *r += x));
+            rest
+        };
+        let unsolved = "the equations of an elastic body have no finite solution";
+        let mut all = solve(loads.clone()).ok_or(unsolved)?;
+        all += solve(rest(&all)).ok_or(unsolved)?;
+        if all.is_empty() {
+            return Ok(all);
+        }
+        let error = rest(&all).amax() / (loads.amax() + self.stiffest * all.amax()).max(f64::MIN_POSITIVE);
+        if error.is_nan() || error > RESIDUAL {
+            return Err(format!("the equations of an elastic body are solved to {error:.1e} only, not {RESIDUAL:.0e}"));
+        }
+        Ok(all)
+    }
+
+    /// C̃ of points given in the shape's frame.
+    pub fn flexibility(&self, places: &[Place]) -> Result<DMatrix<f64>, String> {
+        let columns = 2 * places.len();
+        let full = at_places(places, &self.displacements(self.loads_at(places))?);
+        // Symmetric but for rounding: the two triangles come from different solutions.
+        Ok(DMatrix::from_fn(columns, columns, |i, j| 0.5 * (full[(i, j)] + full[(j, i)])))
+    }
+}
+
+/// Where the bilinear map of an element takes a point from, by Newton's method; `None` where it
+/// does not converge, which happens far outside only.
+fn inverse(corners: &[Vec2; 4], point: Vec2) -> Option<[f64; 2]> {
+    let mut place = [0.0, 0.0];
+    let mut last = f64::INFINITY;
+    for _ in 0..50 {
+        let (x, jacobian) = bilinear(corners, place);
+        let step = jacobian.try_inverse()? * (point - x);
+        place = [place[0] + step.x, place[1] + step.y];
+        let size = step.amax();
+        if size <= 1e-15 || (size < 1e-12 && size >= last) {
+            return Some(place);
+        }
+        last = size;
+    }
+    (last < 1e-9).then_some(place)
+}
+
+/// N x: rows (x, y) per place.
+pub(super) fn at_places(places: &[Place], all: &DMatrix<f64>) -> DMatrix<f64> {
+    let entry = |i: usize, j: usize| -> f64 {
+        places[i / 2].iter().map(|&(node, value)| value * all[(2 * node + i % 2, j)]).sum()
+    };
+    DMatrix::from_fn(2 * places.len(), all.ncols(), entry)
+}
+
+/// Q C̃ Qᵀ scale, block by block; exactly symmetric where C̃ is and `symmetric` says so.
+pub(super) fn placed(local: &DMatrix<f64>, q: Matrix2<f64>, scale: f64, symmetric: bool) -> DMatrix<f64> {
+    let mut turned = DMatrix::zeros(local.nrows(), local.ncols());
+    for j in 0..local.ncols() / 2 {
+        for i in 0..if symmetric { j + 1 } else { local.nrows() / 2 } {
+            let block = local.fixed_view::<2, 2>(2 * i, 2 * j);
+            let mut block = q * block * q.transpose() * scale;
+            if symmetric {
+                if i == j {
+                    block = (block + block.transpose()) / 2.0;
+                }
+                turned.fixed_view_mut::<2, 2>(2 * j, 2 * i).copy_from(&block.transpose());
+            }
+            turned.fixed_view_mut::<2, 2>(2 * i, 2 * j).copy_from(&block);
+        }
+    }
+    turned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// C̃ of a graded mesh of a concave polygon equals that of a dense solution of another form: the
+    /// stiffness bordered by the conditions of mean motion, solved by LU with complete pivoting.
+    #[test]
+    fn sparse_and_dense_routes_agree() {
+        let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]].map(Vec2::from);
+        for order in 1..=3 {
+            let density = MeshDensity { elements: [2, 2], order, grading: [1.0; 2] };
+            let placement = Placement::new(&outline).unwrap();
+            let shape = Shape::new(&placement, 0.25, &density, Plane::Strain, false).unwrap();
+            let n = 2 * shape.mesh.nodes.len();
+            let mut system = DMatrix::zeros(n + 3, n + 3);
+            for (index, nodes) in shape.mesh.elements.iter().enumerate() {
+                let k = stiffness(&shape.reference, &shape.mesh.corners(index), shape.hooke);
+                let row = |i: usize| 2 * nodes[i / 2] + i % 2;
+                (0..k.nrows()).for_each(|i| (0..k.nrows()).for_each(|j| system[(row(i), row(j))] += k[(i, j)]));
+            }
+            system.view_mut((0, n), (n, 3)).copy_from(&shape.inertia);
+            system.view_mut((n, 0), (3, n)).copy_from(&shape.inertia.transpose());
+            let points = [[1.7, 0.0], [2.0, 0.4], [0.3, 2.0], [0.5, 0.5], [1.0, 1.0]].map(Vec2::from);
+            let local: Vec<Vec2> = points.iter().map(|&p| placement.local(p)).collect();
+            let places = shape.places(&local, &points).unwrap();
+            let mut loads = DMatrix::zeros(n + 3, 2 * points.len());
+            for (j, place) in places.iter().enumerate() {
+                for &(node, value) in place {
+                    (0..2).for_each(|i| loads[(2 * node + i, 2 * j + i)] += value);
+                }
+            }
+            let expected = loads.transpose() * system.full_piv_lu().solve(&loads).unwrap();
+            let found = shape.flexibility(&places).unwrap();
+            assert!((&found - &expected).amax() < 1e-12 * found.amax(), "order {order}");
+        }
+    }
+}
