@@ -1,6 +1,8 @@
 //! Path solvers: elastic blocks under growing loads until they collapse, and behind.
 
 mod cells;
+mod condensed;
 pub mod continuation;
 pub mod event;
 pub mod newton;
+mod rows;
