@@ -39,6 +39,16 @@ impl Point {
         let [a, b] = self.inverse;
         [a[0] * v[0] + a[1] * v[1], b[0] * v[0] + b[1] * v[1]]
     }
+
+    /// r = A⁻¹ (f − E y).
+    fn force(&self, right: [f64; 2], y: &[f64]) -> [f64; 2] {
+        let mut f = right;
+        for (j, e) in &self.across {
+            f[0] -= e[0] * y[*j];
+            f[1] -= e[1] * y[*j];
+        }
+        self.own(f)
+    }
 }
 
 /// Factorised equations, with the equations themselves for residuals.
@@ -49,6 +59,8 @@ pub(in crate::path) struct Condensed {
     of: Vec<Option<usize>>,
     /// Indices that are kept.
     kept: Vec<usize>,
+    /// Position of every index among them; `usize::MAX` where it is condensed out.
+    place: Vec<usize>,
     reduced: SparseLu,
 }
 
@@ -148,12 +160,7 @@ impl Condensed {
             reduced.extend(columns.iter().map(|&j| (k, j, row[j])));
         }
         let reduced = SparseLu::new(kept.len(), &reduced)?;
-        Some(Condensed { rows, points, of, kept, reduced })
-    }
-
-    /// Number of unknowns that are kept.
-    pub fn kept(&self) -> usize {
-        self.kept.len()
+        Some(Condensed { rows, points, of, kept, place, reduced })
     }
 
     /// y for several right-hand sides of all equations.
@@ -178,20 +185,47 @@ impl Condensed {
         let mut x = vec![0.0; self.rows.len()];
         self.kept.iter().zip(y).for_each(|(i, y)| x[*i] = *y);
         for point in &self.points {
-            let mut f = [right[point.first], right[point.first + 1]];
-            for (j, e) in &point.across {
-                f[0] -= e[0] * y[*j];
-                f[1] -= e[1] * y[*j];
-            }
-            [x[point.first], x[point.first + 1]] = point.own(f);
+            let r = point.force([right[point.first], right[point.first + 1]], y);
+            x[point.first..point.first + 2].copy_from_slice(&r);
         }
         x
+    }
+
+    /// The force of one contact point from y and the right-hand sides of its rows.
+    pub fn force(&self, contact: usize, right: [f64; 2], y: &[f64]) -> [f64; 2] {
+        match self.of[contact] {
+            Some(point) => self.points[point].force(right, y),
+            None => [y[self.place[2 * contact]], y[self.place[2 * contact + 1]]],
+        }
+    }
+
+    /// An unknown that belongs to no contact point, from y.
+    pub fn other(&self, index: usize, y: &[f64]) -> f64 {
+        y[self.place[index]]
     }
 
     /// Once, without refinement.
     pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
         let y = self.condense(&[right.to_vec()])?.swap_remove(0);
         Some(self.expand(right, &y))
+    }
+
+    /// Refined as long as that halves what is left, at most so often.
+    pub fn solve(&self, right: &[f64], refinements: usize) -> Option<Vec<f64>> {
+        let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let mut x = self.apply(right)?;
+        let mut left = self.left(right, &x);
+        for _ in 0..refinements {
+            let step = self.apply(&left)?;
+            let better: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
+            let now = self.left(right, &better);
+            // Not less: rounding, or nothing left.
+            if norm(&now) >= norm(&left) {
+                break;
+            }
+            (x, left) = (better, now);
+        }
+        x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
     /// What the equations without what was added leave of a right-hand side.

@@ -1,5 +1,7 @@
 //! One factorisation for many events: every contact point has a piece of its law in the factorised
-//! matrix, and points that have changed since enter as right-hand sides of their own two rows.
+//! matrix, and points that have changed since enter as right-hand sides of their own two rows. Contact
+//! forces with equations of their own are condensed out ([`condensed`](crate::path::condensed)): of the
+//! responses to changed points only what is kept is stored.
 //!
 //! ```text
 //! stick   C ṙ + G q̇ = ε − λ̇ g_p          free    ṙ = ε
@@ -9,19 +11,23 @@
 
 use super::rate::Piece;
 use super::system::{Load, System};
-use crate::lu::{Entries, SparseLu};
+use crate::lu::Entries;
+use crate::path::condensed::Condensed;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
 /// Added to the flexibility of stuck points, relative to its mean, and taken out again by
 /// refinement: forces that equilibrium and flexibility leave open are shared evenly.
 const SHARING: f64 = 1e-11;
+/// Steps of refinement of the response to a load.
+const REFINEMENTS: usize = 3;
 
 /// A factorised system.
 pub struct Base {
     /// Piece of each contact point in the matrix.
     pub pieces: Vec<Piece>,
-    lu: SparseLu,
+    equations: Condensed,
+    /// Kept unknowns per ε of a point's rows.
     columns: BTreeMap<usize, [Vec<f64>; 2]>,
     drive: Option<(usize, Vec<f64>)>,
 }
@@ -32,14 +38,27 @@ fn across(flow: [f64; 2]) -> [f64; 2] {
     [-flow[1] / l, flow[0] / l]
 }
 
+/// The two rows of a piece over (ṙ_n, ṙ_t, ġ_n, ġ_t) of its point. `None` where it has no such facet.
+pub fn rows(system: &System, c: usize, piece: Piece) -> Option<[[f64; 4]; 2]> {
+    Some(match piece {
+        Piece::Stick => [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        Piece::Free | Piece::Corner(..) => [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
+        Piece::Facet(f) => {
+            let facet = system.facets[c].as_ref()?.get(f)?;
+            let (a, n) = (facet.normal, across(facet.flow));
+            [[-a[0], -a[1], 0.0, 0.0], [0.0, 0.0, n[0], n[1]]]
+        }
+    })
+}
+
 impl Base {
     /// Assembles and factorises. `None` where the system is singular.
     pub fn new(system: &System, pieces: Vec<Piece>) -> Option<Self> {
         let nc = system.contacts;
         let (mut entries, mut sharing): (Entries, Entries) = (Vec::new(), Vec::new());
         let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
-            entries.extend(system.flexibility[2 * c + i].iter().map(|&(j, v)| (row, j, factor * v)));
-            entries.extend(system.kinematics[2 * c + i].iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
+            entries.extend(system.flexibility.row(2 * c + i).iter().map(|&(j, v)| (row, j, factor * v)));
+            entries.extend(system.kinematics.row(2 * c + i).iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
         };
         for (c, piece) in pieces.iter().enumerate() {
             match piece {
@@ -60,18 +79,18 @@ impl Base {
                 }
             }
         }
-        for (row, kinematics) in system.kinematics.iter().enumerate() {
-            entries.extend(kinematics.iter().map(|&(j, v)| (2 * nc + j, row, v)));
+        for row in 0..2 * nc {
+            entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
-        let lu = SparseLu::shifted(system.size(), &entries, &sharing)?;
-        Some(Base { pieces, lu, columns: BTreeMap::new(), drive: None })
+        let equations = Condensed::new(system.size(), nc, &entries, &sharing)?;
+        Some(Base { pieces, equations, columns: BTreeMap::new(), drive: None })
     }
 
     /// x for λ̇ = 1 with every piece as factorised.
     pub fn drive(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
         if self.drive.as_ref().is_none_or(|(i, _)| *i != index) {
             let right = self.right(system, load);
-            self.drive = Some((index, self.lu.solve(&[right], 2)?.swap_remove(0)));
+            self.drive = Some((index, self.equations.solve(&right, REFINEMENTS)?));
         }
         self.drive.as_ref().map(|(_, x)| x)
     }
@@ -101,6 +120,11 @@ impl Base {
         right
     }
 
+    /// x for any right-hand side with every piece as factorised, not refined.
+    pub fn solve(&self, right: &[f64]) -> Option<Vec<f64>> {
+        self.equations.apply(right)
+    }
+
     /// Makes sure that the responses to the rows of these points are known. `solves` counts.
     pub fn respond(&mut self, system: &System, points: &[usize], solves: &mut u64) -> Option<()> {
         let new: Vec<usize> = points.iter().copied().filter(|c| !self.columns.contains_key(c)).collect();
@@ -114,9 +138,9 @@ impl Base {
         };
         let right: Vec<Vec<f64>> = new.iter().flat_map(|c| [unit(2 * c), unit(2 * c + 1)]).collect();
         *solves += right.len() as u64;
-        let mut x = self.lu.solve(&right, 2)?.into_iter();
+        let mut y = self.equations.condense(&right)?.into_iter();
         for c in new {
-            self.columns.insert(c, [x.next()?, x.next()?]);
+            self.columns.insert(c, [y.next()?, y.next()?]);
         }
         Some(())
     }
@@ -131,44 +155,59 @@ impl Base {
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
-        let nc = system.contacts;
-        let mut fill = |column: usize, x: &[f64], load: Option<&Load>| {
-            for (k, &c) in points.iter().enumerate() {
-                for i in 0..2 {
-                    let row = 2 * c + i;
-                    let gap = system.flexibility[row].iter().map(|&(j, v)| v * x[j]).sum::<f64>()
-                        + system.kinematics[row].iter().map(|&(j, v)| v * x[2 * nc + j]).sum::<f64>();
-                    out[(4 * k + i, column)] = x[row];
-                    out[(4 * k + 2 + i, column)] = gap + load.map_or(0.0, |l| l.gap[c][i]);
+        let forces = 2 * system.contacts;
+        for (k, own) in points.iter().enumerate() {
+            let Some(columns) = self.columns.get(own) else { continue };
+            for (i, y) in columns.iter().enumerate() {
+                let mut epsilon = [0.0; 2];
+                epsilon[i] = 1.0;
+                let force = |c: usize| self.equations.force(c, if c == *own { epsilon } else { [0.0; 2] }, y);
+                for (row, &c) in points.iter().enumerate() {
+                    let here = force(c);
+                    for t in 0..2 {
+                        let by_forces = system.flexibility.row(2 * c + t).iter();
+                        let by_forces =
+                            by_forces.map(|&(j, v)| v * if j / 2 == c { here[j % 2] } else { force(j / 2)[j % 2] });
+                        let by_motions = system.kinematics.row(2 * c + t).iter();
+                        let by_motions = by_motions.map(|&(j, v)| v * self.equations.other(forces + j, y));
+                        out[(4 * row + t, 2 * k + i)] = here[t];
+                        out[(4 * row + 2 + t, 2 * k + i)] = by_forces.sum::<f64>() + by_motions.sum::<f64>();
+                    }
                 }
-            }
-        };
-        for (k, c) in points.iter().enumerate() {
-            if let Some([first, second]) = self.columns.get(c) {
-                fill(2 * k, first, None);
-                fill(2 * k + 1, second, None);
             }
         }
         if let Some((_, x)) = &self.drive {
-            fill(2 * n, x, Some(load));
+            for (row, here) in Self::at(system, points, x).into_iter().enumerate() {
+                for (t, value) in here.into_iter().enumerate() {
+                    let own = if t < 2 { 0.0 } else { load.gap[points[row]][t - 2] };
+                    out[(4 * row + t, 2 * n)] = value + own;
+                }
+            }
         }
         out
     }
 
-    /// x for ε at `points` and λ̇.
-    pub fn combine(&self, points: &[usize], epsilon: &[f64], factor: f64) -> Vec<f64> {
-        let size = self.drive.as_ref().map_or(0, |(_, x)| x.len());
-        let mut sum = vec![0.0; size];
-        let mut add = |x: &[f64], f: f64| sum.iter_mut().zip(x).for_each(|(s, x)| *s += f * x);
-        if let Some((_, x)) = &self.drive {
-            add(x, factor);
-        }
+    /// (ṙ, ġ) at `points` of all unknowns.
+    pub fn at(system: &System, points: &[usize], x: &[f64]) -> Vec<[f64; 4]> {
+        let gap = |row: usize| {
+            system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..])
+        };
+        points.iter().map(|c| [x[2 * c], x[2 * c + 1], gap(2 * c), gap(2 * c + 1)]).collect()
+    }
+
+    /// x for ε at `points`.
+    pub fn combine(&self, system: &System, points: &[usize], epsilon: &[f64]) -> Vec<f64> {
+        let mut right = vec![0.0; system.size()];
+        let mut y: Vec<f64> = Vec::new();
         for (k, c) in points.iter().enumerate() {
-            if let Some(columns) = self.columns.get(c) {
-                add(&columns[0], epsilon[2 * k]);
-                add(&columns[1], epsilon[2 * k + 1]);
+            let Some(columns) = self.columns.get(c) else { continue };
+            for (i, column) in columns.iter().enumerate() {
+                let epsilon = epsilon[2 * k + i];
+                right[2 * c + i] = epsilon;
+                y.resize(column.len(), 0.0);
+                y.iter_mut().zip(column).for_each(|(y, v)| *y += epsilon * v);
             }
         }
-        sum
+        if y.is_empty() { right } else { self.equations.expand(&right, &y) }
     }
 }
