@@ -27,10 +27,8 @@ struct Point {
     first: usize,
     /// A⁻¹.
     inverse: [[f64; 2]; 2],
-    /// E: kept column, values in both rows.
-    across: Vec<(usize, [f64; 2])>,
-    /// F: kept row, values in both columns.
-    down: Vec<(usize, [f64; 2])>,
+    /// Where its E begins and ends among all.
+    across: [usize; 2],
 }
 
 impl Point {
@@ -39,22 +37,16 @@ impl Point {
         let [a, b] = self.inverse;
         [a[0] * v[0] + a[1] * v[1], b[0] * v[0] + b[1] * v[1]]
     }
-
-    /// r = A⁻¹ (f − E y).
-    fn force(&self, right: [f64; 2], y: &[f64]) -> [f64; 2] {
-        let mut f = right;
-        for (j, e) in &self.across {
-            f[0] -= e[0] * y[*j];
-            f[1] -= e[1] * y[*j];
-        }
-        self.own(f)
-    }
 }
 
 /// Factorised equations, with the equations themselves for residuals.
 pub(in crate::path) struct Condensed {
     rows: Rows,
     points: Vec<Point>,
+    /// E: kept column, values in both rows of a point.
+    across: Vec<(usize, [f64; 2])>,
+    /// F: (position in `points`, values in both of its columns) by kept rows, and where each of these begins.
+    down: (Vec<usize>, Vec<(usize, [f64; 2])>),
     /// Position in `points` of every contact point.
     of: Vec<Option<usize>>,
     /// Indices that are kept.
@@ -64,16 +56,9 @@ pub(in crate::path) struct Condensed {
     reduced: SparseLu,
 }
 
-/// Adds to a short list of (index, pair).
-fn add(list: &mut Vec<(usize, [f64; 2])>, index: usize, k: usize, value: f64) {
-    match list.iter_mut().find(|e| e.0 == index) {
-        Some(entry) => entry.1[k] += value,
-        None => {
-            let mut pair = [0.0; 2];
-            pair[k] = value;
-            list.push((index, pair));
-        }
-    }
+/// A value in one of two places.
+fn pair(k: usize, value: f64) -> [f64; 2] {
+    if k == 0 { [value, 0.0] } else { [0.0, value] }
 }
 
 impl Condensed {
@@ -114,24 +99,32 @@ impl Condensed {
                     [-own[1][0] / determinant, own[0][0] / determinant],
                 ];
                 of[c] = Some(points.len());
-                points.push(Point { first: 2 * c, inverse, across: Vec::new(), down: Vec::new() });
+                points.push(Point { first: 2 * c, inverse, across: [0; 2] });
             }
         }
         let kept: Vec<usize> = (0..size).filter(|i| *i >= forces || of[i / 2].is_none()).collect();
         let mut place = vec![usize::MAX; size];
         kept.iter().enumerate().for_each(|(k, i)| place[*i] = k);
+        let mut across: Vec<(usize, [f64; 2])> = Vec::new();
         for point in &mut points {
+            let begin = across.len();
             for k in 0..2 {
                 for (j, value) in both(point.first + k).filter(|e| e.0 >= forces) {
-                    add(&mut point.across, place[j], k, value);
+                    match across[begin..].iter_mut().find(|e| e.0 == place[j]) {
+                        Some(entry) => entry.1[k] += value,
+                        None => across.push((place[j], pair(k, value))),
+                    }
                 }
             }
+            point.across = [begin, across.len()];
         }
         let mut reduced: Entries = Vec::new();
         let mut row = vec![0.0; kept.len()];
         let mut met = vec![usize::MAX; kept.len()];
+        let mut down: (Vec<usize>, Vec<(usize, [f64; 2])>) = (vec![0], Vec::new());
+        let mut columns: Vec<usize> = Vec::new();
         for (k, &i) in kept.iter().enumerate() {
-            let mut columns: Vec<usize> = Vec::new();
+            columns.clear();
             let mut sum = |j: usize, value: f64| {
                 if met[j] != k {
                     (met[j], row[j]) = (k, 0.0);
@@ -139,45 +132,54 @@ impl Condensed {
                 }
                 row[j] += value;
             };
-            let mut down: Vec<(usize, [f64; 2])> = Vec::new();
+            let begin = down.1.len();
             for (j, value) in both(i) {
                 match of.get(j / 2).filter(|_| j < forces) {
-                    Some(Some(point)) => match down.last_mut() {
+                    Some(Some(point)) => match down.1[begin..].last_mut() {
                         Some(last) if last.0 == *point => last.1[j % 2] += value,
-                        _ => down.push((*point, if j % 2 == 0 { [value, 0.0] } else { [0.0, value] })),
+                        _ => down.1.push((*point, pair(j % 2, value))),
                     },
                     _ => sum(place[j], value),
                 }
             }
-            for (p, f) in down {
-                let point = &mut points[p];
-                for &(j, e) in &point.across {
-                    let e = point.own(e);
-                    sum(j, -(f[0] * e[0] + f[1] * e[1]));
+            for &(point, f) in &down.1[begin..] {
+                let point: &Point = &points[point];
+                let [a, b] = point.inverse;
+                let by = [f[0] * a[0] + f[1] * b[0], f[0] * a[1] + f[1] * b[1]];
+                for &(j, e) in &across[point.across[0]..point.across[1]] {
+                    sum(j, -(by[0] * e[0] + by[1] * e[1]));
                 }
-                point.down.push((k, f));
             }
+            down.0.push(down.1.len());
             reduced.extend(columns.iter().map(|&j| (k, j, row[j])));
         }
         let reduced = SparseLu::new(kept.len(), &reduced)?;
-        Some(Condensed { rows, points, of, kept, place, reduced })
+        Some(Condensed { rows, points, across, down, of, kept, place, reduced })
     }
 
     /// y for several right-hand sides of all equations.
     pub fn condense(&self, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let reduced = |right: &Vec<f64>| {
-            let mut g: Vec<f64> = self.kept.iter().map(|i| right[*i]).collect();
-            for point in &self.points {
-                let f = [right[point.first], right[point.first + 1]];
-                if f != [0.0; 2] {
-                    let r = point.own(f);
-                    point.down.iter().for_each(|(i, f)| g[*i] -= f[0] * r[0] + f[1] * r[1]);
-                }
-            }
-            g
+            let own = |p: &Point| p.own([right[p.first], right[p.first + 1]]);
+            let own: Vec<[f64; 2]> = self.points.iter().map(own).collect();
+            let by_forces = |k: usize| -> f64 {
+                let f = &self.down.1[self.down.0[k]..self.down.0[k + 1]];
+                f.iter().map(|(p, f)| f[0] * own[*p][0] + f[1] * own[*p][1]).sum()
+            };
+            self.kept.iter().enumerate().map(|(k, i)| right[*i] - by_forces(k)).collect()
         };
         let rights: Vec<Vec<f64>> = rights.iter().map(reduced).collect();
         self.reduced.solve(&rights, 0)
+    }
+
+    /// r = A⁻¹ (f − E y).
+    fn recovered(&self, point: &Point, right: [f64; 2], y: &[f64]) -> [f64; 2] {
+        let mut f = right;
+        for (j, e) in &self.across[point.across[0]..point.across[1]] {
+            f[0] -= e[0] * y[*j];
+            f[1] -= e[1] * y[*j];
+        }
+        point.own(f)
     }
 
     /// All unknowns from y and the right-hand side.
@@ -185,7 +187,7 @@ impl Condensed {
         let mut x = vec![0.0; self.rows.len()];
         self.kept.iter().zip(y).for_each(|(i, y)| x[*i] = *y);
         for point in &self.points {
-            let r = point.force([right[point.first], right[point.first + 1]], y);
+            let r = self.recovered(point, [right[point.first], right[point.first + 1]], y);
             x[point.first..point.first + 2].copy_from_slice(&r);
         }
         x
@@ -194,7 +196,7 @@ impl Condensed {
     /// The force of one contact point from y and the right-hand sides of its rows.
     pub fn force(&self, contact: usize, right: [f64; 2], y: &[f64]) -> [f64; 2] {
         match self.of[contact] {
-            Some(point) => self.points[point].force(right, y),
+            Some(point) => self.recovered(&self.points[point], right, y),
             None => [y[self.place[2 * contact]], y[self.place[2 * contact + 1]]],
         }
     }
@@ -202,6 +204,11 @@ impl Condensed {
     /// An unknown that belongs to no contact point, from y.
     pub fn other(&self, index: usize, y: &[f64]) -> f64 {
         y[self.place[index]]
+    }
+
+    /// Nothing on the right-hand side, and y.
+    pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
+        (vec![0.0; self.rows.len()], vec![0.0; self.kept.len()])
     }
 
     /// Once, without refinement.

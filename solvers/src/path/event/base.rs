@@ -120,9 +120,9 @@ impl Base {
         right
     }
 
-    /// x for any right-hand side with every piece as factorised, not refined.
-    pub fn solve(&self, right: &[f64]) -> Option<Vec<f64>> {
-        self.equations.apply(right)
+    /// Kept unknowns for any right-hand side with every piece as factorised, not refined.
+    pub fn kept(&self, right: &[f64]) -> Option<Vec<f64>> {
+        Some(self.equations.condense(&[right.to_vec()])?.swap_remove(0))
     }
 
     /// Makes sure that the responses to the rows of these points are known. `solves` counts.
@@ -155,59 +155,68 @@ impl Base {
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
-        let forces = 2 * system.contacts;
         for (k, own) in points.iter().enumerate() {
             let Some(columns) = self.columns.get(own) else { continue };
             for (i, y) in columns.iter().enumerate() {
-                let mut epsilon = [0.0; 2];
-                epsilon[i] = 1.0;
-                let force = |c: usize| self.equations.force(c, if c == *own { epsilon } else { [0.0; 2] }, y);
-                for (row, &c) in points.iter().enumerate() {
-                    let here = force(c);
-                    for t in 0..2 {
-                        let by_forces = system.flexibility.row(2 * c + t).iter();
-                        let by_forces =
-                            by_forces.map(|&(j, v)| v * if j / 2 == c { here[j % 2] } else { force(j / 2)[j % 2] });
-                        let by_motions = system.kinematics.row(2 * c + t).iter();
-                        let by_motions = by_motions.map(|&(j, v)| v * self.equations.other(forces + j, y));
-                        out[(4 * row + t, 2 * k + i)] = here[t];
-                        out[(4 * row + 2 + t, 2 * k + i)] = by_forces.sum::<f64>() + by_motions.sum::<f64>();
-                    }
+                let epsilon = [[1.0, 0.0], [0.0, 1.0]][i];
+                let right = |c: usize| if c == *own { epsilon } else { [0.0; 2] };
+                for (row, here) in self.seen(system, points, right, y).into_iter().enumerate() {
+                    (0..4).for_each(|t| out[(4 * row + t, 2 * k + i)] = here[t]);
                 }
             }
         }
         if let Some((_, x)) = &self.drive {
-            for (row, here) in Self::at(system, points, x).into_iter().enumerate() {
-                for (t, value) in here.into_iter().enumerate() {
-                    let own = if t < 2 { 0.0 } else { load.gap[points[row]][t - 2] };
-                    out[(4 * row + t, 2 * n)] = value + own;
+            let gap =
+                |row: usize| system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..]);
+            for (row, &c) in points.iter().enumerate() {
+                let gap = [0, 1].map(|t| gap(2 * c + t) + load.gap[c][t]);
+                for (t, value) in [x[2 * c], x[2 * c + 1], gap[0], gap[1]].into_iter().enumerate() {
+                    out[(4 * row + t, 2 * n)] = value;
                 }
             }
         }
         out
     }
 
-    /// (ṙ, ġ) at `points` of all unknowns.
-    pub fn at(system: &System, points: &[usize], x: &[f64]) -> Vec<[f64; 4]> {
-        let gap = |row: usize| {
-            system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..])
+    /// (ṙ, ġ) at `points` from kept unknowns and the right-hand sides of contact points.
+    pub fn seen(
+        &self,
+        system: &System,
+        points: &[usize],
+        right: impl Fn(usize) -> [f64; 2],
+        y: &[f64],
+    ) -> Vec<[f64; 4]> {
+        let force = |c: usize| self.equations.force(c, right(c), y);
+        let forces = 2 * system.contacts;
+        let at = |&c: &usize| {
+            let here = force(c);
+            let gap = |row: usize| {
+                let by_force = |&(j, v): &(usize, f64)| v * if j / 2 == c { here[j % 2] } else { force(j / 2)[j % 2] };
+                let by_motion = |&(j, v): &(usize, f64)| v * self.equations.other(forces + j, y);
+                system.flexibility.row(row).iter().map(by_force).sum::<f64>()
+                    + system.kinematics.row(row).iter().map(by_motion).sum::<f64>()
+            };
+            [here[0], here[1], gap(2 * c), gap(2 * c + 1)]
         };
-        points.iter().map(|c| [x[2 * c], x[2 * c + 1], gap(2 * c), gap(2 * c + 1)]).collect()
+        points.iter().map(at).collect()
     }
 
-    /// x for ε at `points`.
-    pub fn combine(&self, system: &System, points: &[usize], epsilon: &[f64]) -> Vec<f64> {
-        let mut right = vec![0.0; system.size()];
-        let mut y: Vec<f64> = Vec::new();
+    /// x for ε at `points`, on top of right-hand sides of all rows with their kept unknowns.
+    pub fn combine(&self, points: &[usize], epsilon: &[f64], onto: (Vec<f64>, Vec<f64>)) -> Vec<f64> {
+        let (mut right, mut y) = onto;
         for (k, c) in points.iter().enumerate() {
             let Some(columns) = self.columns.get(c) else { continue };
             for (i, column) in columns.iter().enumerate() {
                 let epsilon = epsilon[2 * k + i];
-                right[2 * c + i] = epsilon;
-                y.resize(column.len(), 0.0);
+                right[2 * c + i] += epsilon;
                 y.iter_mut().zip(column).for_each(|(y, v)| *y += epsilon * v);
             }
         }
-        if y.is_empty() { right } else { self.equations.expand(&right, &y) }
+        self.equations.expand(&right, &y)
+    }
+
+    /// Nothing on the right-hand side, and its kept unknowns.
+    pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
+        self.equations.nothing()
     }
 }

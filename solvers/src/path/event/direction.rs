@@ -10,8 +10,8 @@ use super::trace::Tracer;
 
 /// Relative residual of a direction above which it is solved anew.
 const RESIDUAL: f64 = 1e-12;
-/// Steps of refinement of a direction.
-const REFINEMENTS: usize = 3;
+/// Relative residual of a direction up to which it is refined, and the most steps of that.
+const REFINED: (f64, usize) = (2e-15, 3);
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
 pub const MECHANISM: f64 = 1e-8;
 /// Points with a piece of their own beside the factorised one before factorising anew.
@@ -240,8 +240,8 @@ impl Tracer<'_> {
         let still = rates.factor == 0.0;
         let mut rates = rates;
         let (mut worst, mut left) = self.left(&rates, load, pieces);
-        for _ in 0..REFINEMENTS {
-            if worst <= RESIDUAL && !still {
+        for _ in 0..REFINED.1 {
+            if worst <= REFINED.0 && !still {
                 break;
             }
             let Some(step) = local.mended(base, pieces, still, &left) else { break };
@@ -253,8 +253,9 @@ impl Tracer<'_> {
                 rates.refinements += 1;
                 break;
             }
+            let rounding = now.0 > 0.5 * worst;
             (rates, (worst, left)) = (better, now);
-            if still {
+            if still || rounding {
                 break;
             }
         }

@@ -75,7 +75,11 @@ impl<'a> Local<'a> {
         let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
         gaps.push(rate.factor);
         let epsilon = &self.epsilon * DVector::from_vec(gaps);
-        let mut x = base.combine(self.system, &self.points, epsilon.as_slice());
+        let mut x = if self.points.is_empty() {
+            vec![0.0; self.system.size()]
+        } else {
+            base.combine(&self.points, epsilon.as_slice(), base.nothing())
+        };
         let drive = base.drive(self.system, drive, load)?;
         x.iter_mut().zip(drive).for_each(|(x, d)| *x += rate.factor * d);
         Some(x)
@@ -88,22 +92,18 @@ impl<'a> Local<'a> {
         let n = self.points.len();
         let mut right = left.to_vec();
         self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
-        let mut step = base.solve(&right)?;
-        if n == 0 {
-            return Some(step);
-        }
+        let y = base.kept(&right)?;
         let held = |k: usize| still && k < self.open;
         let piece = |(k, c): (usize, &usize)| rows(self.system, *c, if held(k) { Piece::Stick } else { pieces[*c] });
         let picks: Vec<[[f64; 4]; 2]> = self.points.iter().enumerate().map(piece).collect::<Option<_>>()?;
-        let seen = Base::at(self.system, &self.points, &step);
+        let seen = base.seen(self.system, &self.points, |c| [right[2 * c], right[2 * c + 1]], &y);
         let wanted = DVector::from_fn(2 * n, |i, _| {
             let (k, c) = (i / 2, self.points[i / 2]);
             let now: f64 = (0..4).map(|t| picks[k][i % 2][t] * seen[k][t]).sum();
             if held(k) { -now } else { left[2 * c + i % 2] - now }
         });
-        let epsilon = picked(&picks, &self.response, 2 * n).lu().solve(&wanted)?;
-        let by_points = base.combine(self.system, &self.points, epsilon.as_slice());
-        step.iter_mut().zip(&by_points).for_each(|(s, p)| *s += p);
+        let epsilon = if n == 0 { wanted } else { picked(&picks, &self.response, 2 * n).lu().solve(&wanted)? };
+        let step = base.combine(&self.points, epsilon.as_slice(), (right, y));
         step.iter().all(|v| v.is_finite()).then_some(step)
     }
 }

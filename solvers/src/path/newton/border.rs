@@ -45,8 +45,7 @@ impl Bordered {
     pub fn new(size: usize, contacts: usize, equations: Entries, shift: &Entries, control: &[f64]) -> Option<Self> {
         let mut equations = equations;
         let last = size - 1;
-        let few: Entries =
-            control.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(j, v)| (last, j, *v)).collect();
+        let few: Entries = control.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(j, v)| (last, j, *v)).collect();
         if few.len() <= SPARSE {
             equations.extend(few);
             return Some(Bordered { equations: Condensed::new(size, contacts, &equations, shift)?, border: None });
