@@ -26,7 +26,7 @@
 //! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
 
 use super::{ContactLaw, Displaced, Loading, PathObserver, PathProblem, PathState};
-use crate::interface::FacetMode;
+use crate::interface::{Facet, FacetMode};
 use std::collections::BTreeMap;
 
 /// How large a residual may be.
@@ -85,6 +85,30 @@ pub struct Watch {
     greatest: f64,
 }
 
+/// Keeps the worse of two residuals; a NaN stays.
+fn worsen(worst: &mut f64, value: f64) {
+    if value.is_nan() || value > *worst {
+        *worst = value;
+    }
+}
+
+/// Which checks the facets of a law ask for.
+#[derive(Clone, Copy)]
+struct Asks {
+    penetration: bool,
+    complementarity: bool,
+}
+
+impl Asks {
+    fn of(facets: &[Facet]) -> Asks {
+        let has = |mode: FacetMode| facets.iter().any(|f| f.mode == mode);
+        let dry = facets.iter().any(|f| f.mode == FacetMode::Opening && f.bound == 0.0);
+        let dilates = facets.iter().any(|f| f.mode == FacetMode::Sliding && f.flow[0] != 0.0);
+        let penetration = dry && !has(FacetMode::Crushing);
+        Asks { penetration, complementarity: penetration && !dilates }
+    }
+}
+
 impl Watch {
     /// A watch over small or `finite` displacements.
     pub fn new(finite: bool) -> Self {
@@ -92,10 +116,7 @@ impl Watch {
     }
 
     fn note(&mut self, name: &'static str, value: f64) {
-        let worst = self.worst.entry(name).or_insert(0.0);
-        if value.is_nan() || value > *worst {
-            *worst = value;
-        }
+        worsen(self.worst.entry(name).or_insert(0.0), value);
     }
 
     /// Checks one state.
@@ -107,7 +128,7 @@ impl Watch {
                 size += (factor * x.hypot(y)).abs();
             }
         }
-        size += state.force.iter().map(|f| f[0].hypot(f[1])).sum::<f64>();
+        size += state.force.iter().map(|f| (f[0] * f[0] + f[1] * f[1]).sqrt()).sum::<f64>();
         // Where everything has come apart the forces are rounding of what they were.
         self.greatest = self.greatest.max(size);
         let size = size.max(NOTHING * self.greatest);
@@ -117,37 +138,50 @@ impl Watch {
         }
         let deformation = deformation.max(1e-300);
         let displaced = Displaced::new(problem, state, self.finite);
+        let mut unbalanced = 0.0;
         for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
-            self.note("path_equilibrium", w[0].hypot(w[1]).max(w[2].abs() / problem.length) / size.max(1e-300));
+            worsen(&mut unbalanced, w[0].hypot(w[1]));
+            worsen(&mut unbalanced, w[2].abs() / problem.length);
         }
+        self.note("path_equilibrium", unbalanced / size.max(1e-300));
         // Gaps of finite displacements are differences of positions.
         let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
+        let mut apart = 0.0;
         for (g, own) in displaced.gaps().iter().zip(&state.gap) {
-            let off = (g[0] - own[0]).abs().max((g[1] - own[1]).abs());
-            self.note("path_kinematics", (off - rounding) / deformation);
+            (0..2).for_each(|i| worsen(&mut apart, (g[i] - own[i]).abs() - rounding));
         }
+        self.note("path_kinematics", apart / deformation);
         self.check_blocks(problem, state);
         let force_scale = largest.max(1e-300);
+        let asks: Vec<Asks> = problem.facets.iter().map(|facets| Asks::of(facets)).collect();
+        let (mut bonded, mut strength) = (None, None);
+        let (mut penetration, mut complementarity) = (None, None);
+        let note = |worst: &mut Option<f64>, value: f64| worsen(worst.get_or_insert(0.0), value);
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
             let ContactLaw::Law(law) = contact.law else {
-                self.note("path_kinematics", (gap[0].abs().max(gap[1].abs()) - rounding) / deformation);
+                (0..2).for_each(|i| note(&mut bonded, gap[i].abs() - rounding));
                 continue;
             };
-            let facets = &problem.facets[law];
-            for facet in facets {
+            for facet in &problem.facets[law] {
                 let excess = facet.normal[0] * force[0] + facet.normal[1] * force[1] - facet.bound * contact.area;
-                self.note("path_strength", excess / force_scale);
+                note(&mut strength, excess);
             }
-            if facets.iter().any(|f| f.mode == FacetMode::Opening && f.bound == 0.0) {
-                let crushes = facets.iter().any(|f| f.mode == FacetMode::Crushing);
-                if !crushes {
-                    self.note("path_penetration", (-gap[0] - rounding) / deformation);
-                }
-                let dilates = facets.iter().any(|f| f.mode == FacetMode::Sliding && f.flow[0] != 0.0);
-                if !dilates && !crushes {
-                    let product = (force[0] / force_scale).max(0.0).min(((gap[0] - rounding) / deformation).max(0.0));
-                    self.note("path_complementarity", product);
-                }
+            if asks[law].penetration {
+                note(&mut penetration, -gap[0] - rounding);
+            }
+            if asks[law].complementarity {
+                let product = (force[0] / force_scale).max(0.0).min(((gap[0] - rounding) / deformation).max(0.0));
+                note(&mut complementarity, product);
+            }
+        }
+        for (name, worst, scale) in [
+            ("path_kinematics", bonded, deformation),
+            ("path_strength", strength, force_scale),
+            ("path_penetration", penetration, deformation),
+            ("path_complementarity", complementarity, 1.0),
+        ] {
+            if let Some(worst) = worst {
+                self.note(name, worst / scale);
             }
         }
         // The history is that of the states seen, where all of them were.

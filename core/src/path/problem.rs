@@ -513,7 +513,8 @@ impl PathProblem {
         let mut forces: Vec<Vec<Vec2>> = self.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
         let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
         let angle = |body: usize| state.motion[body][2];
-        for (contact, f) in self.contacts.iter().zip(&state.force) {
+        let on_points = |c: &Contact| c.minus.slot.is_some() || c.plus.slot.is_some();
+        for (contact, f) in self.contacts.iter().zip(&state.force).filter(|(c, _)| on_points(c)) {
             let on_plus = contact.normal * f[0] + contact.tangent * f[1];
             let mean = (angle(contact.minus.body) + angle(contact.plus.body)) / 2.0;
             for (side, sign) in [(contact.minus, -1.0), (contact.plus, 1.0)] {

@@ -2,8 +2,10 @@
 
 mod cells;
 mod complementarity;
+mod condensed;
 pub mod continuation;
 pub mod event;
 pub mod newton;
+mod rows;
 mod shuffle;
 mod walk;

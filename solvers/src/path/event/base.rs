@@ -1,5 +1,7 @@
 //! One factorisation for many events: every contact point has a piece of its law in the factorised
-//! matrix, and points that have changed since enter as right-hand sides of their own two rows.
+//! matrix, and points that have changed since enter as right-hand sides of their own two rows. Contact
+//! forces with equations of their own are condensed out ([`condensed`](crate::path::condensed)): of the
+//! responses to changed points only what is kept is stored.
 //!
 //! ```text
 //! stick   C ṙ + G q̇ = ε − λ̇ g_p          free    ṙ = ε
@@ -9,19 +11,23 @@
 
 use super::rate::Piece;
 use super::system::{Load, System};
-use crate::lu::{Entries, SparseLu};
+use crate::lu::Entries;
+use crate::path::condensed::Condensed;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
 /// Added to the flexibility of stuck points, relative to its mean, and taken out again by
 /// refinement: forces that equilibrium and flexibility leave open are shared evenly.
 const SHARING: f64 = 1e-11;
+/// Steps of refinement of the response to a load.
+const REFINEMENTS: usize = 3;
 
 /// A factorised system.
 pub struct Base {
     /// Piece of each contact point in the matrix.
     pub pieces: Vec<Piece>,
-    lu: SparseLu,
+    equations: Condensed,
+    /// Kept unknowns per ε of a point's rows.
     columns: BTreeMap<usize, [Vec<f64>; 2]>,
     drive: Option<(usize, Vec<f64>)>,
 }
@@ -32,14 +38,27 @@ fn across(flow: [f64; 2]) -> [f64; 2] {
     [-flow[1] / l, flow[0] / l]
 }
 
+/// The two rows of a piece over (ṙ_n, ṙ_t, ġ_n, ġ_t) of its point. `None` where it has no such facet.
+pub fn rows(system: &System, c: usize, piece: Piece) -> Option<[[f64; 4]; 2]> {
+    Some(match piece {
+        Piece::Stick => [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        Piece::Free | Piece::Corner(..) => [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
+        Piece::Facet(f) => {
+            let facet = system.facets[c].as_ref()?.get(f)?;
+            let (a, n) = (facet.normal, across(facet.flow));
+            [[-a[0], -a[1], 0.0, 0.0], [0.0, 0.0, n[0], n[1]]]
+        }
+    })
+}
+
 impl Base {
     /// Assembles and factorises. `None` where the system is singular.
     pub fn new(system: &System, pieces: Vec<Piece>) -> Option<Self> {
         let nc = system.contacts;
         let (mut entries, mut sharing): (Entries, Entries) = (Vec::new(), Vec::new());
         let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
-            entries.extend(system.flexibility[2 * c + i].iter().map(|&(j, v)| (row, j, factor * v)));
-            entries.extend(system.kinematics[2 * c + i].iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
+            entries.extend(system.flexibility.row(2 * c + i).iter().map(|&(j, v)| (row, j, factor * v)));
+            entries.extend(system.kinematics.row(2 * c + i).iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
         };
         for (c, piece) in pieces.iter().enumerate() {
             match piece {
@@ -60,18 +79,18 @@ impl Base {
                 }
             }
         }
-        for (row, kinematics) in system.kinematics.iter().enumerate() {
-            entries.extend(kinematics.iter().map(|&(j, v)| (2 * nc + j, row, v)));
+        for row in 0..2 * nc {
+            entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
-        let lu = SparseLu::shifted(system.size(), &entries, &sharing)?;
-        Some(Base { pieces, lu, columns: BTreeMap::new(), drive: None })
+        let equations = Condensed::new(system.size(), nc, &entries, &sharing)?;
+        Some(Base { pieces, equations, columns: BTreeMap::new(), drive: None })
     }
 
     /// x for λ̇ = 1 with every piece as factorised.
     pub fn drive(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
         if self.drive.as_ref().is_none_or(|(i, _)| *i != index) {
             let right = self.right(system, load);
-            self.drive = Some((index, self.lu.solve(&[right], 2)?.swap_remove(0)));
+            self.drive = Some((index, self.equations.solve(&right, REFINEMENTS)?));
         }
         self.drive.as_ref().map(|(_, x)| x)
     }
@@ -101,6 +120,11 @@ impl Base {
         right
     }
 
+    /// Kept unknowns for any right-hand side with every piece as factorised, not refined.
+    pub fn kept(&self, right: &[f64]) -> Option<Vec<f64>> {
+        Some(self.equations.condense(&[right.to_vec()])?.swap_remove(0))
+    }
+
     /// Makes sure that the responses to the rows of these points are known. `solves` counts.
     pub fn respond(&mut self, system: &System, points: &[usize], solves: &mut u64) -> Option<()> {
         let new: Vec<usize> = points.iter().copied().filter(|c| !self.columns.contains_key(c)).collect();
@@ -114,9 +138,9 @@ impl Base {
         };
         let right: Vec<Vec<f64>> = new.iter().flat_map(|c| [unit(2 * c), unit(2 * c + 1)]).collect();
         *solves += right.len() as u64;
-        let mut x = self.lu.solve(&right, 2)?.into_iter();
+        let mut y = self.equations.condense(&right)?.into_iter();
         for c in new {
-            self.columns.insert(c, [x.next()?, x.next()?]);
+            self.columns.insert(c, [y.next()?, y.next()?]);
         }
         Some(())
     }
@@ -131,44 +155,68 @@ impl Base {
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
-        let nc = system.contacts;
-        let mut fill = |column: usize, x: &[f64], load: Option<&Load>| {
-            for (k, &c) in points.iter().enumerate() {
-                for i in 0..2 {
-                    let row = 2 * c + i;
-                    let gap = system.flexibility[row].iter().map(|&(j, v)| v * x[j]).sum::<f64>()
-                        + system.kinematics[row].iter().map(|&(j, v)| v * x[2 * nc + j]).sum::<f64>();
-                    out[(4 * k + i, column)] = x[row];
-                    out[(4 * k + 2 + i, column)] = gap + load.map_or(0.0, |l| l.gap[c][i]);
+        for (k, own) in points.iter().enumerate() {
+            let Some(columns) = self.columns.get(own) else { continue };
+            for (i, y) in columns.iter().enumerate() {
+                let epsilon = [[1.0, 0.0], [0.0, 1.0]][i];
+                let right = |c: usize| if c == *own { epsilon } else { [0.0; 2] };
+                for (row, here) in self.seen(system, points, right, y).into_iter().enumerate() {
+                    (0..4).for_each(|t| out[(4 * row + t, 2 * k + i)] = here[t]);
                 }
-            }
-        };
-        for (k, c) in points.iter().enumerate() {
-            if let Some([first, second]) = self.columns.get(c) {
-                fill(2 * k, first, None);
-                fill(2 * k + 1, second, None);
             }
         }
         if let Some((_, x)) = &self.drive {
-            fill(2 * n, x, Some(load));
+            let gap =
+                |row: usize| system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..]);
+            for (row, &c) in points.iter().enumerate() {
+                let gap = [0, 1].map(|t| gap(2 * c + t) + load.gap[c][t]);
+                for (t, value) in [x[2 * c], x[2 * c + 1], gap[0], gap[1]].into_iter().enumerate() {
+                    out[(4 * row + t, 2 * n)] = value;
+                }
+            }
         }
         out
     }
 
-    /// x for ε at `points` and λ̇.
-    pub fn combine(&self, points: &[usize], epsilon: &[f64], factor: f64) -> Vec<f64> {
-        let size = self.drive.as_ref().map_or(0, |(_, x)| x.len());
-        let mut sum = vec![0.0; size];
-        let mut add = |x: &[f64], f: f64| sum.iter_mut().zip(x).for_each(|(s, x)| *s += f * x);
-        if let Some((_, x)) = &self.drive {
-            add(x, factor);
-        }
+    /// (ṙ, ġ) at `points` from kept unknowns and the right-hand sides of contact points.
+    pub fn seen(
+        &self,
+        system: &System,
+        points: &[usize],
+        right: impl Fn(usize) -> [f64; 2],
+        y: &[f64],
+    ) -> Vec<[f64; 4]> {
+        let force = |c: usize| self.equations.force(c, right(c), y);
+        let forces = 2 * system.contacts;
+        let at = |&c: &usize| {
+            let here = force(c);
+            let gap = |row: usize| {
+                let by_force = |&(j, v): &(usize, f64)| v * if j / 2 == c { here[j % 2] } else { force(j / 2)[j % 2] };
+                let by_motion = |&(j, v): &(usize, f64)| v * self.equations.other(forces + j, y);
+                system.flexibility.row(row).iter().map(by_force).sum::<f64>()
+                    + system.kinematics.row(row).iter().map(by_motion).sum::<f64>()
+            };
+            [here[0], here[1], gap(2 * c), gap(2 * c + 1)]
+        };
+        points.iter().map(at).collect()
+    }
+
+    /// x for ε at `points`, on top of right-hand sides of all rows with their kept unknowns.
+    pub fn combine(&self, points: &[usize], epsilon: &[f64], onto: (Vec<f64>, Vec<f64>)) -> Vec<f64> {
+        let (mut right, mut y) = onto;
         for (k, c) in points.iter().enumerate() {
-            if let Some(columns) = self.columns.get(c) {
-                add(&columns[0], epsilon[2 * k]);
-                add(&columns[1], epsilon[2 * k + 1]);
+            let Some(columns) = self.columns.get(c) else { continue };
+            for (i, column) in columns.iter().enumerate() {
+                let epsilon = epsilon[2 * k + i];
+                right[2 * c + i] += epsilon;
+                y.iter_mut().zip(column).for_each(|(y, v)| *y += epsilon * v);
             }
         }
-        sum
+        self.equations.expand(&right, &y)
+    }
+
+    /// Nothing on the right-hand side, and its kept unknowns.
+    pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
+        self.equations.nothing()
     }
 }

@@ -1,15 +1,17 @@
 //! The direction of the next piece of the path: the rate problem over the points at the verge of a
 //! change on one factorisation for many events, or guess and correction on the whole system.
 
-use super::base::Base;
+use super::base::{Base, rows};
 use super::local::Local;
 use super::point::Point;
 use super::rate::{Piece, Verdict, Verge};
-use super::system::{Load, System, dot};
+use super::system::{Load, System};
 use super::trace::Tracer;
 
 /// Relative residual of a direction above which it is solved anew.
 const RESIDUAL: f64 = 1e-12;
+/// Relative residual of a direction up to which it is refined, and the most steps of that.
+const REFINED: (f64, usize) = (2e-15, 3);
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
 pub const MECHANISM: f64 = 1e-8;
 /// Points with a piece of their own beside the factorised one before factorising anew.
@@ -27,6 +29,28 @@ pub struct Direction {
     pub factor: f64,
     /// Rates of all gaps.
     pub gaps: Vec<[f64; 2]>,
+}
+
+/// Rates on the way to a direction.
+struct Rates {
+    x: Vec<f64>,
+    factor: f64,
+    /// The load's own included.
+    gaps: Vec<[f64; 2]>,
+    worst: f64,
+    refinements: u64,
+}
+
+impl Rates {
+    fn new(system: &System, x: Vec<f64>, factor: f64, load: &Load) -> Rates {
+        let mut gaps = system.gaps(&x);
+        if load.opens && factor != 0.0 {
+            for (gap, load) in gaps.iter_mut().zip(&load.gap) {
+                (0..2).for_each(|i| gap[i] += factor * load[i]);
+            }
+        }
+        Rates { x, factor, gaps, worst: 0.0, refinements: 0 }
+    }
 }
 
 /// Where the path goes on.
@@ -105,13 +129,15 @@ impl Tracer<'_> {
             let solves = &mut self.counts.solves;
             let local = Local::new((&self.system, &self.points), base, (self.drive, load), &open, &pieces, solves)?;
             let rate = local.rate.corrected(open.iter().map(|c| pieces[*c]).collect(), &mut self.counts.trials)?;
-            let x = local.combine(base, &rate);
+            let x = local.combine(base, (self.drive, load), &rate)?;
             open.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
-            let moved = self.leaving(&x, load, verge, &pieces)?;
+            let rates = self.refined(&local, Rates::new(&self.system, x, 1.0, load), load, &pieces);
+            self.counts.solves += rates.refinements;
+            let moved = self.leaving(&rates, verge, &pieces)?;
             if moved.is_empty() {
+                let rates = self.anew(rates, load, &pieces);
                 self.points.iter_mut().zip(pieces).for_each(|(point, piece)| point.piece = piece);
-                let x = self.refined(x, 1.0, load);
-                return Some(self.completed(x, 1.0, load));
+                return Some(self.completed(rates, load));
             }
             let new = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c));
             let before = open.len();
@@ -124,11 +150,8 @@ impl Tracer<'_> {
 
     /// Points at the verge of a change that a direction with λ̇ = 1 moves out of their pieces: how far,
     /// which, and the piece that mends it. `None` where gaps have no bound.
-    fn leaving(&self, x: &[f64], load: &Load, verge: &[usize], pieces: &[Piece]) -> Option<Vec<(f64, usize, Piece)>> {
-        let mut gaps = self.system.gaps(x);
-        for (gap, load) in gaps.iter_mut().zip(&load.gap) {
-            (0..2).for_each(|i| gap[i] += load[i]);
-        }
+    fn leaving(&self, rates: &Rates, verge: &[usize], pieces: &[Piece]) -> Option<Vec<(f64, usize, Piece)>> {
+        let (x, gaps) = (&rates.x, &rates.gaps);
         let force_size = x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let gap_size = gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
         if gap_size.is_nan() || gap_size > 1e10 {
@@ -197,78 +220,117 @@ impl Tracer<'_> {
                 )));
             }
         };
-        let x = local.combine(base, &rate);
+        let x = local.combine(base, (self.drive, load), &rate)?;
+        let mut pieces = pieces;
+        verge.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
+        let rates = self.refined(&local, Rates::new(&self.system, x, rate.factor, load), load, &pieces);
+        self.counts.solves += rates.refinements;
+        let rates = self.anew(rates, load, &pieces);
         for (&c, piece) in verge.iter().zip(&rate.pieces) {
             self.points[c].piece = *piece;
         }
-        let x = self.refined(x, rate.factor, load);
-        let direction = self.completed(x, rate.factor, load);
+        let direction = self.completed(rates, load);
         Some(if falling { Next::Falling(direction) } else { Next::Go(direction) })
     }
 
-    /// The direction solved anew with all pieces in the factorisation, where what was combined from
-    /// responses leaves residuals: close to a collapse the responses of single points cancel.
-    fn refined(&mut self, x: Vec<f64>, factor: f64, load: &Load) -> Vec<f64> {
-        let pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
-        if factor == 0.0 || self.residual(&x, factor, load, &pieces) <= RESIDUAL {
-            return x;
+    /// Refined against all equations in the pieces that were found: responses of single points are not,
+    /// and close to a collapse they cancel.
+    fn refined(&self, local: &Local, rates: Rates, load: &Load, pieces: &[Piece]) -> Rates {
+        let Some(base) = &self.base else { return rates };
+        let still = rates.factor == 0.0;
+        let mut rates = rates;
+        let (mut worst, mut left) = self.left(&rates, load, pieces);
+        for _ in 0..REFINED.1 {
+            if worst <= REFINED.0 && !still {
+                break;
+            }
+            let Some(step) = local.mended(base, pieces, still, &left) else { break };
+            let x = rates.x.iter().zip(&step).map(|(x, s)| x + s).collect();
+            let mut better = Rates::new(&self.system, x, rates.factor, load);
+            let now = self.left(&better, load, pieces);
+            better.refinements = rates.refinements + 1;
+            if !still && now.0 >= worst {
+                rates.refinements += 1;
+                break;
+            }
+            let rounding = now.0 > 0.5 * worst;
+            (rates, (worst, left)) = (better, now);
+            if still || rounding {
+                break;
+            }
+        }
+        rates.worst = worst;
+        rates
+    }
+
+    /// The direction solved anew with all pieces in the factorisation, where refinement leaves residuals.
+    fn anew(&mut self, rates: Rates, load: &Load, pieces: &[Piece]) -> Rates {
+        if rates.factor == 0.0 || rates.worst <= RESIDUAL {
+            return rates;
         }
         self.counts.factorisations += 1;
-        let Some(mut base) = Base::new(&self.system, pieces.clone()) else { return x };
-        let Some(direct) = base.drive(&self.system, self.drive, load) else { return x };
-        let direct: Vec<f64> = direct.iter().map(|v| v * factor).collect();
+        let Some(mut base) = Base::new(&self.system, pieces.to_vec()) else { return rates };
+        let Some(direct) = base.drive(&self.system, self.drive, load) else { return rates };
+        let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
         // Where the matrix is singular the sense of its solution is rounding.
-        let along: f64 = direct.iter().zip(&x).map(|(a, b)| a * b).sum();
-        if along > 0.0 && self.residual(&direct, factor, load, &pieces) < self.residual(&x, factor, load, &pieces) {
+        let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
+        let direct = Rates::new(&self.system, x, rates.factor, load);
+        if along > 0.0 && self.left(&direct, load, pieces).0 < rates.worst {
             self.base = Some(base);
             return direct;
         }
-        x
+        rates
     }
 
-    /// The worst residual of a direction: equilibrium and pieces, relative to the forces and gaps.
-    fn residual(&self, x: &[f64], factor: f64, load: &Load, pieces: &[Piece]) -> f64 {
+    /// The worst residual of a direction relative to the forces and gaps, and what it leaves of the
+    /// equations: the rows of the pieces, then equilibrium.
+    fn left(&self, rates: &Rates, load: &Load, pieces: &[Piece]) -> (f64, Vec<f64>) {
         let nc = self.system.contacts;
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(1e-300, |a: f64, b| a.max(b.abs()));
-        let forces = largest(&mut x[..2 * nc].iter().copied());
-        let motions = largest(&mut x[2 * nc..].iter().copied());
+        let x = &rates.x;
+        let largest = |values: &[f64]| values.iter().fold(1e-300, |a: f64, b| a.max(b.abs()));
+        let forces = largest(&x[..2 * nc]);
+        let motions = largest(&x[2 * nc..]).max(forces);
         let mut worst: f64 = 0.0;
-        for (sum, p) in self.system.resultants(x).iter().zip(load.wrench.iter().flatten()) {
-            worst = worst.max((sum + factor * p).abs() / forces);
-        }
-        let gaps = self.system.gaps(x);
+        let mut left = Vec::with_capacity(x.len());
         for (c, piece) in pieces.iter().enumerate() {
-            let gap = [0, 1].map(|i| gaps[c][i] + factor * load.gap[c][i]);
-            let force = [x[2 * c], x[2 * c + 1]];
-            let own = match piece {
-                Piece::Stick => gap[0].abs().max(gap[1].abs()) / motions.max(forces),
-                Piece::Free | Piece::Corner(..) => force[0].abs().max(force[1].abs()) / forces,
-                Piece::Facet(f) => match &self.system.facets[c] {
-                    Some(facets) => dot(facets[*f].normal, force).abs() / forces,
-                    None => 0.0,
+            let (force, gap) = ([x[2 * c], x[2 * c + 1]], rates.gaps[c]);
+            let (pair, sizes) = match piece {
+                Piece::Stick => (gap, [motions; 2]),
+                Piece::Free | Piece::Corner(..) => (force, [forces; 2]),
+                Piece::Facet(_) => match rows(&self.system, c, *piece) {
+                    Some([yields, across]) => (
+                        [yields[0] * force[0] + yields[1] * force[1], across[2] * gap[0] + across[3] * gap[1]],
+                        [forces, motions],
+                    ),
+                    None => ([0.0; 2], [1.0; 2]),
                 },
             };
-            worst = worst.max(own);
+            worst = worst.max(pair[0].abs() / sizes[0]).max(pair[1].abs() / sizes[1]);
+            left.extend([-pair[0], -pair[1]]);
         }
-        worst
+        for (sum, p) in self.system.resultants(x).iter().zip(load.wrench.iter().flatten()) {
+            let rest = sum + rates.factor * p;
+            worst = worst.max(rest.abs() / forces);
+            left.push(-rest);
+        }
+        (worst, left)
     }
 
     /// The direction with gaps of all points; those of settled points are made exact.
-    fn completed(&mut self, mut x: Vec<f64>, factor: f64, load: &Load) -> Direction {
-        let mut gaps = self.system.gaps(&x);
+    fn completed(&mut self, rates: Rates, load: &Load) -> Direction {
+        let Rates { mut x, mut gaps, mut factor, .. } = rates;
         // In a mechanism forces and λ stand still; what is left of them beside the motion is rounding.
         let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let forces = 2 * self.system.contacts;
-        let mut factor = factor;
         let stiffest = self.points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
         let still = if factor == 0.0 { 100.0 * MECHANISM * stiffest } else { MECHANISM };
         if largest(&x[..forces]) < still * largest(&x[forces..]) {
             factor = 0.0;
             x[..forces].fill(0.0);
-            gaps = self.system.gaps(&x);
+            let still = Rates::new(&self.system, x, factor, load);
+            (x, gaps) = (still.x, still.gaps);
         }
         for (c, gap) in gaps.iter_mut().enumerate() {
-            (0..2).for_each(|i| gap[i] += factor * load.gap[c][i]);
             if let Some(piece) = self.points[c].settled() {
                 self.points[c].piece = piece;
             }
@@ -287,13 +349,14 @@ impl Tracer<'_> {
             self.counts.factorisations += 1;
             let mut base = Base::new(&self.system, pieces.clone())?;
             let x = base.drive(&self.system, self.drive, load)?.clone();
-            let mut changes = self.leaving(&x, load, verge, &pieces)?;
+            let rates = Rates::new(&self.system, x, 1.0, load);
+            let mut changes = self.leaving(&rates, verge, &pieces)?;
             if changes.is_empty() {
                 for (c, piece) in pieces.into_iter().enumerate() {
                     self.points[c].piece = piece;
                 }
                 self.base = Some(base);
-                return Some(self.completed(x, 1.0, load));
+                return Some(self.completed(rates, load));
             }
             if seen.contains(&pieces) || round > 40 {
                 changes.sort_by_key(|change| change.1);

@@ -1,7 +1,7 @@
 //! The rate problem reduced to some points on a factorisation: ṙ = S ġ + s λ̇ over those whose piece
 //! is open, while all others keep theirs, whichever the factorised matrix has for them.
 
-use super::base::Base;
+use super::base::{Base, rows};
 use super::point::Point;
 use super::rate::{Piece, Rate, RateProblem};
 use super::system::{Load, System};
@@ -12,10 +12,23 @@ use nalgebra::{DMatrix, DVector};
 pub struct Local<'a> {
     /// Over the points whose piece is open.
     pub rate: RateProblem<'a>,
+    system: &'a System,
     /// Those points, then others whose piece is not the factorised one.
     points: Vec<usize>,
+    /// Number of points whose piece is open.
+    open: usize,
+    /// (ṙ, ġ) of all of them per ε and, last, λ̇.
+    response: DMatrix<f64>,
     /// ε of all of them per ġ of the open points and, last, λ̇.
     epsilon: DMatrix<f64>,
+}
+
+/// Rows that fix ε of points times what they see.
+fn picked(picks: &[[[f64; 4]; 2]], seen: &DMatrix<f64>, columns: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(2 * picks.len(), columns, |i, j| {
+        let (k, pick) = (i / 2, &picks[i / 2][i % 2]);
+        (0..4).filter(|t| pick[*t] != 0.0).map(|t| pick[t] * seen[(4 * k + t, j)]).sum()
+    })
 }
 
 impl<'a> Local<'a> {
@@ -29,43 +42,24 @@ impl<'a> Local<'a> {
         solves: &mut u64,
     ) -> Option<Self> {
         let mut points = open.to_vec();
-        let mut is_open = vec![false; pieces.len()];
-        open.iter().for_each(|c| is_open[*c] = true);
-        points.extend((0..pieces.len()).filter(|c| !is_open[*c] && pieces[*c] != base.pieces[*c]));
+        let changed = (0..pieces.len()).filter(|c| pieces[*c] != base.pieces[*c]);
+        points.extend(changed.filter(|c| !open.contains(c)));
         let (n, m) = (points.len(), open.len());
         base.respond(system, &points, solves)?;
         base.drive(system, drive, load)?;
         let response = base.local(system, &points, load);
         // Rows that fix ε: ġ of the open points, the piece of the others.
-        let mut rows = DMatrix::zeros(2 * n, 2 * n);
-        let mut driven = DVector::zeros(2 * n);
-        for (k, &c) in points.iter().enumerate() {
-            let pick: [[f64; 4]; 2] = match pieces[c] {
-                _ if k < m => [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
-                Piece::Stick => [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
-                Piece::Facet(f) => {
-                    let facet = &system.facets[c].as_ref()?[f];
-                    [[facet.normal[0], facet.normal[1], 0.0, 0.0], [0.0, 0.0, -facet.flow[1], facet.flow[0]]]
-                }
-                Piece::Free | Piece::Corner(..) => [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
-            };
-            for (i, pick) in pick.iter().enumerate() {
-                for (j, p) in pick.iter().enumerate().filter(|(_, p)| **p != 0.0) {
-                    for column in 0..2 * n {
-                        rows[(2 * k + i, column)] += p * response[(4 * k + j, column)];
-                    }
-                    driven[2 * k + i] += p * response[(4 * k + j, 2 * n)];
-                }
-            }
-        }
+        let piece = |(k, c): (usize, &usize)| rows(system, *c, if k < m { Piece::Stick } else { pieces[*c] });
+        let picks: Vec<[[f64; 4]; 2]> = points.iter().enumerate().map(piece).collect::<Option<_>>()?;
+        let fixed = picked(&picks, &response, 2 * n + 1);
         let mut right = DMatrix::zeros(2 * n, 2 * m + 1);
         (0..2 * m).for_each(|i| right[(i, i)] = 1.0);
-        right.set_column(2 * m, &-driven);
-        let epsilon = if n == 0 { right } else { rows.lu().solve(&right)? };
+        right.set_column(2 * m, &-fixed.column(2 * n));
+        let epsilon = if n == 0 { right } else { fixed.columns(0, 2 * n).into_owned().lu().solve(&right)? };
         if epsilon.iter().any(|v| !v.is_finite()) {
             return None;
         }
-        let responses = response.columns(0, 2 * n) * &epsilon;
+        let responses = response.view((0, 0), (4 * m, 2 * n)) * &epsilon;
         let row = |i: usize| 4 * (i / 2) + i % 2;
         let rate = RateProblem {
             points: Tracer::verges(system, all, open),
@@ -73,14 +67,43 @@ impl<'a> Local<'a> {
             drive: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
         };
-        Some(Local { rate, points, epsilon })
+        Some(Local { rate, system, points, open: m, response, epsilon })
     }
 
-    /// All unknowns of a solution.
-    pub fn combine(&self, base: &Base, rate: &Rate) -> Vec<f64> {
+    /// All unknowns of a solution. `None` where the response to the load is not known.
+    pub fn combine(&self, base: &mut Base, (drive, load): (usize, &Load), rate: &Rate) -> Option<Vec<f64>> {
         let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
         gaps.push(rate.factor);
         let epsilon = &self.epsilon * DVector::from_vec(gaps);
-        base.combine(&self.points, epsilon.as_slice(), rate.factor)
+        let mut x = if self.points.is_empty() {
+            vec![0.0; self.system.size()]
+        } else {
+            base.combine(&self.points, epsilon.as_slice(), base.nothing())
+        };
+        let drive = base.drive(self.system, drive, load)?;
+        x.iter_mut().zip(drive).for_each(|(x, d)| *x += rate.factor * d);
+        Some(x)
+    }
+
+    /// What takes away what a direction leaves of the equations: one step of refinement with the points'
+    /// `pieces`, or, where these are `still` (a mechanism: with its pieces nothing holds it), with the gaps
+    /// of the open points held. `None` where linear algebra fails.
+    pub fn mended(&self, base: &Base, pieces: &[Piece], still: bool, left: &[f64]) -> Option<Vec<f64>> {
+        let n = self.points.len();
+        let mut right = left.to_vec();
+        self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
+        let y = base.kept(&right)?;
+        let held = |k: usize| still && k < self.open;
+        let piece = |(k, c): (usize, &usize)| rows(self.system, *c, if held(k) { Piece::Stick } else { pieces[*c] });
+        let picks: Vec<[[f64; 4]; 2]> = self.points.iter().enumerate().map(piece).collect::<Option<_>>()?;
+        let seen = base.seen(self.system, &self.points, |c| [right[2 * c], right[2 * c + 1]], &y);
+        let wanted = DVector::from_fn(2 * n, |i, _| {
+            let (k, c) = (i / 2, self.points[i / 2]);
+            let now: f64 = (0..4).map(|t| picks[k][i % 2][t] * seen[k][t]).sum();
+            if held(k) { -now } else { left[2 * c + i % 2] - now }
+        });
+        let epsilon = if n == 0 { wanted } else { picked(&picks, &self.response, 2 * n).lu().solve(&wanted)? };
+        let step = base.combine(&self.points, epsilon.as_slice(), (right, y));
+        step.iter().all(|v| v.is_finite()).then_some(step)
     }
 }

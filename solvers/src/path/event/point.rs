@@ -26,7 +26,7 @@ pub struct Point {
 impl Point {
     /// A contact point before any load.
     pub fn untouched(system: &System, c: usize) -> Self {
-        let diagonal = |row: usize| system.flexibility[row].iter().find(|e| e.0 == row).map_or(0.0, |e| e.1);
+        let diagonal = |row: usize| system.flexibility.row(row).iter().find(|e| e.0 == row).map_or(0.0, |e| e.1);
         let flexibility = diagonal(2 * c);
         let stiffness = if flexibility > 0.0 { 1.0 / flexibility } else { 1.0 };
         let closed = Point {

@@ -15,13 +15,25 @@ impl Tracer<'_> {
     /// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
     /// closing) of which points they are.
     pub fn next_event(&self, direction: &Direction) -> (f64, Vec<(usize, usize)>) {
-        let mut all: Vec<(f64, f64, usize, usize)> = Vec::new();
+        // A rate that is rounding brings no event.
+        let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let gap_size = direction.gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let (of_forces, share) = if direction.factor == 0.0 { (size.max(gap_size), MECHANISM) } else { (size, 1e-13) };
+        let (least_force, least_gap) = (share * of_forces, share * gap_size);
+        let mut step = f64::INFINITY;
+        let mut hits: Vec<(f64, f64, usize, usize)> = Vec::new();
+        let mut meet = |when: f64, speed: f64, c: usize, what: usize| {
+            if (when - step) * speed <= SAME {
+                hits.push((when, speed, c, what));
+            }
+            step = step.min(when);
+        };
         for (c, point) in self.points.iter().enumerate() {
             let Some(facets) = &self.system.facets[c] else { continue };
             if point.open() {
                 let rate = self.opening_rate(c, direction);
-                if rate < 0.0 {
-                    all.push((point.opening / -rate, rate, c, usize::MAX));
+                if -rate > least_gap {
+                    meet(point.opening / -rate, -rate, c, usize::MAX);
                 }
                 if point.apex {
                     continue;
@@ -29,30 +41,15 @@ impl Tracer<'_> {
             }
             let force = self.force(c);
             let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
-            for (f, facet) in facets.iter().enumerate().filter(|(f, _)| !point.active.contains(f)) {
+            for (f, facet) in facets.iter().enumerate() {
                 let falls = dot(facet.normal, rate);
-                if falls > 0.0 {
-                    all.push((facet.slack(force).max(0.0) / falls, -falls, c, f));
+                if falls > least_force && !point.active.contains(&f) {
+                    meet(facet.slack(force).max(0.0) / falls, falls, c, f);
                 }
             }
         }
-        let step = all.iter().map(|e| e.0).fold(f64::INFINITY, f64::min);
-        // A rate that is rounding brings no event.
-        let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let gap_size = direction.gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let real = |e: &&(f64, f64, usize, usize)| {
-            let own = if e.3 == usize::MAX {
-                gap_size
-            } else if direction.factor == 0.0 {
-                size.max(gap_size)
-            } else {
-                size
-            };
-            -e.1 > if direction.factor == 0.0 { MECHANISM } else { 1e-13 } * own
-        };
-        let step = all.iter().filter(real).map(|e| e.0).fold(f64::INFINITY, f64::min).max(step);
-        let hits = all.iter().filter(real).filter(|e| (e.0 - step) * -e.1 <= SAME).map(|e| (e.2, e.3)).collect();
-        (step, hits)
+        let same = |e: &&(f64, f64, usize, usize)| (e.0 - step) * e.1 <= SAME;
+        (step, hits.iter().filter(same).map(|e| (e.2, e.3)).collect())
     }
 
     /// Rate of the opening above the dilated surface.
@@ -127,6 +124,9 @@ impl Tracer<'_> {
             let was_open = self.points[c].open();
             let was_hit = std::mem::take(&mut self.points[c].hit);
             let point = &mut self.points[c];
+            if !was_open && point.piece == Piece::Stick && point.active.is_empty() {
+                continue;
+            }
             point.opening = if was_open || matches!(point.piece, Piece::Free | Piece::Facet(_) | Piece::Corner(..)) {
                 (point.opening + step * opening_rate).max(0.0)
             } else {

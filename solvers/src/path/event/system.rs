@@ -3,6 +3,7 @@
 //!
 //! Unknowns x = (r, q): (r_n, r_t) of every contact point, then (u_x, u_y, θ L) of every free body.
 
+use crate::path::rows::Rows;
 use voussoir_core::interface::{Facet, FacetMode};
 use voussoir_core::path::{ContactLaw, Loading, PathProblem};
 
@@ -38,6 +39,8 @@ pub struct Load {
     pub wrench: Vec<[f64; 3]>,
     /// Gap that it opens at each contact point, per unit of λ.
     pub gap: Vec<[f64; 2]>,
+    /// Whether it opens any.
+    pub opens: bool,
 }
 
 /// The scaled problem.
@@ -54,9 +57,9 @@ pub struct System {
     /// Initial gaps.
     pub gap: Vec<f64>,
     /// Rows of C: (column, value) for 2c and 2c + 1.
-    pub flexibility: Vec<Vec<(usize, f64)>>,
+    pub flexibility: Rows,
     /// Rows of G: (index of q from 0, value).
-    pub kinematics: Vec<Vec<(usize, f64)>>,
+    pub kinematics: Rows,
     /// Unit of force \[N\].
     pub force_unit: f64,
     /// Unit of displacement \[m\].
@@ -168,6 +171,7 @@ impl System {
             })
             .collect();
         let gap = problem.contacts.iter().map(|c| c.gap / displacement_unit).collect();
+        let (flexibility, kinematics) = (Rows::collect(&flexibility), Rows::collect(&kinematics));
         System { contacts, free, bodies, facets, gap, flexibility, kinematics, force_unit, displacement_unit, length }
     }
 
@@ -185,25 +189,24 @@ impl System {
                 wrench[*free] = [x / self.force_unit, y / self.force_unit, moment / (self.force_unit * self.length)];
             }
         }
-        let gap = problem.loading_gaps(loading).into_iter().map(|g| g.map(|g| g / self.displacement_unit)).collect();
-        Load { wrench, gap }
+        let gap: Vec<[f64; 2]> =
+            problem.loading_gaps(loading).into_iter().map(|g| g.map(|g| g / self.displacement_unit)).collect();
+        let opens = gap.iter().flatten().any(|g| *g != 0.0);
+        Load { wrench, gap, opens }
     }
 
     /// Gaps that forces and motions open: C r + G q, for a vector of all unknowns.
     pub fn gaps(&self, x: &[f64]) -> Vec<[f64; 2]> {
         let (r, q) = x.split_at(2 * self.contacts);
-        let row = |i: usize| {
-            self.flexibility[i].iter().map(|&(j, v)| v * r[j]).sum::<f64>()
-                + self.kinematics[i].iter().map(|&(j, v)| v * q[j]).sum::<f64>()
-        };
+        let row = |i: usize| self.flexibility.along(i, r) + self.kinematics.along(i, q);
         (0..self.contacts).map(|c| [row(2 * c), row(2 * c + 1)]).collect()
     }
 
     /// Gᵀ r: generalised forces of contact forces on the free bodies.
     pub fn resultants(&self, x: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; 3 * self.bodies];
-        for (row, force) in self.kinematics.iter().zip(x) {
-            for &(j, v) in row {
+        for (i, force) in x[..2 * self.contacts].iter().enumerate() {
+            for &(j, v) in self.kinematics.row(i) {
                 sum[j] += v * force;
             }
         }

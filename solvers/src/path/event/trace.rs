@@ -8,7 +8,7 @@ use super::system::{Load, System};
 use super::unique::unique;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
-use voussoir_core::path::{DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{Drive, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
 /// Follows one problem.
 pub struct Tracer<'a> {
@@ -30,8 +30,8 @@ pub struct Tracer<'a> {
     pub(super) notes: Vec<String>,
     limit_point: Option<PathState>,
     pub(super) associated: bool,
-    /// Gaps that each drive's loading opens per unit of its factor \[m\].
-    loading_gaps: Vec<Vec<[f64; 2]>>,
+    /// Gaps that each drive's loading opens per unit of its factor \[m\], where it opens any.
+    loading_gaps: Vec<Option<Vec<[f64; 2]>>>,
 }
 
 /// Work done.
@@ -49,10 +49,14 @@ impl<'a> Tracer<'a> {
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
         let system = System::new(problem);
         let points = (0..system.contacts).map(|c| Point::untouched(&system, c)).collect();
+        let opened = |drive: &Drive| {
+            let gaps = problem.loading_gaps(&drive.loading);
+            gaps.iter().flatten().any(|g| *g != 0.0).then_some(gaps)
+        };
         let associated = problem.facets.iter().all(|f| voussoir_core::interface::is_associated(f));
         Tracer {
             x: vec![0.0; system.size()],
-            loading_gaps: problem.drives.iter().map(|d| problem.loading_gaps(&d.loading)).collect(),
+            loading_gaps: problem.drives.iter().map(opened).collect(),
             points,
             base: None,
             drive: 0,
@@ -210,7 +214,7 @@ impl<'a> Tracer<'a> {
             g.iter_mut().for_each(|g| *g *= self.system.displacement_unit);
         }
         for (opened, factor) in self.loading_gaps.iter().zip(self.problem.applied(self.drive, self.factor)) {
-            if factor != 0.0 {
+            if let (Some(opened), true) = (opened, factor != 0.0) {
                 gap.iter_mut().flatten().zip(opened.iter().flatten()).for_each(|(g, o)| *g += factor * o);
             }
         }

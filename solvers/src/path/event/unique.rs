@@ -82,7 +82,7 @@ fn constraints(system: &System, c: usize, flows: Option<Vec<[f64; 2]>>) -> Vec<V
     let row = |n: [f64; 2]| {
         let mut row = vec![0.0; 3 * system.bodies];
         for (i, n) in n.into_iter().enumerate() {
-            system.kinematics[2 * c + i].iter().for_each(|&(j, v)| row[j] += n * v);
+            system.kinematics.row(2 * c + i).iter().for_each(|&(j, v)| row[j] += n * v);
         }
         row
     };

@@ -22,9 +22,9 @@ impl Tracer<'_, '_> {
     }
 
     /// Keeps the first state on a plateau as the limit point.
-    pub(super) fn plateau(&mut self, next: &State, rate: &Rate, direction: f64) {
+    pub(super) fn plateau(&mut self, next: &State, rate: &Rate) {
         if self.peak.is_none() && self.model.problem.yields() && self.stands_still(next) {
-            let peak = self.peak_at(next.clone(), rate, direction);
+            let peak = self.peak_at(next.clone(), rate);
             self.notes.push(format!("at factor {} blocks flow and the load stands still", peak.factor));
             self.peak = Some(peak);
         }

@@ -256,7 +256,7 @@ impl Tracer<'_, '_> {
                 self.peak = Some(self.peak_at(state, &behind));
             }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
-            self.plateau(&next, &next_rate, direction);
+            self.plateau(&next, &next_rate);
             before_peak_rate = next_rate.factor * direction;
             let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
             let softening = self.model.response_changes(&self.state, &next);

@@ -1,6 +1,7 @@
 //! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
+mod border;
 mod claims;
 mod ends;
 mod flowing;

@@ -6,21 +6,25 @@ use super::model::{Control, Model, Rate, Refusal, State};
 
 impl Model<'_> {
     pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
+        self.add(&mut state.force, &mut state.motion, step, share);
+        state.factor += share * step[step.len() - 1] * self.units.factor;
+        self.settle(&mut state.motion, state.factor);
+    }
+
+    /// Adds a share of a solution of the linear equations to forces and motions of the free bodies.
+    fn add(&self, force: &mut [[f64; 2]], motion: &mut [[f64; 3]], step: &[f64], share: f64) {
         let u = self.units;
-        let points = state.force.len();
-        for c in 0..points {
-            (0..2).for_each(|k| state.force[c][k] += share * step[2 * c + k] * u.force);
+        let points = force.len();
+        for (c, force) in force.iter_mut().enumerate() {
+            (0..2).for_each(|k| force[k] += share * step[2 * c + k] * u.force);
         }
-        for body in 0..self.free.len() {
-            if let Some(free) = self.free[body] {
-                for k in 0..3 {
-                    let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-                    state.motion[body][k] += share * step[2 * points + 3 * free + k] * unit;
-                }
+        for (body, motion) in motion.iter_mut().enumerate() {
+            let Some(free) = self.free[body] else { continue };
+            for (k, motion) in motion.iter_mut().enumerate() {
+                let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
+                *motion += share * step[2 * points + 3 * free + k] * unit;
             }
         }
-        state.factor += share * step[step.len() - 1] * u.factor;
-        self.settle(&mut state.motion, state.factor);
     }
 
     /// Regimes that the present forces and gaps ask for.
@@ -244,24 +248,11 @@ impl Model<'_> {
 
     /// The rate of a solution of the linear equations.
     pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
-        let mut zero = State {
-            force: vec![[0.0; 2]; state.force.len()],
-            motion: vec![[0.0; 3]; state.motion.len()],
-            factor: 0.0,
-            gap: vec![[0.0; 2]; state.gap.len()],
-            regime: Vec::new(),
-            slip: Vec::new(),
-            answers: Default::default(),
-            blocks: Vec::new(),
-        };
-        self.apply(&mut zero, x, 1.0);
-        let factor = zero.factor;
-        let mut motion = vec![[0.0; 3]; state.motion.len()];
+        let (mut force, mut motion) = (vec![[0.0; 2]; state.force.len()], vec![[0.0; 3]; state.motion.len()]);
+        self.add(&mut force, &mut motion, x, 1.0);
+        let factor = x[x.len() - 1] * self.units.factor;
         for (body, settlement) in &self.loaded.growing.settlements {
             (0..3).for_each(|k| motion[*body][k] += factor * settlement[k]);
-        }
-        for body in (0..motion.len()).filter(|b| self.free[*b].is_some()) {
-            motion[body] = zero.motion[body];
         }
         let points = state.gap.len();
         let mut gap = vec![[0.0; 2]; points];
@@ -273,6 +264,6 @@ impl Model<'_> {
         for (c, gap) in gap.iter_mut().enumerate() {
             (0..2).for_each(|k| gap[k] += curvature.factor[2 * c + k] * factor);
         }
-        Rate { force: zero.force, motion, factor, gap }
+        Rate { force, motion, factor, gap }
     }
 }

@@ -12,12 +12,14 @@
 //! in every body and in every yielding contact. That makes it quasi-definite (Vanderbei 1995, SIAM J.
 //! Optim. 5) where regimes repeat a condition or leave a motion free; iterative refinement against
 //! the true matrix removes the shift from the answer. Where refinement does not converge, the
-//! regimes have no solution, and the step is refused.
+//! regimes have no solution, and the step is refused. How it is factorised: see `border` and
+//! [`condensed`](crate::path::condensed).
 
+use super::border::Bordered;
 use super::kinematics::{Curvature, Slopes};
 use super::law::Regime;
 use super::model::{Control, Model, Rate, State, load_size};
-use crate::lu::SparseLu;
+use crate::lu::Entries;
 use voussoir_core::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
@@ -25,8 +27,8 @@ use voussoir_core::path::{Constraint, Increment};
 pub(super) const SHIFT: f64 = 1e-9;
 
 impl Model<'_> {
-    /// Gradient of a constraint over the scaled unknowns.
-    pub(super) fn gradient(
+    /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
+    pub(super) fn control_row(
         &self,
         start: &State,
         state: &State,
@@ -100,6 +102,13 @@ impl Model<'_> {
             by_gap.iter_mut().zip(&local.by_gap).for_each(|(w, local)| *w += local);
         }
         self.add_gaps(&mut row, &by_gap, curvature);
+        if matches!(control, Control::Spring { .. }) {
+            for (i, value) in self.works(curvature) {
+                if let Some((column, own)) = self.column(i) {
+                    row[column] += value * own;
+                }
+            }
+        }
         row
     }
 
@@ -142,61 +151,32 @@ impl Model<'_> {
         }
     }
 
-    /// The row of a control over the scaled unknowns, at a state.
-    pub(super) fn control_row(
-        &self,
-        start: &State,
-        state: &State,
-        control: &Control,
-        constraint: &Constraint,
-        curvature: &Curvature,
-    ) -> Vec<f64> {
-        let mut row = self.gradient(start, state, control, constraint, curvature);
-        if matches!(control, Control::Spring { .. }) {
-            let unit = self.units.factor / (self.units.force * self.units.displacement);
-            for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-                if let Some((column, own)) = self.column(i) {
-                    row[column] += unit * value * own;
-                }
-            }
-        }
-        row
+    /// Derivatives of ∂Π/∂λ in units by force and motion, where they are not zero: global index and value.
+    fn works<'m>(&self, curvature: &'m Curvature) -> impl Iterator<Item = (usize, f64)> + use<'m> {
+        let unit = self.units.factor / (self.units.force * self.units.displacement);
+        curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0).map(move |(i, value)| (i, unit * value))
     }
 
-    /// ∂Π/∂λ between two states, in units: p·Δq + g_p·Δr (small displacements).
-    fn work_between(&self, start: &State, state: &State) -> f64 {
+    /// ∂Π/∂λ of differences of forces and motions, in units: p·Δq + g_p·Δr (small displacements).
+    fn work_of(&self, force: impl Fn(usize, usize) -> f64, motion: impl Fn(usize, usize) -> f64) -> f64 {
         let Some(curvature) = &self.constant else { return 0.0 };
-        let points = state.gap.len();
-        let mut sum = 0.0;
-        for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-            let by = if i < 2 * points {
-                state.force[i / 2][i % 2] - start.force[i / 2][i % 2]
-            } else {
-                let (body, k) = ((i - 2 * points) / 3, (i - 2 * points) % 3);
-                if self.free[body].is_none() {
-                    continue;
-                }
-                state.motion[body][k] - start.motion[body][k]
-            };
-            sum += value * by;
-        }
-        sum * self.units.factor / (self.units.force * self.units.displacement)
+        let forces = 2 * self.problem.contacts.len();
+        let by = |i: usize| match i.checked_sub(forces) {
+            None => force(i / 2, i % 2),
+            Some(k) if self.free[k / 3].is_some() => motion(k / 3, k % 3),
+            Some(_) => 0.0,
+        };
+        self.works(curvature).map(|(i, value)| value * by(i)).sum()
+    }
+
+    /// ∂Π/∂λ between two states, in units.
+    fn work_between(&self, start: &State, state: &State) -> f64 {
+        self.work_of(|c, k| state.force[c][k] - start.force[c][k], |b, k| state.motion[b][k] - start.motion[b][k])
     }
 
     /// ∂Π/∂λ along a rate, in units.
     pub(super) fn work_along(&self, rate: &Rate) -> f64 {
-        let none = State {
-            force: vec![[0.0; 2]; rate.force.len()],
-            motion: vec![[0.0; 3]; rate.motion.len()],
-            factor: 0.0,
-            gap: vec![[0.0; 2]; rate.gap.len()],
-            regime: Vec::new(),
-            slip: Vec::new(),
-            answers: Default::default(),
-            blocks: Vec::new(),
-        };
-        let moved = State { force: rate.force.clone(), motion: rate.motion.clone(), ..none.clone() };
-        self.work_between(&none, &moved)
+        self.work_of(|c, k| rate.force[c][k], |b, k| rate.motion[b][k])
     }
 
     /// Residual of the regimes' equations in units.
@@ -252,8 +232,8 @@ impl Model<'_> {
         let (points, size) = (regimes.len(), self.size());
         let last = size - 1;
         let rows: Vec<_> = (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
-        let mut entries: Vec<(usize, usize, f64)> = Vec::with_capacity(curvature.entries.len() + 4 * size);
-        let mut shifts: Vec<(usize, usize, f64)> = Vec::new();
+        let mut entries: Entries = Vec::with_capacity(curvature.entries.len() + 4 * size);
+        let mut shifts: Entries = Vec::new();
         let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
         let mut place = |i: usize, column: usize, value: f64| {
             // `value` in SI per scaled unknown.
@@ -320,15 +300,8 @@ impl Model<'_> {
         for free in 2 * points..last {
             shifts.push((free, free, -SHIFT));
         }
-        for (j, value) in row.iter().enumerate() {
-            if *value != 0.0 {
-                entries.push((last, j, *value));
-            }
-        }
         self.count("factorisations", 1);
-        let mut shifted = entries.clone();
-        shifted.extend(shifts);
-        let factors = SparseLu::new(size, &shifted)?;
+        let bordered = Bordered::new(size, points, entries, &shifts, row)?;
         let mut x = vec![0.0; size];
         let mut rest = right.to_vec();
         let mut before = f64::INFINITY;
@@ -339,12 +312,9 @@ impl Model<'_> {
         }
         let mut best = x.clone();
         for _ in 0..30 {
-            let step = factors.solve(&[rest], 0)?.swap_remove(0);
+            let step = bordered.apply(&rest)?;
             x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-            rest = right.to_vec();
-            for &(i, j, value) in &entries {
-                rest[i] -= value * x[j];
-            }
+            rest = bordered.left(right, &x);
             let now = norm(&rest);
             if now < before {
                 best.copy_from_slice(&x);

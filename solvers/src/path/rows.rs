@@ -1,0 +1,55 @@
+//! A sparse matrix by its rows, for products with dense vectors.
+
+use crate::lu::Entries;
+
+/// Rows of (column, value); repeated entries stay apart and add up in products.
+#[derive(Debug, Clone, Default)]
+pub(in crate::path) struct Rows {
+    start: Vec<usize>,
+    entries: Vec<(usize, f64)>,
+}
+
+impl Rows {
+    /// Entries sorted by row, otherwise in their order.
+    pub fn new(rows: usize, unsorted: &Entries) -> Self {
+        let mut start = vec![0; rows + 1];
+        for entry in unsorted {
+            start[entry.0 + 1] += 1;
+        }
+        for i in 0..rows {
+            start[i + 1] += start[i];
+        }
+        let mut next = start.clone();
+        let mut entries = vec![(0, 0.0); unsorted.len()];
+        for &(i, j, value) in unsorted {
+            entries[next[i]] = (j, value);
+            next[i] += 1;
+        }
+        Rows { start, entries }
+    }
+
+    /// From rows one by one.
+    pub fn collect(rows: &[Vec<(usize, f64)>]) -> Self {
+        let mut all = Rows { start: vec![0], entries: Vec::with_capacity(rows.iter().map(Vec::len).sum()) };
+        for row in rows {
+            all.entries.extend(row);
+            all.start.push(all.entries.len());
+        }
+        all
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// One row.
+    pub fn row(&self, i: usize) -> &[(usize, f64)] {
+        &self.entries[self.start[i]..self.start[i + 1]]
+    }
+
+    /// Row i times a vector.
+    pub fn along(&self, i: usize, x: &[f64]) -> f64 {
+        self.row(i).iter().map(|&(j, value)| value * x[j]).sum()
+    }
+}
