@@ -12,6 +12,7 @@ use crate::geometry::{Vec2, cross};
 use crate::interface::{Facet, FacetMode};
 use crate::limit::Status;
 use crate::mechanism::{CentroidVelocity, Jump, jumps};
+use crate::product_proof::{LowerProof, LowerProofKind, proved};
 use crate::strength::YieldPolygon;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -64,8 +65,11 @@ pub struct Claim<'a> {
 /// What is claimed besides where joints flow as their laws say.
 #[derive(Debug, Clone, Copy)]
 pub struct OwnFlowClaim<'a> {
-    /// No such factor is less. An exhaustive search is no certificate: only its order is checked.
+    /// No such factor is less.
     pub proved_lower: Option<f64>,
+    /// What that rests on. Multipliers of products are checked; of an exhaustive search, which is no
+    /// certificate, only the order.
+    pub lower_proof: Option<&'a LowerProof>,
     /// The greatest factor of associated flow.
     pub associated_factor: Option<f64>,
     /// The motion that proves it.
@@ -357,6 +361,21 @@ impl Check<'_> {
         let lower = own.proved_lower.unwrap_or(claim.start);
         if !(claim.start <= lower && lower <= factor) {
             self.fail(format!("the lower bound {lower} does not lie between the start and the factor"));
+        }
+        if let Some(proof) = own.lower_proof {
+            let strongest = field.iter().map(|c| c.force[0].abs().max(c.force[1].abs())).fold(0.0, f64::max);
+            let shown = match proof.by {
+                LowerProofKind::Search => Ok(lower),
+                LowerProofKind::Start => Ok(claim.start),
+                LowerProofKind::Associated => Ok(own.associated_factor.unwrap_or(claim.start)),
+                LowerProofKind::Products => {
+                    proved(self.assembly, self.loads, &proof.steps, [claim.start, factor], [largest, strongest])
+                }
+            };
+            match shown {
+                Ok(shown) => _ = self.residual("lower_bound", ((lower - shown) / unit).max(0.0), gap),
+                Err(why) => self.fail(format!("the lower bound: {why}")),
+            }
         }
         (admissible && scaled && flows && complementary).then_some([lower, factor])
     }

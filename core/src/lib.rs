@@ -22,6 +22,7 @@ pub mod lu;
 pub mod material;
 pub mod mechanism;
 pub mod path;
+pub mod product_proof;
 pub mod scene;
 pub mod schema;
 pub mod sparse;

@@ -9,6 +9,7 @@
 use crate::assembly::{Assembly, StageLoads, Wrenches};
 use crate::geometry::{Vec2, cross};
 use crate::interface::is_associated;
+use crate::product_proof::LowerProof;
 use crate::strength::{JointStrength, integrate};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -205,8 +206,10 @@ pub struct LimitAnswer {
 /// and field exist together.
 #[derive(Debug, Clone, Default)]
 pub struct OwnFlow {
-    /// No such factor is less than this, by an exhaustive search.
+    /// No such factor is less than this.
     pub proved_lower: Option<f64>,
+    /// What that rests on.
+    pub lower_proof: Option<LowerProof>,
     /// The greatest factor of associated flow, above which nothing can be.
     pub associated_factor: Option<f64>,
     /// Its mechanism, scaled as `motion`, which proves it.

@@ -156,6 +156,7 @@ pub(crate) fn stalled(why: String) -> CaseResult {
         bounds: None,
         associated_load_factor: None,
         associated_motion: None,
+        lower_proof: None,
         feasible_interval: None,
         flow_read_as: None,
         solver: String::new(),
@@ -291,6 +292,7 @@ fn proven(
         feasible_interval: solved.feasible_interval,
         own_flow: own.map(|own| OwnFlowClaim {
             proved_lower: own.proved_lower,
+            lower_proof: own.lower_proof.as_ref(),
             associated_factor: own.associated_factor,
             associated_motion: associated_motion.as_deref(),
         }),
@@ -315,6 +317,7 @@ fn proven(
         ray: ray.as_deref().map(field_entries),
         motion: motion.map(|motion| motion_entries(assembly, motion)),
         associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
+        lower_proof: solved.own_flow.and_then(|own| own.lower_proof),
         certificate,
         counters: solved.counters,
         ..stalled_without(notes)

@@ -5,6 +5,7 @@ use voussoir_core::certificate::Certificate;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::mechanism::{Mechanism, MechanismKind};
 use voussoir_core::path::Happening;
+use voussoir_core::product_proof::LowerProof;
 
 /// All results of a study.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -186,6 +187,9 @@ pub struct CaseResult {
     /// Velocities of the mechanism that proves `associated_load_factor`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub associated_motion: Option<Vec<MotionEntry>>,
+    /// What the lower bound rests on where joints flow as their laws say, with what `verify` needs to check it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_proof: Option<LowerProof>,
     /// All factors with an admissible field, where dead load alone has none; `null` ends are infinite.
     pub feasible_interval: Option<[Option<f64>; 2]>,
     /// `"associated"` where a non-associated law was read so.

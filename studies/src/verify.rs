@@ -136,6 +136,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         feasible_interval: interval,
         own_flow: own.then_some(OwnFlowClaim {
             proved_lower: result.bounds.map(|b| b[0]),
+            lower_proof: result.lower_proof.as_ref(),
             associated_factor: result.associated_load_factor,
             associated_motion: associated_motion.as_deref(),
         }),

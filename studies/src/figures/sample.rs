@@ -97,6 +97,7 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
         bounds: None,
         associated_load_factor: None,
         associated_motion: None,
+        lower_proof: None,
         feasible_interval: None,
         flow_read_as: None,
         solver: "limit_chain".into(),

@@ -268,6 +268,7 @@ pub fn associated_bound(answer: &LimitAnswer) -> OwnFlow {
     let collapse = answer.status == Status::Collapse;
     OwnFlow {
         proved_lower: None,
+        lower_proof: None,
         associated_factor: answer.factor.filter(|_| collapse),
         associated_motion: answer.motion.clone().filter(|_| collapse),
     }
