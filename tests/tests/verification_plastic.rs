@@ -320,8 +320,8 @@ fn rotation_and_size_do_not_matter() {
 #[test]
 fn a_column_crushed_through_is_followed() {
     let strength = 29.99250136e6;
-    let followed: [Arc<dyn Continuation>; 3] =
-        [Arc::new(ArcLength::default()), Arc::new(Dissipation::default()), Arc::new(DisplacementControl::default())];
+    let followed: [Arc<dyn Continuation>; 2] =
+        [Arc::new(ArcLength::default()), Arc::new(DisplacementControl::default())];
     for (blocks, order) in [(1, 1), (1, 2), (3, 1)] {
         let mut press = Press { order, plane: "stress", ..Press::new(stone("[[0.0, 10e6]]"), COLLAPSE) };
         if blocks == 3 {
@@ -330,6 +330,7 @@ fn a_column_crushed_through_is_followed() {
         let (height, carried) = (press.top(), strength * 0.1 / LOAD);
         for strategy in &followed {
             let (problem, answer, seen) = traced(&press.study(), &settings(Some(strategy.clone())));
+            println!("{blocks} of order {order}, {strategy:?}: {:?}", answer.counters);
             assert_eq!(answer.status, Status::LimitPoint, "{strategy:?}: {:?}", answer.notes);
             assert_close(answer.factor.expect("a factor"), carried, 1e-8);
             seen.is_certified();
