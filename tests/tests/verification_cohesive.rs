@@ -554,3 +554,37 @@ fn an_arch_keeps_its_peak_under_refinement() {
     }
     assert!(last[0] > 1.4 * 698.0, "{last:?}");
 }
+
+/// Elastic voussoirs (4 × 4 elements) between cohesive joints: as E grows the peak is that of rigid ones. E = 5 GPa costs between
+/// half and all of what joints as soft as joint and voussoir together would, 1/k = 1/k_n + a/E (a the voussoir's length).
+#[test]
+fn elastic_voussoirs_between_cohesive_joints() {
+    let peak = |modulus: Option<f64>, softer: f64| {
+        let joint = bonded(0.2e6, 300.0)
+            .replace("2e10", &format!("{:?}", 2e10 / softer))
+            .replace("8e9", &format!("{:?}", 8e9 / softer));
+        let arch = Arch { joint, voussoirs: 9, ..Arch::default() };
+        let mesh = "[scene.mesh]\nelements = [4, 4]\n[materials.stone]";
+        let mut text = arch.study().replace("[materials.stone]", mesh);
+        if let Some(modulus) = modulus {
+            let elastic = format!("law = \"elastic\"\nyoung_modulus = {modulus:?}\npoisson_ratio = 0.0");
+            text = text.replace("law = \"rigid\"", &elastic);
+        }
+        let settings =
+            PathSettings { stop_displacement: Some(1e-4), stop_factor: None, ..settings(ArcLength::default()) };
+        let (_, answer, _) = traced(&text, &settings);
+        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        answer.factor.expect("a peak")
+    };
+    let rigid = peak(None, 1.0);
+    let stiff = peak(Some(5e11), 1.0);
+    // Radius (s² / 4 + h²) / (2 h) = 5.2047 m inside, half angle asin(4.71 / 5.2047): length of a ninth at mid-height.
+    let radius = (9.42f64 * 9.42 / 4.0 + 2.99 * 2.99) / (2.0 * 2.99);
+    let length = (radius + 0.3) * 2.0 * (4.71 / radius).asin() / 9.0;
+    let soft = peak(Some(5e9), 1.0);
+    let smeared = peak(None, 1.0 + 2e10 * length / 5e9);
+    println!("rigid {rigid}, E 500 GPa {stiff}, E 5 GPa {soft}, smeared {smeared}");
+    assert_close(stiff, rigid, 0.01);
+    let share = (rigid - soft) / (rigid - smeared);
+    assert!(share > 0.5 && share < 1.0 && soft < 0.95 * rigid, "{share} of what softer joints cost");
+}

@@ -59,7 +59,9 @@ fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<
     let answer = NewtonPath {}.trace(&problem, &settings, &mut seen);
     for name in ["path_inner_equilibrium", "path_yield", "path_strength"] {
         let worst = seen.watch.worst[name];
-        assert!(worst <= 1e-8, "{name} is {worst:.2e}");
+        if worst.is_nan() || worst > 1e-8 {
+            return Err(format!("{name} is {worst:.2e}: {:?}, {:?}", answer.factor, answer.notes));
+        }
     }
     let peak = answer.factor.ok_or(format!("{:?}", answer.notes))?;
     let pair = seen.states.windows(2).find(|pair| pair[1].drive == 1 && pair[1].displacement >= AT);
@@ -82,22 +84,24 @@ fn an_arch_that_softens_tends_to_one_peak() {
     println!("{coarse:?} {fine:?}");
     assert_close(coarse.peak[0], fine.peak[0], 0.1);
     assert_close(coarse.lost, fine.lost, 0.2);
+    assert!(fine.crushed > 0.1 && fine.peak[1] < AT, "{fine:?}");
 }
 
-/// The table of docs/crushing.md (TABLE=1; half an hour), with the energy per band, per volume, and without softening.
+/// The table of docs/crushing.md (TABLE=1; half an hour): the energy per band, per volume, without softening, order 2.
 #[test]
 fn table() {
     if std::env::var("TABLE").is_err() {
         return;
     }
-    for elements in [4, 8, 16] {
-        for (reading, p_b) in [("10", 10e6), ("10/3", 10e6 / 3.0)] {
-            let per_volume = 50e3 * 4.0 / elements as f64;
-            let kinds = [("band", Some(50e3)), ("volume", Some(per_volume)), ("none", None)];
-            for (kind, energy) in kinds.into_iter() {
-                println!("p_b {reading}, {elements}, {kind}: {:?}", arch(p_b, elements, 1, energy));
-            }
-            println!("p_b {reading}, {elements} order 2: {:?}", arch(p_b, elements / 2, 2, Some(50e3)));
+    let both = [("10", 10e6), ("10/3", 10e6 / 3.0)];
+    let print = |kind: &str, elements: usize, order: usize, energy: Option<f64>| {
+        for (reading, p_b) in both {
+            let row = arch(p_b, elements, order, energy);
+            println!("{kind}, p_b {reading} MPa, {elements} elements of order {order}: {row:?}");
         }
-    }
+    };
+    [4, 8, 16].into_iter().for_each(|n| print("per band", n, 1, Some(50e3)));
+    [8, 16].into_iter().for_each(|n| print("per volume", n, 1, Some(50e3 * 4.0 / n as f64)));
+    [4, 8].into_iter().for_each(|n| print("does not soften", n, 1, None));
+    [2, 4].into_iter().for_each(|n| print("per band", n, 2, Some(50e3)));
 }

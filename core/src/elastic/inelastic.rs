@@ -18,9 +18,12 @@
 //! Everything is in the shape's own frame with unit area, forces in E × width × size. An isotropic law
 //! gives the same in any frame; states (plastic strains) are in the shape's frame.
 //!
-//! **Characteristic length** of a Gauss point: √A of its element, the width of the band into which
-//! softening localises in a mesh of quadratic elements that are nearly square (Rots 1988, Computational
-//! modeling of concrete fracture, section 5; Feenstra & de Borst 1996, Int. J. Numer. Methods Eng. 39).
+//! **Characteristic length** of a Gauss point: √A of its element (Rots 1988, Computational modeling of concrete
+//! fracture, section 5). What localises is a band one element wide, h∥ along the compression, so that the energy
+//! per area comes out as h∥/√A times the law's: right for nearly square elements. That holds for order 1, whose strain
+//! along the band's normal is constant in the element. With order 2 it is linear and, with Gauss points −, 0, +, the
+//! middle node's equilibrium asks for σ₋ = σ₊ only: one outer point may unload while the other softens and the middle one
+//! follows with half of its strain, and 13/18 of the element take part; so softening is for elements of order 1.
 
 mod linearisation;
 

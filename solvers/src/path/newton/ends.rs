@@ -20,7 +20,9 @@ impl Tracer<'_, '_> {
         let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
         let falls = rate.factor * direction <= 0.0;
-        if !self.strategy.passes_limit_points() && (falls || self.turns_back(rate, direction)) {
+        if !self.strategy.passes_limit_points()
+            && (falls || self.softens_down(rate, direction) || self.turns_back(rate, direction))
+        {
             self.doubted(&self.state.clone(), direction);
             self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
         } else {

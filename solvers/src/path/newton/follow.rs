@@ -236,6 +236,16 @@ impl Tracer<'_, '_> {
             let size = next.factor.abs().max(unit * 1e-3);
             let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
             let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
+            if (fell || falls) && !strategy.passes_limit_points() && !self.model.responses.is_empty() {
+                self.model.count("cutbacks", 1);
+                length *= 0.3;
+                if length < 1e-10 * initial {
+                    let refusal = Refusal { why: "the load falls in the step".into(), restless: Vec::new() };
+                    self.no_step(&refusal, &next_rate, direction);
+                    return Outcome::Ended;
+                }
+                continue;
+            }
             if self.peak.is_none()
                 && self.model.responses.is_empty()
                 && (fell || (falls && before_peak_rate > 0.0))

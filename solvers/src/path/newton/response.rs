@@ -162,6 +162,29 @@ impl Model<'_> {
         [0, 1].map(|k| own[k] * (state.force[contact][k] - area * traction[k]) / self.units.force)
     }
 
+    /// Greatest difference between forces and what the laws say, beyond rounding of the gaps, relative to the greatest
+    /// force: between soft blocks a stiff law turns what is small among motions into a share of the forces.
+    pub fn law_error(&self, state: &State) -> f64 {
+        if self.responses.is_empty() {
+            return 0.0;
+        }
+        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
+        let moved = state.motion.iter().flat_map(|q| &q[..2]).chain(state.gap.iter().flatten());
+        let moved = moved.fold(0.0, |a: f64, x| a.max(x.abs()));
+        // Half of what a certificate allows.
+        let rounding = f64::EPSILON * if self.finite() { 256.0 * self.units.length } else { 32.0 * moved };
+        let mut worst: f64 = 0.0;
+        for c in self.responses.points() {
+            let (point, area) = (&state.answers.points[c], self.problem.contacts[c].area);
+            for k in 0..2 {
+                let stiffness = point.tangent[k][0].abs() + point.tangent[k][1].abs();
+                let off = (state.force[c][k] - area * point.traction[k]).abs() - rounding * area * stiffness;
+                worst = worst.max(off / largest);
+            }
+        }
+        worst
+    }
+
     /// Energy that these laws dissipate in a step \[J\].
     pub fn response_dissipated(&self, state: &State) -> f64 {
         let points = state.answers.points.iter().zip(&self.problem.contacts);

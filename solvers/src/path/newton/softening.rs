@@ -75,8 +75,8 @@ impl Tracer<'_, '_> {
         (ENERGY * whole / lost.max(1e-300)).sqrt()
     }
 
-    /// A step controlled by the gaps of the points that the rate softens. `None` where there are none
-    /// or none is found.
+    /// A step controlled by the gaps of the points that the rate softens. `None` where there are none, none is found, or
+    /// the load falls in it and the strategy does not pass limit points.
     pub(super) fn softened(
         &mut self,
         rate: &Rate,
@@ -84,6 +84,20 @@ impl Tracer<'_, '_> {
         target: f64,
         direction: f64,
     ) -> Option<(State, u64, Local)> {
+        let (from, passes) = (self.state.factor, self.strategy.passes_limit_points());
+        let fits = |factor: f64| (factor - target) * direction <= 0.0 && (passes || (factor - from) * direction > 0.0);
+        self.by_gaps(rate, share, fits)
+    }
+
+    /// Whether the path goes on with a load that falls, in a step controlled by the gaps of the points that soften.
+    pub(super) fn softens_down(&mut self, rate: &Rate, direction: f64) -> bool {
+        let from = self.state.factor;
+        let falls = |factor: f64| (factor - from) * direction < -1e-9 * from.abs();
+        [1e-1, 1e-2, 1e-3, 1e-4, 1e-6].iter().any(|share| self.by_gaps(rate, *share, falls).is_some())
+    }
+
+    /// The first step controlled by gaps that softens and whose factor fits.
+    fn by_gaps(&mut self, rate: &Rate, share: f64, fits: impl Fn(f64) -> bool) -> Option<(State, u64, Local)> {
         if self.model.responses.is_empty() {
             return None;
         }
@@ -96,7 +110,7 @@ impl Tracer<'_, '_> {
             let Ok((next, iterations)) = self.model.newton(&start, ahead.clone(), &local.control(share)) else {
                 continue;
             };
-            if (next.factor - target) * direction <= 0.0 && self.model.response_yields(&next) {
+            if fits(next.factor) && self.model.response_yields(&next) {
                 return Some((next, iterations, local));
             }
         }

@@ -141,10 +141,8 @@ impl Model<'_> {
             if !norm.is_finite() {
                 return Err(Refusal { why: "an iteration left the numbers".into(), restless });
             }
-            // Between elastic blocks a stiff law turns what is left of its gaps into a larger share of the forces.
-            let stagnant = if self.responses.is_empty() { 1e-9 } else { 1e-11 };
-            let settled = norm <= 1e-13 + rounding || (norm <= stagnant + 30.0 * rounding && norm > 0.3 * last_norm);
-            if iteration > 0 && !changed && settled {
+            let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && norm > 0.3 * last_norm);
+            if iteration > 0 && !changed && settled && self.law_error(&state) <= 1e-9 {
                 return Ok((state, iteration));
             }
             last_norm = norm;
