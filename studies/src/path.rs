@@ -11,7 +11,9 @@ use voussoir_core::interface::FlowReading;
 use voussoir_core::limit::Status;
 use voussoir_core::mechanism::{CentroidVelocity, Mechanism, jumps, mechanism, mechanism_above};
 use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
-use voussoir_core::path::{ContactLaw, Displaced, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints};
+use voussoir_core::path::{
+    ContactLaw, Displaced, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints,
+};
 
 /// Whether a residual is within its bound for results; NaN is not, where there is one.
 fn small(name: &str, value: f64) -> bool {

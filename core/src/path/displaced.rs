@@ -31,14 +31,15 @@ impl<'a> Displaced<'a> {
         let forces = problem.forces_on_points(state, finite);
         let bodies = problem.bodies.iter().zip(&forces).enumerate();
         let of = |u: &[f64]| u.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect();
-        let deformation = bodies.map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
-            (None, ..) => Vec::new(),
-            (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
-            (Some(flexibility), ..) => {
-                let flat = DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
-                of((&**flexibility * flat).as_slice())
-            }
-        });
+        let deformation =
+            bodies.map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
+                (None, ..) => Vec::new(),
+                (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
+                (Some(flexibility), ..) => {
+                    let flat = DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
+                    of((&**flexibility * flat).as_slice())
+                }
+            });
         Displaced { problem, state, finite, deformation: deformation.collect() }
     }
 

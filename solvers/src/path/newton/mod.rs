@@ -2,13 +2,16 @@
 #![doc = include_str!("newton_path.md")]
 
 mod claims;
+mod deformation;
 mod ends;
+mod flow;
 mod follow;
 mod frame;
 mod inelastic;
 mod kinematics;
 pub(super) mod law;
 mod ledger;
+mod measure;
 mod model;
 mod pivot;
 mod reach;
