@@ -109,7 +109,7 @@ impl Model<'_> {
     fn verge(&self, state: &State) -> Verge {
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
         let (mut facets, mut regimes) = (Vec::new(), state.regime.clone());
-        for c in 0..state.gap.len() {
+        for (c, regime) in regimes.iter_mut().enumerate() {
             let (Some(law), area, r) = (self.law(c), self.problem.contacts[c].area, state.force[c]) else { continue };
             let slack = |i: usize| {
                 let f = &law.facets[i];
@@ -118,13 +118,13 @@ impl Model<'_> {
             let active = (0..law.facets.len()).filter(|i| slack(*i) <= VERGE * largest);
             let (_, opening) = law.irreversible(state.regime[c], self.step_gap(state, state, c));
             if !(law.opens(state.regime[c]) && opening > 1e-9 * self.units.displacement) {
-                regimes[c] = Regime::Stuck;
+                *regime = Regime::Stuck;
                 facets.extend(active.map(|i| (c, i)));
                 continue;
             }
             let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
             if let Some(facet) = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0) {
-                regimes[c] = Regime::Facet(facet as u8);
+                *regime = Regime::Facet(facet as u8);
                 facets.extend(active.filter(|i| !opens(i)).map(|i| (c, i)));
             }
         }
