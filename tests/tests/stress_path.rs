@@ -164,12 +164,13 @@ fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
 /// SCENES sets how many are tried (24 by default), SHOW prints each, KEEP keeps their studies, ONLY
 /// tries one.
 ///
-/// The 24 scenes of the default (35 s on two busy cores): every exact path and every monotone Newton path
-/// is solved and all loads agree; 2 of 9 Newton paths that are not associated stall (a limit point that
-/// is not proven). SCENES=220 (11 minutes on one of two busy cores): 108 walls, 128 with sliding, 32 with a history,
-/// 100 not associated, median 109 events. Associated and stuck flow: all loads agree, Newton path 0 of 120
-/// stalled, exact path 1 (events without an end). Not associated: exact path 3 stalled, and 3 of 21 with
-/// strengths; Newton path 20 of 100 (limit points that are not proven, most of them); no load above the
+/// The 24 scenes of the default (130 s on two very busy cores): every path is solved and all loads agree.
+/// SCENES=220: 108 walls, 128 with sliding, 32 with a history, 100 not associated, median 109 events. Associated and
+/// stuck flow: all loads agree, Newton path 0 of 120 stalled, exact path 1 (events without an end). Not
+/// associated: exact path 3 stalled, and 3 of 21 with strengths; Newton path stalled in 20 of 100 as long
+/// as limit points were proven by enumeration. Since they are searched and rising branches followed, the first
+/// 85 scenes (of them one Newton path stalled before its steps by λ) leave none; scene 86 takes 5000 steps
+/// without an end, scene 91 minutes; the others have not been tried again. No load above the
 /// associated one, 6 pairs on different branches that their notes name, none apart without a reason.
 #[test]
 fn paths_end_where_limit_analysis_does() {
@@ -208,8 +209,8 @@ fn paths_end_where_limit_analysis_does() {
     assert!(tally.wrong.is_empty(), "{}\n{}", tally.wrong.len(), tally.wrong.join("\n"));
     // Without friction or with associated flow every Newton path is solved.
     assert!(tally.sure_stalls == 0, "{} Newton paths of monotone problems stalled", tally.sure_stalls);
-    for solver in ["event_path", "newton_path"] {
-        assert!(10 * tally.stalls(solver) <= tally.scenes, "{solver}: {} stalls", tally.stalls(solver));
+    for (solver, most) in [("event_path", 10), ("newton_path", 25)] {
+        assert!(most * tally.stalls(solver) <= tally.scenes, "{solver}: {} stalls", tally.stalls(solver));
     }
     if tally.scenes >= 60 {
         assert!(median >= 20 && 3 * tally.walls >= tally.scenes && 3 * tally.sliding >= tally.scenes);

@@ -10,12 +10,14 @@
 //!
 //! Found by guess and correction (a primal–dual active set); where that fails, every combination of
 //! pieces is tried, which also finds rays (λ̇ = 0) and falling branches (λ̇ < 0) and proves that
-//! there is no other; where there are too many combinations, by Lemke's pivoting.
+//! there is no other; where there are too many combinations, by Lemke's pivoting, piecewise linear
+//! paths, or at last a search.
 //! Sources: Klarbring (1990), Ing.-Arch. 60; Björkman (1992) on rate problems with friction; the
 //! pieces are those of Alart and Curnier (1991).
 
 use super::lcp::{Lemke, lemke};
 use super::system::{PointFacet, dot};
+use crate::path::complementarity::{Complementarity, Known};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::interface::FacetMode;
 
@@ -225,6 +227,8 @@ const FEW: usize = 3000;
 /// Points up to which a rate problem is searched for other solutions, and guesses for that.
 const EXAMINED: usize = 12;
 const EXAMINATIONS: u64 = 1;
+/// Linear programs of a search.
+const PROGRAMS: u64 = 5000;
 /// Guesses from which a piecewise linear path is followed.
 const STARTS: u64 = 8;
 
@@ -253,6 +257,16 @@ impl Attempt {
     fn gaps_of_points(&self) -> Vec<[f64; 2]> {
         self.gaps.as_slice().chunks_exact(2).map(|gap| [gap[0], gap[1]]).collect()
     }
+}
+
+/// The rate problem over facets.
+struct OverFacets {
+    /// (point, facet).
+    facets: Vec<(usize, usize)>,
+    /// Scales of the facets.
+    unit: Vec<f64>,
+    m: DMatrix<f64>,
+    q: DVector<f64>,
 }
 
 /// A direction at a point.
@@ -456,9 +470,9 @@ impl RateProblem<'_> {
         }
     }
 
-    /// Lemke's pivoting over all active facets, with their own flow or an associated one: pieces to
-    /// correct, or the ray of a mechanism.
-    fn pivoted(&self, associated: bool, counters: &mut u64) -> Option<Pivoted> {
+    /// The problem over all active facets, with their own flow or an associated one, each in its own scale:
+    /// slack rates w = q + M z, z the multipliers. `None` where a point is open.
+    fn over_facets(&self, associated: bool) -> Option<OverFacets> {
         let facets: Vec<(usize, usize)> =
             self.points.iter().enumerate().flat_map(|(k, p)| p.active.iter().map(move |f| (k, *f))).collect();
         if facets.len() > 900 || self.points.iter().any(|p| p.open.is_some()) {
@@ -472,7 +486,6 @@ impl RateProblem<'_> {
             a[0] * (self.s[(2 * k, 2 * l)] * d[0] + self.s[(2 * k, 2 * l + 1)] * d[1])
                 + a[1] * (self.s[(2 * k + 1, 2 * l)] * d[0] + self.s[(2 * k + 1, 2 * l + 1)] * d[1])
         });
-        // Each facet in its own scale.
         let largest = m.diagonal().amax();
         let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
         let m = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
@@ -480,6 +493,26 @@ impl RateProblem<'_> {
             let (k, a) = (facets[i].0, facet(i).normal);
             -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) / unit[i]
         });
+        Some(OverFacets { facets, unit, m, q })
+    }
+
+    /// A solution with λ̇ = 1 by a search.
+    fn searched(&self, counters: &mut u64) -> Option<Rate> {
+        let OverFacets { facets, m, q, .. } = self.over_facets(false)?;
+        let constant = &q / q.amax().max(1e-300);
+        let (known, programs) = Complementarity { matrix: m, constant }.search(PROGRAMS);
+        *counters += programs;
+        let Known::Solution(z) = known else { return None };
+        let largest = z.iter().copied().fold(0.0, f64::max);
+        self.corrected(self.read(&facets, |i| z[i] > PIVOTING * 1e-2 * largest), counters)
+    }
+
+    /// Lemke's pivoting over all active facets, with their own flow or an associated one: pieces to
+    /// correct, or the ray of a mechanism.
+    fn pivoted(&self, associated: bool, counters: &mut u64) -> Option<Pivoted> {
+        let OverFacets { facets, unit, m, q } = self.over_facets(associated)?;
+        let facet = |i: usize| &self.points[facets[i].0].facets[facets[i].1];
+        let flow = |i: usize| if associated { facet(i).normal } else { facet(i).flow };
         let (z, ray) = match lemke(&m, &q, counters) {
             Lemke::Solution(z) => (z, false),
             Lemke::Ray(z) => (z, true),
@@ -672,6 +705,9 @@ impl RateProblem<'_> {
                 return Verdict::Found(rate, None);
             }
             if let Some(rate) = self.turned_from_associated(counters) {
+                return Verdict::Found(rate, None);
+            }
+            if let Some(rate) = self.searched(counters) {
                 return Verdict::Found(rate, None);
             }
             return Verdict::Undecided(combinations);

@@ -275,7 +275,7 @@ impl<'a> Tracer<'a> {
         let status = if gravity { Status::NoEquilibrium } else { Status::Collapse };
         let factor = (!gravity).then_some(self.factor);
         let limit = self.limit_point.is_some();
-        let unique = unique(&self.system, &self.points, &direction.gaps);
+        let unique = unique(&self.system, &self.points, load, &direction.x, &direction.gaps);
         // The mechanism belongs to the last state; the one at the limit point may not allow it.
         let motion = Some(motion).filter(|motion| {
             self.limit_point.as_ref().is_none_or(|state| flow_residual(self.problem, &state.force, motion) <= 1e-6)

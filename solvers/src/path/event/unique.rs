@@ -8,11 +8,15 @@
 //!
 //! - dim N = 1: the only one;
 //! - dim N₊ > 1: not the only one;
-//! - else the signs decide, which is not examined.
+//! - else the signs decide: the mechanisms with a power of 1, q̇ = N y with ġ = −Σ γ d and γ ≥ 0, are more
+//!   than one where some linear form of y has two values. A random one does; its least and its greatest
+//!   value are two linear programs.
 
 use super::point::Point;
 use super::rate::{Piece, corner, dilatancy};
-use super::system::{System, dot};
+use super::system::{Load, System, dot};
+use crate::limit::least::dictionary::{Equations, Feasibility};
+use crate::path::shuffle::Shuffle;
 use nalgebra::DMatrix;
 
 /// Freedoms of motion above which it is not examined.
@@ -22,21 +26,27 @@ const ZERO: f64 = 1e-9;
 /// Flows below this share of the greatest gap rate are not at work.
 const WORKING: f64 = 1e-7;
 
-/// Whether the mechanism with these gap rates is the only one; `None` where that is not decided.
-pub fn unique(system: &System, points: &[Point], gaps: &[[f64; 2]]) -> Option<bool> {
+/// Values of a linear form that differ by more than this share of them are two.
+const APART: f64 = 1e-6;
+/// Pivots of a linear program.
+const PIVOTS: u64 = 5000;
+
+/// Whether the mechanism with these gap rates is the only one under a load; `None` where that is not decided.
+pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &[[f64; 2]]) -> Option<bool> {
     let freedoms = 3 * system.bodies;
     if freedoms > MOST {
         return None;
     }
     let size = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-    let dimension = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
+    // Rows of zeros make the matrix high enough for all of its right vectors.
+    let space = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
         let rows: Vec<Vec<f64>> = (0..points.len()).flat_map(|c| constraints(system, c, flows(c))).collect();
-        if rows.is_empty() {
-            return Some(freedoms);
-        }
-        let matrix = DMatrix::from_fn(rows.len(), freedoms, |i, j| rows[i][j]);
-        let values = matrix.try_svd(false, false, f64::EPSILON, 10_000)?.singular_values;
-        Some(freedoms - values.iter().filter(|v| **v > ZERO * values.max()).count())
+        let height = rows.len().max(freedoms);
+        let matrix = DMatrix::from_fn(height, freedoms, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
+        let svd = matrix.try_svd(false, true, f64::EPSILON, 10_000)?;
+        let (values, vectors) = (svd.singular_values, svd.v_t?);
+        let null: Vec<usize> = (0..freedoms).filter(|k| values[*k] <= ZERO * values.max()).collect();
+        Some(DMatrix::from_fn(freedoms, null.len(), |i, k| vectors[(null[k], i)]))
     };
     let possible = |c: usize| {
         let Some(facets) = &system.facets[c] else { return Some(Vec::new()) };
@@ -68,11 +78,73 @@ pub fn unique(system: &System, points: &[Point], gaps: &[[f64; 2]]) -> Option<bo
             |(f, rate): &(usize, f64)| *rate > WORKING * size || (point.open() && point.opening_facet == Some(*f));
         Some(flows.into_iter().filter(at_work).map(|(f, _)| facets[f].flow).collect())
     };
-    match (dimension(&possible)?, dimension(&working)?) {
-        (1, _) => Some(true),
-        (_, n) if n > 1 => Some(false),
-        _ => None,
+    let all = space(&possible)?;
+    if all.ncols() == 1 {
+        return Some(true);
     }
+    if space(&working)?.ncols() > 1 {
+        return Some(false);
+    }
+    let power: Vec<f64> = load.wrench.iter().flatten().copied().collect();
+    let own: f64 = power.iter().zip(&x[2 * system.contacts..]).map(|(p, q)| p * q).sum();
+    by_signs(system, points, &all, &power.iter().map(|p| p * own.signum()).collect::<Vec<_>>())
+}
+
+/// Whether the mechanisms N y with a power of 1 are one only.
+fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]) -> Option<bool> {
+    let k = all.ncols();
+    // (contact point, direction of ġ) of every variable γ.
+    let mut flows: Vec<(usize, [f64; 2])> = Vec::new();
+    for (c, point) in points.iter().enumerate() {
+        let Some(facets) = system.facets[c].as_ref().filter(|_| !(point.open() && point.apex)) else { continue };
+        let opening = point.opening_facet.filter(|_| point.open());
+        flows.extend(point.active.iter().copied().chain(opening).map(|f| (c, facets[f].flow.map(|d| -d))));
+        flows.extend(opening.map(|f| (c, facets[f].flow)));
+    }
+    let moves = |row: &[(usize, f64)]| -> Vec<f64> {
+        (0..k).map(|j| row.iter().map(|&(i, v)| v * all[(i, j)]).sum()).collect()
+    };
+    // Variables: y as differences of two, then γ.
+    let equation = |y: Vec<f64>, own: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let flowing = (0..flows.len()).map(own);
+        y.iter().copied().chain(y.iter().map(|v| -v)).chain(flowing).collect()
+    };
+    let (mut rows, mut right) = (Vec::new(), Vec::new());
+    let mut at: Vec<usize> = flows.iter().map(|f| f.0).collect();
+    at.dedup();
+    for &c in &at {
+        for i in 0..2 {
+            let own = |f: usize| if flows[f].0 == c { -flows[f].1[i] } else { 0.0 };
+            rows.push(equation(moves(system.kinematics.row(2 * c + i)), &own));
+            right.push(0.0);
+        }
+    }
+    let whole: Vec<(usize, f64)> = power.iter().copied().enumerate().collect();
+    rows.push(equation(moves(&whole), &|_| 0.0));
+    right.push(1.0);
+    let mut program = Equations { free: 0, variables: 2 * k + flows.len(), rows, right }.dictionary()?;
+    if program.feasible() != Feasibility::Point {
+        return None;
+    }
+    let mut random = Shuffle::new(3);
+    for _ in 0..2 {
+        let form: Vec<f64> = (0..k).map(|_| random.next()).collect();
+        let weights = |sign: f64| -> Vec<(usize, f64)> {
+            (0..k).flat_map(|j| [(j, sign * form[j]), (k + j, -sign * form[j])]).collect()
+        };
+        let (Some(least), Some(most)) =
+            (program.minimise(&weights(1.0), PIVOTS), program.minimise(&weights(-1.0), PIVOTS))
+        else {
+            return Some(false);
+        };
+        if (least.0 + most.0).abs() > APART * least.0.abs().max(most.0.abs()) {
+            return Some(false);
+        }
+        if !(least.1 && most.1) {
+            return None;
+        }
+    }
+    Some(true)
 }
 
 /// Rows over the motions that keep the gap rate of a point in the span of some flows; `None` of them:

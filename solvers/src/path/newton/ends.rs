@@ -27,6 +27,7 @@ impl Tracer<'_, '_> {
             self.end(Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"));
         } else {
             self.end(Status::Stalled, why);
+            self.notes.extend(self.doubt.take().map(|doubt| format!("at its last state {doubt}")));
         }
     }
 
@@ -60,7 +61,10 @@ impl Tracer<'_, '_> {
             return None;
         }
         match self.model.rising(state, direction) {
-            Rising::None => self.doubt = None,
+            Rising::None => {
+                self.doubt = None;
+                self.proven = Some(state.factor);
+            }
             Rising::Unknown(why) => self.doubt = Some(why),
             Rising::Rate(rate, regimes) => {
                 self.doubt = Some("there is a rate on which the load grows".into());

@@ -122,6 +122,23 @@ impl Tracer<'_, '_> {
                 let judged = self.judge(&rate, step, &next, target, direction, reaches);
                 judged.map(|()| (next, iterations))
             });
+            let found = match found {
+                // A step by arc length may go back; one by λ cannot.
+                Err(refusal)
+                    if !self.model.finite()
+                        && !reaches
+                        && rate.factor * direction > 0.0
+                        && (yielding.is_some() || last) =>
+                {
+                    control = Control::Factor(guess.factor);
+                    let by_factor = self.model.newton(&self.state, guess.clone(), &control);
+                    let judged = by_factor.and_then(|(next, iterations)| {
+                        self.judge(&rate, step, &next, target, direction, false).map(|()| (next, iterations))
+                    });
+                    judged.map_err(|_| refusal)
+                }
+                found => found,
+            };
             let (found, local) = match found {
                 Err(refusal) => match self.softened(&rate, step, target, direction) {
                     Some((next, iterations, local)) => (Ok((next, iterations)), Some(local)),
@@ -202,7 +219,13 @@ impl Tracer<'_, '_> {
                             length = 0.1 * initial;
                             continue;
                         }
-                        self.no_step(&refusal, &rate, direction);
+                        let linear = !self.model.finite() && self.model.piecewise_linear();
+                        if linear && self.peak.is_none() && self.doubt.is_none() {
+                            let why = format!("the path was not followed behind it: {}", refusal.why);
+                            self.end(Status::LimitPoint, why);
+                        } else {
+                            self.no_step(&refusal, &rate, direction);
+                        }
                         return Outcome::Ended;
                     }
                     continue;
@@ -230,7 +253,7 @@ impl Tracer<'_, '_> {
             };
             let next_rate = match control {
                 Control::Spring { length, .. } => next_rate.scaled(length.signum()),
-                _ if reaches => next_rate.scaled(direction),
+                Control::Factor(_) => next_rate.scaled(direction),
                 _ => self.onwards(&next, next_rate),
             };
             let size = next.factor.abs().max(unit * 1e-3);

@@ -3,7 +3,9 @@
 
 mod border;
 mod claims;
+mod deformation;
 mod ends;
+mod flow;
 mod flowing;
 mod follow;
 mod frame;
@@ -11,6 +13,7 @@ mod inelastic;
 mod kinematics;
 pub(super) mod law;
 mod ledger;
+mod measure;
 mod model;
 mod pivot;
 mod reach;

@@ -7,8 +7,6 @@ use super::inelastic::Inner;
 use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
 use super::law::{Polygon, Regime};
 use super::response::{Answers, Local, Responses};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::interface::Facet;
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{ContactLaw, Continuation, Increment, Loading, PathProblem};
 
@@ -236,41 +234,6 @@ impl<'a> Model<'a> {
         self.responses.is_empty() && self.blocks.iter().all(Option::is_none)
     }
 
-    /// Takes slip to be associated; the laws as they were.
-    pub fn associated(&mut self) -> Vec<Polygon> {
-        let own = self.polygons.clone();
-        self.blend(&own, 0.0);
-        own
-    }
-
-    /// Turns the flow from the facets' normals (0) to the given laws' own (1).
-    fn blend(&mut self, laws: &[Polygon], own: f64) {
-        let flow = |f: &Facet| [0, 1].map(|i| (1.0 - own) * f.normal[i] + own * f.flow[i]);
-        let turned =
-            |law: &Polygon| Polygon::new(&law.facets.iter().map(|f| Facet { flow: flow(f), ..*f }).collect::<Vec<_>>());
-        self.polygons = laws.iter().map(turned).collect();
-    }
-
-    /// A state at a factor by turning the flow of associated slip, which has one where any has, step by
-    /// step into the laws' own.
-    pub fn turned(&mut self, start: &State, factor: f64) -> Option<State> {
-        let own = self.polygons.clone();
-        let mut guess = start.clone();
-        let mut found = None;
-        for share in [0.0, 0.3, 0.55, 0.75, 0.9, 1.0] {
-            self.blend(&own, share);
-            guess.factor = factor;
-            found = self.newton(start, guess.clone(), &Control::Factor(factor)).ok().map(|(state, _)| state);
-            match &found {
-                Some(state) => guess = state.clone(),
-                None if share == 0.0 => break,
-                None => {}
-            }
-        }
-        self.polygons = own;
-        found
-    }
-
     /// A state reached from nothing, all of it times a share.
     pub fn in_proportion(&self, state: &State, share: f64) -> State {
         let mut state = state.clone();
@@ -360,107 +323,6 @@ impl<'a> Model<'a> {
         let (body, k) = ((index - base) / 3, (index - base) % 3);
         let unit = if k == 2 { self.units.displacement / self.units.length } else { self.units.displacement };
         self.free[body].map(|free| (base + 3 * free + k, unit))
-    }
-
-    /// Work-conjugate displacement of the growing load by rigid motions: Σ F·u / Σ|F| \[m\].
-    pub fn displacement(&self, motion: &[[f64; 3]]) -> f64 {
-        let loading = self.loaded.growing;
-        let size = load_size(self.problem, loading);
-        if size == 0.0 {
-            return 0.0;
-        }
-        let forces: f64 =
-            loading.forces.iter().map(|(body, _, point, f)| f.dot(&self.kinematics.rigid(*body, *point, motion))).sum();
-        let bodies = self.problem.bodies.iter().zip(motion);
-        let masses: f64 = bodies
-            .filter(|(b, _)| !b.held)
-            .map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1])))
-            .sum();
-        (forces + masses) / size
-    }
-
-    /// Increment between two states in units, and the weights of its derivative: by gaps and directly.
-    pub fn increment(&self, start: &State, state: &State) -> Increment {
-        let u = self.units;
-        let mut motion = 0.0;
-        for body in (0..self.free.len()).filter(|b| self.free[*b].is_some()) {
-            for k in 0..3 {
-                let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-                motion += ((state.motion[body][k] - start.motion[body][k]) / unit).powi(2) / self.bodies_free as f64;
-            }
-        }
-        let mut dissipation = self.response_dissipated(state);
-        let points = state.gap.len() as f64;
-        for c in 0..state.gap.len() {
-            for k in 0..2 {
-                motion += ((state.gap[c][k] - start.gap[c][k]) / u.displacement).powi(2) / points;
-            }
-            if let Some(law) = self.law(c) {
-                let (kept, _) = law.irreversible(state.regime[c], self.step_gap(start, state, c));
-                dissipation -= kept[0] * state.force[c][0] + kept[1] * state.force[c][1];
-            }
-        }
-        dissipation += self.plastic_work(start, state);
-        Increment {
-            factor: (state.factor - start.factor) / u.factor,
-            displacement: (self.displacement(&state.motion) - self.displacement(&start.motion)) / u.displacement,
-            motion: motion.sqrt(),
-            dissipation: dissipation / (u.force * u.displacement),
-        }
-    }
-
-    /// Increment of a rate from a state.
-    pub fn increment_of(&self, state: &State, rate: &Rate) -> Increment {
-        let mut moved = state.clone();
-        let mut small = 1e-6 / self.rate_size(rate).max(1e-300);
-        if !self.finite() && self.responses.is_empty() {
-            // Everything is linear: from nothing, without a difference of what may be large.
-            moved.gap.fill([0.0; 2]);
-            moved.motion.fill([0.0; 3]);
-            small = 1.0;
-        }
-        let origin = moved.clone();
-        // Linear in a step that is small: displacement and dissipation may not be.
-        let step = rate.scaled(small);
-        for c in 0..moved.gap.len() {
-            (0..2).for_each(|k| moved.gap[c][k] += step.gap[c][k]);
-        }
-        for (q, dq) in moved.motion.iter_mut().zip(&step.motion) {
-            (0..3).for_each(|k| q[k] += dq[k]);
-        }
-        moved.factor += step.factor;
-        // Where the law fails so close to a state, the rest of the rate still counts.
-        moved.answers = self.responses.update(&moved.gap, &state.answers.memory).unwrap_or_default();
-        let mut base = origin;
-        base.slip = base.gap.clone();
-        (base.blocks, moved.blocks) = (Vec::new(), Vec::new());
-        let i = self.increment(&base, &moved);
-        Increment {
-            factor: rate.factor / self.units.factor,
-            displacement: i.displacement / small,
-            motion: i.motion / small,
-            dissipation: i.dissipation / small
-                + self.plastic_power(state, rate) / (self.units.force * self.units.displacement),
-        }
-    }
-
-    /// Size of a rate in units, all of it.
-    pub fn rate_size(&self, rate: &Rate) -> f64 {
-        let u = self.units;
-        let force: f64 = rate.force.iter().flatten().map(|r| (r / u.force).powi(2)).sum();
-        self.motion_size(rate).hypot(rate.factor / u.factor).hypot(force.sqrt())
-    }
-
-    /// Size of the motion of a rate in units.
-    pub fn motion_size(&self, rate: &Rate) -> f64 {
-        let u = self.units;
-        let gap: f64 = rate.gap.iter().flatten().map(|g| (g / u.displacement).powi(2)).sum();
-        let motion: f64 = rate
-            .motion
-            .iter()
-            .map(|q| (q[0].powi(2) + q[1].powi(2) + (q[2] * u.length).powi(2)) / u.displacement.powi(2))
-            .sum();
-        (gap + motion).sqrt()
     }
 
     /// Δg of a step at a contact point.

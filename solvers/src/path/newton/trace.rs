@@ -47,6 +47,8 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) peak: Option<Peak>,
     /// Why the first limit point is not proven to be one.
     pub(super) doubt: Option<String>,
+    /// Factor at which it is proven that no rate has growing λ.
+    pub(super) proven: Option<f64>,
     /// Factor at which a branch with growing λ was taken last, and how often there.
     pub(super) rose: Option<(f64, u32)>,
 }
@@ -82,6 +84,7 @@ pub(super) fn trace(
         ray: None,
         peak: None,
         doubt: None,
+        proven: None,
         rose: None,
     };
     tracer.run(problem);
@@ -138,6 +141,11 @@ impl<'a> Tracer<'a, '_> {
         if let (Status::LimitPoint, Some(why)) = (self.status, self.doubt.take()) {
             self.peak = None;
             self.end(Status::Stalled, format!("the limit point on the path is not proven: {why}"));
+        }
+        if let (Status::LimitPoint, Some(factor)) = (self.status, self.proven) {
+            self.notes.push(format!(
+                "at factor {factor} no rate of solution has a factor that grows: all regimes of the contact points at the verge of a change are excluded"
+            ));
         }
         let mut counters = self.model.counters.clone();
         for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
