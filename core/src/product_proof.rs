@@ -103,17 +103,17 @@ struct Rows {
 }
 
 /// Checks each step from `start` on; `state` is the greatest γ and s of a state at the factor `found`. Returns the
-/// factor that is proved, or why nothing is.
+/// factor that is proved and what rounding took off it, or why nothing is.
 pub fn proved(
     assembly: &Assembly,
     loads: &StageLoads,
     steps: &[ProductStep],
     [start, found]: [f64; 2],
     state: [f64; 2],
-) -> Result<f64, String> {
+) -> Result<(f64, f64), String> {
     let rows = Rows::new(assembly, loads)?;
     let motions = rows.motions();
-    let mut proved = start;
+    let (mut proved, mut rounding) = (start, 0.0);
     for step in steps {
         let [a, t] = step.range;
         let ordered = a.is_finite() && t.is_finite() && a < t && a <= proved && t >= found && step.bound <= t;
@@ -122,8 +122,9 @@ pub fn proved(
         }
         let shortfall = rows.shortfall(&motions, step, state)?;
         proved = proved.max(step.bound - shortfall);
+        rounding += shortfall;
     }
-    Ok(proved)
+    Ok((proved, rounding))
 }
 
 impl Rows {
@@ -189,7 +190,8 @@ impl Rows {
             let frictionless = !sliding.is_empty() && sliding.iter().all(|f| f.normal[0] == 0.0 && f.bound == 0.0);
             let width = if frictionless { 2 } else { 3 };
             let (n, t) = joint.frame();
-            for (at, direction) in [(joint.ends[0], n), (joint.ends[1], n), (joint.ends[0], t)].into_iter().take(width) {
+            for (at, direction) in [(joint.ends[0], n), (joint.ends[1], n), (joint.ends[0], t)].into_iter().take(width)
+            {
                 let mut column = vec![0.0; 3 * count];
                 for (group, sign) in [(plus, 1.0), (minus, -1.0)] {
                     let Some(group) = group else { continue };

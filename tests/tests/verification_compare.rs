@@ -93,6 +93,29 @@ fn a_single_ring_does_not_feel_the_flow_rule() {
     }
 }
 
+/// Why the four scenes of a single ring, two of them with low friction, have one load: the associated mechanism moves
+/// four joints, so equilibrium and yield there fix three redundants and the factor. Every other voice moves some of
+/// these four and no others, and has the same load.
+#[test]
+fn four_yielding_joints_determine_a_single_ring() {
+    let (_, results) = ten_scenes();
+    let moving = |case: &CaseResult| -> Vec<usize> {
+        let mechanism = case.mechanism.as_ref().expect("a mechanism");
+        let (hinges, sliding) = (mechanism.hinges.iter().map(|h| h.joint), mechanism.sliding.iter().map(|s| s.joint));
+        let joints: std::collections::BTreeSet<usize> = hinges.chain(sliding).collect();
+        joints.into_iter().collect()
+    };
+    for row in comparison().rows.iter().skip(6) {
+        let yielding = moving(&results.cases[voice(&row.cells, "associated").case]);
+        assert_eq!(yielding.len(), 4, "{:?}: {yielding:?}", row.scene);
+        for cell in &row.cells {
+            let joints = moving(&results.cases[cell.case]);
+            assert!(joints.iter().all(|joint| yielding.contains(joint)), "{:?}: {joints:?}, {yielding:?}", row.scene);
+            assert!((cell.ratio.expect("a ratio") - 1.0).abs() <= 1e-8, "{:?}: {cell:?}", row.scene);
+        }
+    }
+}
+
 /// The results confirm themselves; a changed ratio is found.
 #[test]
 fn verify_repeats_the_comparison() {

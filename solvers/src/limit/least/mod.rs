@@ -13,10 +13,12 @@ use super::{associated, combined};
 use bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
 use descent::{Descent, State};
 use dictionary::Feasibility;
+use products::Bound;
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::Wrenches;
 use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir_core::product_proof::{LowerProof, LowerProofKind};
 use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
 use voussoir_core::units::Quantity;
 
@@ -24,6 +26,8 @@ use voussoir_core::units::Quantity;
 const SEARCH_LIMIT: f64 = 4.0;
 /// Rows of the program of products where they are not given.
 const PRODUCT_ROWS: usize = 12_000;
+/// Rows of products that are solved only so that what the search proved can be checked.
+const CHECKED_ROWS: usize = 5_000;
 /// Starts of the local search.
 const STARTS: usize = 24;
 /// A state counts when its field and multipliers are right to this.
@@ -216,6 +220,7 @@ impl LimitSolver for LimitLeast {
         };
         if settled_by_association(problem, question, &answer) {
             own.proved_lower = own.associated_factor;
+            own.lower_proof = own.proved_lower.map(|_| LowerProof::by(LowerProofKind::Associated));
             answer.own_flow = Some(own);
             return answer;
         }
@@ -226,7 +231,7 @@ impl LimitSolver for LimitLeast {
         let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
         let most = associated_theta.unwrap_or((max - start) / unit);
         let mut best = least.first(&answer, start);
-        let mut lower = 0.0;
+        let mut lower = Lower { theta: 0.0, products: None, searched: 0.0 };
         match least.searchable() {
             Err(why) => answer.notes.push(why),
             Ok(()) => {
@@ -240,7 +245,7 @@ impl LimitSolver for LimitLeast {
             }
         }
         // Where something lower is not excluded, the sequence may know it.
-        if best.as_ref().is_none_or(|b| lower < b.0 * (1.0 - WIDEST)) {
+        if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - WIDEST)) {
             let from = answer.field.clone().unwrap_or_default();
             match sequence(problem, &base, &from, &mut answer.counters) {
                 Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
@@ -261,7 +266,8 @@ impl LimitSolver for LimitLeast {
         ] {
             *answer.counters.entry(name.into()).or_default() += count;
         }
-        finish(answer, own, best, lower, (start, max, unit))
+        own.lower_proof = Some(lower.proof(&least.systems, problem, start));
+        finish(answer, own, best, lower.theta, (start, max, unit))
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {
@@ -301,9 +307,9 @@ impl Least<'_> {
     }
 
     /// Raises the lower bound as far as the limits allow, taking lesser states on the way.
-    fn prove(&mut self, limits: &LimitLeast, most: f64, best: &mut Option<(f64, FlowState)>) -> f64 {
+    fn prove(&mut self, limits: &LimitLeast, most: f64, best: &mut Option<(f64, FlowState)>) -> Lower {
         let entries = (limits.search_limit * 1e9).min(1e18) as u64;
-        let (mut lower, mut gap) = (0.0f64, GAP);
+        let (mut lower, mut gap) = (Lower { theta: 0.0, products: None, searched: 0.0 }, GAP);
         let mut whole = true;
         loop {
             let known = best.as_ref().map_or(most, |b| b.0);
@@ -311,27 +317,34 @@ impl Least<'_> {
                 return lower;
             }
             let top = known * (1.0 - gap);
-            if lower >= known * (1.0 - WIDEST) {
+            if lower.theta >= known * (1.0 - WIDEST) {
                 return lower;
             }
             let left = entries.saturating_sub(self.work.entries);
             let proof = if whole {
                 at_once(&self.systems, top, left, &mut self.work)
             } else {
-                in_parts(&self.systems, [lower, top], left, &mut self.work)
+                in_parts(&self.systems, [lower.theta, top], left, &mut self.work)
             };
             match proof {
-                Proof::Below(proved) => return lower.max(proved),
-                Proof::Open(proved) if !whole => return lower.max(proved),
+                Proof::Below(proved) => {
+                    lower.search(proved);
+                    if lower.products.is_none() {
+                        // What the search has proved can be checked where products prove it too.
+                        lower.product(self.products(known, limits.product_rows.min(CHECKED_ROWS), true));
+                    }
+                    return lower;
+                }
+                Proof::Open(proved) if !whole => {
+                    lower.search(proved);
+                    return lower;
+                }
                 Proof::Open(_) => {
                     whole = false;
-                    let (bound, iterations) =
-                        products::lower_bound(&self.systems, self.problem, known, limits.product_rows);
-                    self.work.iterations += iterations;
-                    lower = lower.max(bound.unwrap_or(0.0)).min(known);
+                    lower.product(self.products(known, limits.product_rows, false));
                 }
                 Proof::State(proved, moving) => {
-                    lower = lower.max(proved);
+                    lower.search(proved);
                     if self.take(Some(moving), best) {
                         continue;
                     }
@@ -345,6 +358,49 @@ impl Least<'_> {
                     }
                 }
             }
+        }
+    }
+
+    fn products(&mut self, known: f64, most: usize, widest_only: bool) -> Option<Bound> {
+        let (bound, iterations) = products::lower_bound(&self.systems, self.problem, known, most, widest_only);
+        self.work.iterations += iterations;
+        bound
+    }
+}
+
+/// The proved lower end and what it rests on.
+struct Lower {
+    theta: f64,
+    /// The bound by products.
+    products: Option<Bound>,
+    /// The bound by search.
+    searched: f64,
+}
+
+impl Lower {
+    fn search(&mut self, proved: f64) {
+        self.searched = self.searched.max(proved);
+        self.theta = self.theta.max(proved);
+    }
+
+    /// Takes a bound by products, which need not be greater than that of the search to replace it where
+    /// both close the bracket: it can be checked.
+    fn product(&mut self, bound: Option<Bound>) {
+        let Some(bound) = bound else { return };
+        if bound.theta >= self.searched * (1.0 - WIDEST / 2.0) {
+            self.theta = bound.theta;
+            self.searched = 0.0;
+        }
+        self.products = Some(bound);
+    }
+
+    fn proof(&self, systems: &Systems, problem: &LimitProblem, start: f64) -> LowerProof {
+        match &self.products {
+            _ if self.theta <= 0.0 => LowerProof::by(LowerProofKind::Start),
+            Some(bound) if bound.theta >= self.theta => {
+                LowerProof { by: LowerProofKind::Products, steps: vec![bound.step(systems, problem, start)] }
+            }
+            _ => LowerProof::by(LowerProofKind::Search),
         }
     }
 }

@@ -13,8 +13,9 @@
 use crate::limit::systems::Systems;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SupportedConeT};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use voussoir_core::limit::LimitProblem;
+use voussoir_core::product_proof::{FIRST, LAST, ProductStep};
 use voussoir_core::sparse::{Entries, Factorised};
 
 /// Linear form: (index, coefficient).
@@ -38,6 +39,82 @@ struct Program {
     columns: usize,
     equations: Vec<(Form, f64)>,
     rows: Vec<(Form, f64)>,
+    /// What each row says.
+    kinds: Vec<Kind>,
+    /// Index of the equation γ_i s_i = 0, with i.
+    idle: Vec<(usize, usize)>,
+    /// t.
+    most: f64,
+}
+
+/// Something ≥ 0.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// γ_i.
+    Gamma(usize),
+    /// γ_i θ.
+    GammaTheta(usize),
+    /// γ_i (t − θ).
+    GammaRoom(usize),
+    /// θ.
+    Theta,
+    /// s_j.
+    Slack(usize),
+    /// γ_i s_j.
+    Product(usize, usize),
+}
+
+/// A proved bound.
+pub struct Bound {
+    /// No state has a lesser θ.
+    pub theta: f64,
+    /// What the multipliers prove before rounding is taken off.
+    raw: f64,
+    /// t.
+    most: f64,
+    /// Multipliers of what is ≥ 0, in the units of the systems; those of γ_i s_i = 0 have either sign.
+    multipliers: Vec<(Kind, f64)>,
+}
+
+impl Bound {
+    /// The proof in SI units, for load factors from `start` on.
+    pub fn step(&self, systems: &Systems, problem: &LimitProblem, start: f64) -> ProductStep {
+        let code = |i: usize| {
+            let pair = &systems.pairs[i];
+            let force = pair.normal[0].0;
+            let joint = systems.joints.partition_point(|&(first, _)| first <= force) - 1;
+            let first = systems.joints[joint].0;
+            let shear = pair.normal.iter().find(|&&(j, _)| j == first + 2).map(|&(_, v)| v);
+            let slot = match shear {
+                Some(v) if v > 0.0 => 2,
+                Some(_) => 3,
+                None => force - first,
+            };
+            (4 * problem.joints[joint].joint + slot) as i64
+        };
+        let (unit, force) = (systems.unit, systems.force);
+        let mut sums: BTreeMap<i64, BTreeMap<i64, f64>> = BTreeMap::new();
+        let mut add = |i: i64, j: i64, value: f64| *sums.entry(i).or_default().entry(j).or_default() += value;
+        for &(kind, z) in &self.multipliers {
+            match kind {
+                Kind::Gamma(i) => {
+                    let share = z / self.most * force / unit;
+                    add(code(i), FIRST, share);
+                    add(code(i), LAST, share);
+                }
+                Kind::GammaTheta(i) => add(code(i), FIRST, z * force / unit),
+                Kind::GammaRoom(i) => add(code(i), LAST, z * force / unit),
+                Kind::Theta => add(FIRST, FIRST, z),
+                Kind::Slack(j) => add(FIRST, code(j), z * unit / force),
+                Kind::Product(i, j) => add(code(i), code(j), z),
+            }
+        }
+        ProductStep {
+            range: [start, start + self.most * unit],
+            bound: start + self.raw * unit,
+            multipliers: sums.into_iter().map(|(i, row)| (i, row.into_iter().collect())).collect(),
+        }
+    }
 }
 
 /// Which products are kept.
@@ -147,7 +224,14 @@ impl Program {
         }
         let joint_of_pair = |i: usize| joint_of[systems.pairs[i].normal[0].0];
         let mut columns = Columns { of: HashMap::from([((0, theta), 0)]), one: (0, one) };
-        let mut program = Program { columns: 0, equations: Vec::new(), rows: Vec::new() };
+        let mut program = Program {
+            columns: 0,
+            equations: Vec::new(),
+            rows: Vec::new(),
+            kinds: Vec::new(),
+            idle: Vec::new(),
+            most: t,
+        };
 
         // Equilibrium of each group and of all above each cut, with the joints it needs.
         let mut balances: Vec<(Form, Vec<usize>)> = Vec::new();
@@ -190,17 +274,26 @@ impl Program {
             program.rows.push(columns.row([((gamma(i), one), 1.0)]));
             program.rows.push(columns.row([((gamma(i), theta), 1.0)]));
             program.rows.push(columns.row([((gamma(i), one), t), ((gamma(i), theta), -1.0)]));
+            program.kinds.extend([Kind::Gamma(i), Kind::GammaTheta(i), Kind::GammaRoom(i)]);
         }
         program.rows.push(columns.row([((0, theta), 1.0)]));
+        program.kinds.push(Kind::Theta);
         for (j, pair) in systems.pairs.iter().enumerate() {
             let slack = |first: usize| {
                 let forces = pair.normal.iter().map(move |&(l, v)| ((first, l), -v));
                 forces.chain((pair.bound != 0.0).then_some(((first, one), pair.bound)))
             };
             program.rows.push(columns.row(slack(0)));
+            program.kinds.push(Kind::Slack(j));
             for i in (0..pairs).filter(|&i| kept.joints[joint_of_pair(i)][joint_of_pair(j)]) {
                 let row = columns.row(slack(gamma(i)));
-                if i == j { program.equations.push(row) } else { program.rows.push(row) }
+                if i == j {
+                    program.idle.push((program.equations.len(), i));
+                    program.equations.push(row);
+                } else {
+                    program.rows.push(row);
+                    program.kinds.push(Kind::Product(i, j));
+                }
             }
         }
         // The flow rule of each force variable, Eᵀ q̇ + Dᵀ γ = 0.
@@ -289,11 +382,11 @@ impl Program {
 
     /// The bound that multipliers prove: x_0 ≥ −Σ h z where x_0 + (signed rows)ᵀ z = 0 and z ≥ 0 on rows.
     /// Those below one of several thresholds are zero, the others are moved there to rounding.
-    fn bound(&self, z: &[f64]) -> Option<f64> {
+    fn bound(&self, z: &[f64]) -> Option<Bound> {
         SUPPORTS.into_iter().find_map(|least| self.bound_on(least, z.to_vec()))
     }
 
-    fn bound_on(&self, least: f64, mut z: Vec<f64>) -> Option<f64> {
+    fn bound_on(&self, least: f64, mut z: Vec<f64>) -> Option<Bound> {
         let (e, m, n) = (self.equations.len(), z.len(), self.columns);
         let scale = z.iter().fold(1.0f64, |m, z| m.max(z.abs()));
         z[e..].iter_mut().filter(|z| **z < least * scale).for_each(|z| *z = 0.0);
@@ -316,7 +409,11 @@ impl Program {
             if worst <= ROUNDING * scale {
                 let proved: f64 = -support.iter().map(|&k| self.signed(k).1 * z[k]).sum::<f64>();
                 let positive = z[e..].iter().all(|z| *z >= 0.0);
-                return positive.then_some(proved - MARGIN * worst);
+                let kinds = self.kinds.iter().copied().zip(z[e..].iter().copied());
+                let idle = self.idle.iter().map(|&(k, i)| (Kind::Product(i, i), -z[k]));
+                let multipliers = kinds.chain(idle).filter(|(_, z)| *z != 0.0).collect();
+                let theta = proved - MARGIN * worst;
+                return positive.then_some(Bound { theta, raw: proved, most: self.most, multipliers });
             }
             let mut load = vec![0.0; first];
             load.extend(r.iter().map(|r| -r));
@@ -328,19 +425,26 @@ impl Program {
 }
 
 /// The greatest lower bound of θ, for states with θ ≤ t, from the widest neighbourhood whose rows
-/// are at most `most`; with the iterations it took. `None` where even the smallest has more rows,
-/// or nothing was proved.
-pub fn lower_bound(systems: &Systems, problem: &LimitProblem, t: f64, most: usize) -> (Option<f64>, u64) {
+/// are at most `most`; with the iterations it took. `None` where even the smallest, or with `widest_only` the
+/// widest, has more rows, or nothing was proved.
+pub fn lower_bound(
+    systems: &Systems,
+    problem: &LimitProblem,
+    t: f64,
+    most: usize,
+    widest_only: bool,
+) -> (Option<Bound>, u64) {
     // With room above the known state the program has an interior, which its method needs.
     let room = t * (1.0 + ROOM);
     let fits = |reach: usize| Program::new(systems, problem, room, reach, most);
-    let Some(program) = (0..=NEAREST).rev().find_map(fits) else { return (None, 0) };
+    let least = if widest_only { NEAREST } else { 0 };
+    let Some(program) = (least..=NEAREST).rev().find_map(fits) else { return (None, 0) };
     let mut work = 0;
     for regularisation in REGULARISATIONS {
         let Some((z, iterations)) = program.multipliers(regularisation) else { continue };
         work += iterations;
         if let Some(bound) = program.bound(&z) {
-            return (Some(bound.clamp(0.0, t)), work);
+            return (Some(bound), work);
         }
     }
     (None, work)

@@ -107,6 +107,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
     let systems = Systems::new(problem, base);
     let mut reference = from.to_vec();
     let mut last = f64::NAN;
+    let mut course = Course::default();
     for step in 0..PROGRAMS {
         let replaced = fictitious(problem, &reference);
         *counters.entry("linear_programs".into()).or_default() += 1;
@@ -130,6 +131,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let gamma = systems.multipliers(problem, &motion);
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
+        course.take(factor, worst, idle);
         if worst.max(idle) <= TOLERANCE
             && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
@@ -158,9 +160,44 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             old.shear += share * (new.shear - old.shear);
         }
     }
-    Sequence::Open(format!(
-        "the sequence of {PROGRAMS} linear programs did not converge; the last factor above the start is {last:.9}"
-    ))
+    Sequence::Open(course.verdict())
+}
+
+/// Programs whose factors are told where the sequence does not converge.
+const TOLD: usize = 20;
+
+/// What the last programs of a sequence gave.
+#[derive(Default)]
+struct Course {
+    factors: Vec<f64>,
+    violation: f64,
+    idle: f64,
+}
+
+impl Course {
+    fn take(&mut self, factor: f64, violation: f64, idle: f64) {
+        self.factors.push(factor);
+        (self.violation, self.idle) = (violation, idle);
+    }
+
+    /// Why the sequence did not end at a state.
+    fn verdict(&self) -> String {
+        let last = &self.factors[self.factors.len().saturating_sub(TOLD)..];
+        let low = last.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let reason = if high - low > TOLERANCE * high.abs() {
+            format!("their factors wander between {low:.9} and {high:.9} above the start")
+        } else {
+            format!("their factor stays at {high:.9} above the start, but fields and mechanisms there do not fit")
+        };
+        format!(
+            "the sequence of {PROGRAMS} linear programs did not converge: in the last {} {reason}; the last field violates \
+             yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {TOLERANCE:e} at a state)",
+            last.len(),
+            self.violation,
+            self.idle
+        )
+    }
 }
 
 /// The pairs whose multiplier is more than rounding.
@@ -298,9 +335,17 @@ impl LimitSolver for LimitSequential {
             }
             Sequence::Converged(_) => {}
             Sequence::Open(why) => {
+                let admissible = if answer.factor.is_some() {
+                    format!(
+                        "an admissible field is known up to the associated load factor {:.9}: no collapse load lies above",
+                        answer.field_factor
+                    )
+                } else {
+                    format!("an admissible field is known at the factor {:.9}", answer.field_factor)
+                };
                 answer.status = Status::Stalled;
                 answer.factor = None;
-                answer.notes.push(why);
+                answer.notes.extend([why, admissible]);
             }
         }
         answer

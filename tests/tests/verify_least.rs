@@ -1,0 +1,108 @@
+//! The lower end of a bracket is recomputed: multipliers of products prove it, and no other number passes.
+
+use serde_json::{Value, json};
+use voussoir::kinds::run::answer_case;
+use voussoir::results::StudyResults;
+use voussoir::study::{Study, load};
+use voussoir::verify::verify;
+use voussoir_tests::study;
+
+/// A wall whose least load is below the associated one.
+fn wall(solver: &str, joint: &str) -> String {
+    format!(
+        "name = \"wall\"\n[scene]\nscene = \"wall\"\nwidth = 1.0\nbrick = [0.4, 0.2]\nrows = [[1.0, 1.0], [0.5, 1.0, 0.5], [1.0, 1.0]]\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{joint}\n[solver]\nsolver = \"limit_least\"\n{solver}\n[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = [10.0, 0.0] }}]\n"
+    )
+}
+
+const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.9";
+
+fn results(text: &str) -> (Study, Value) {
+    let original = study(text);
+    let resolved = toml::to_string(&original.resolved).expect("a study can be written");
+    let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
+    let cases = original.cases.iter().map(answer_case).collect();
+    let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
+    (again, serde_json::to_value(&results).expect("results can be written"))
+}
+
+fn findings(study: &Study, results: &Value) -> Vec<String> {
+    let text = serde_json::to_string(results).expect("JSON");
+    match serde_json::from_str::<StudyResults>(&text) {
+        Ok(results) => verify(study, &results).into_iter().map(|(_, why)| why).collect(),
+        Err(why) => vec![why.to_string()],
+    }
+}
+
+/// Untouched, the bracket is confirmed; a raised bound, a changed, dropped or negative multiplier, another
+/// range and another proof are found. Walls with friction, with cohesion and tension, and with dilatancy.
+#[test]
+fn a_changed_lower_proof_is_found() {
+    for joint in [
+        COULOMB,
+        "law = \"coulomb\"\nfriction = 0.6\ndilatancy_angle = 10.0",
+        "law = \"mohr_coulomb\"\nfriction = 0.6\ndilatancy_angle = 0.0\ncohesion = 200.0\ntensile_strength = 100.0",
+    ] {
+        let (study, original) = results(&wall("search_limit = 0.0\nproduct_rows = 4000", joint));
+        let case = &original["cases"][0];
+        assert_eq!(case["lower_proof"]["by"], "products", "{joint}: {} {}", case["notes"], case["certificate"]);
+        assert_eq!(findings(&study, &original), Vec::<String>::new(), "{joint}");
+        let [low, high] = [0, 1].map(|i| case["bounds"][i].as_f64().expect("a bound"));
+        println!("{joint}: [{low}, {high}] {} bytes", case["lower_proof"].to_string().len());
+        assert!(low > 0.5 * high, "{joint}: [{low}, {high}]");
+        let change = |path: &str, value: Value| {
+            let mut changed = original.clone();
+            *changed.pointer_mut(&format!("/cases/0/{path}")).unwrap_or_else(|| panic!("{path}")) = value;
+            assert!(!findings(&study, &changed).is_empty(), "{joint}: {path} was changed and not found");
+        };
+        for by in [1e-3, 1e-5] {
+            // Where the bracket is open; a closed one has no room for it.
+            let open = low * (1.0 + by) < high;
+            assert!(open || joint != COULOMB, "[{low}, {high}]");
+            if open {
+                change("bounds/0", json!(low * (1.0 + by)));
+            }
+        }
+        let step = &case["lower_proof"]["steps"][0];
+        let bound = step["bound"].as_f64().expect("a bound");
+        change("lower_proof/steps/0/bound", json!(bound * (1.0 + 1e-3)));
+        change("lower_proof/steps/0/range/0", json!(0.5 * low));
+        change("lower_proof/steps/0/range/1", json!(0.9 * high));
+        change("lower_proof/steps", json!([]));
+        change("lower_proof/by", json!("start"));
+        // Multipliers of products in which something of the found state moves or rests.
+        let multipliers = step["multipliers"].as_array().expect("multipliers");
+        let mut tried = 0;
+        for (i, row) in multipliers.iter().enumerate() {
+            for (j, entry) in row[1].as_array().expect("a row").iter().enumerate() {
+                let value = entry[1].as_f64().expect("a multiplier");
+                if (7 * i + j) % 13 == 0 && value.abs() > 1e-2 && value.abs() < 1e2 {
+                    let path = format!("lower_proof/steps/0/multipliers/{i}/1/{j}/1");
+                    change(&path, json!(value * 1.001));
+                    change(&path, json!(0.0));
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried >= 10, "{tried} multipliers were tried");
+    }
+}
+
+/// With all products the bracket closes, and is confirmed.
+#[test]
+fn a_closed_bracket_is_confirmed() {
+    let (study, original) = results(&wall("search_limit = 0.0", COULOMB));
+    let case = &original["cases"][0];
+    let [low, high] = [0, 1].map(|i| case["bounds"][i].as_f64().expect("a bound"));
+    assert!((high - 5.0 / 7.0).abs() < 1e-12 && low > high * (1.0 - 1e-6), "[{low}, {high}] {}", case["notes"]);
+    assert_eq!(case["lower_proof"]["by"], "products");
+    assert_eq!(findings(&study, &original), Vec::<String>::new());
+}
+
+/// What a search proved is said to be so.
+#[test]
+fn a_search_is_named() {
+    let (study, original) = results(&wall("product_rows = 0", COULOMB));
+    let case = &original["cases"][0];
+    assert_eq!(case["lower_proof"], json!({ "by": "search" }), "{}", case["bounds"]);
+    assert_eq!(findings(&study, &original), Vec::<String>::new());
+}
