@@ -11,6 +11,7 @@ mod energy;
 mod homotopy;
 mod lcp;
 mod local;
+mod pairs;
 mod point;
 mod rate;
 mod step;

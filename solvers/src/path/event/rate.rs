@@ -15,9 +15,8 @@
 //! Sources: Klarbring (1990), Ing.-Arch. 60; Björkman (1992) on rate problems with friction; the
 //! pieces are those of Alart and Curnier (1991).
 
-use super::lcp::{Lemke, lemke};
+use super::pairs::Pivoted;
 use super::system::{PointFacet, dot};
-use crate::path::complementarity::{Complementarity, Known};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::interface::FacetMode;
 
@@ -190,14 +189,6 @@ pub struct Rate {
     pub gaps: Vec<[f64; 2]>,
 }
 
-/// What pivoting found.
-enum Pivoted {
-    /// Pieces close to a solution.
-    Guess(Vec<Piece>),
-    /// A mechanism.
-    Ray(Rate),
-}
-
 /// What is known of the solutions.
 #[derive(Debug, Clone)]
 pub enum Verdict {
@@ -215,8 +206,6 @@ pub enum Verdict {
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
 const INEQUALITY: f64 = 1e-10;
-/// Relative tolerance of what pivoting finds.
-const PIVOTING: f64 = 1e-7;
 /// Unknowns above which linear algebra is that of large systems.
 const LARGE: usize = 30;
 /// Combinations that are tried.
@@ -227,8 +216,6 @@ const FEW: usize = 3000;
 /// Points up to which a rate problem is searched for other solutions, and guesses for that.
 const EXAMINED: usize = 12;
 const EXAMINATIONS: u64 = 1;
-/// Linear programs of a search.
-const PROGRAMS: u64 = 5000;
 /// Guesses from which a piecewise linear path is followed.
 const STARTS: u64 = 8;
 
@@ -257,16 +244,6 @@ impl Attempt {
     fn gaps_of_points(&self) -> Vec<[f64; 2]> {
         self.gaps.as_slice().chunks_exact(2).map(|gap| [gap[0], gap[1]]).collect()
     }
-}
-
-/// The rate problem over facets.
-struct OverFacets {
-    /// (point, facet).
-    facets: Vec<(usize, usize)>,
-    /// Scales of the facets.
-    unit: Vec<f64>,
-    m: DMatrix<f64>,
-    q: DVector<f64>,
 }
 
 /// A direction at a point.
@@ -399,6 +376,18 @@ impl RateProblem<'_> {
         rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
     }
 
+    /// Whether a rate with λ falling is more than unloading: a point that has just arrived flows.
+    pub(super) fn goes_on(&self, rate: &Rate) -> bool {
+        let mut points = self.points.iter().zip(&rate.pieces);
+        rate.factor < 0.0 && points.any(|(point, piece)| point.hit && *piece != Piece::Stick)
+    }
+
+    /// The rate of some pieces with λ̇ = `factor`, where it fits them.
+    pub(super) fn exactly(&self, pieces: Vec<Piece>, factor: f64) -> Option<Rate> {
+        let attempt = self.attempt(&pieces, 1.0).filter(|attempt| !attempt.singular)?;
+        self.violations(&pieces, &attempt, factor).is_empty().then(|| self.rate(&pieces, &attempt, factor, factor))
+    }
+
     /// Guess and correction with λ̇ = 1.
     pub fn corrected(&self, mut pieces: Vec<Piece>, counters: &mut u64) -> Option<Rate> {
         let mut seen = Vec::new();
@@ -434,7 +423,7 @@ impl RateProblem<'_> {
     }
 
     /// Every combination of pieces.
-    fn enumerated(&self, counters: &mut u64) -> Vec<Rate> {
+    pub(super) fn enumerated(&self, counters: &mut u64) -> Vec<Rate> {
         let candidates: Vec<Vec<Piece>> = self.points.iter().map(Verge::candidates).collect();
         let mut found: Vec<Rate> = Vec::new();
         let mut index = vec![0; candidates.len()];
@@ -468,103 +457,6 @@ impl RateProblem<'_> {
             index[..place].iter_mut().for_each(|i| *i = 0);
             index[place] += 1;
         }
-    }
-
-    /// The problem over all active facets, with their own flow or an associated one, each in its own scale:
-    /// slack rates w = q + M z, z the multipliers. `None` where a point is open.
-    fn over_facets(&self, associated: bool) -> Option<OverFacets> {
-        let facets: Vec<(usize, usize)> =
-            self.points.iter().enumerate().flat_map(|(k, p)| p.active.iter().map(move |f| (k, *f))).collect();
-        if facets.len() > 900 || self.points.iter().any(|p| p.open.is_some()) {
-            return None;
-        }
-        let n = facets.len();
-        let facet = |i: usize| &self.points[facets[i].0].facets[facets[i].1];
-        let flow = |i: usize| if associated { facet(i).normal } else { facet(i).flow };
-        let m = DMatrix::from_fn(n, n, |i, j| {
-            let (k, l, a, d) = (facets[i].0, facets[j].0, facet(i).normal, flow(j));
-            a[0] * (self.s[(2 * k, 2 * l)] * d[0] + self.s[(2 * k, 2 * l + 1)] * d[1])
-                + a[1] * (self.s[(2 * k + 1, 2 * l)] * d[0] + self.s[(2 * k + 1, 2 * l + 1)] * d[1])
-        });
-        let largest = m.diagonal().amax();
-        let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
-        let m = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
-        let q = DVector::from_fn(n, |i, _| {
-            let (k, a) = (facets[i].0, facet(i).normal);
-            -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) / unit[i]
-        });
-        Some(OverFacets { facets, unit, m, q })
-    }
-
-    /// A solution with λ̇ = 1 by a search.
-    fn searched(&self, counters: &mut u64) -> Option<Rate> {
-        let OverFacets { facets, m, q, .. } = self.over_facets(false)?;
-        let constant = &q / q.amax().max(1e-300);
-        let (known, programs) = Complementarity { matrix: m, constant }.search(PROGRAMS);
-        *counters += programs;
-        let Known::Solution(z) = known else { return None };
-        let largest = z.iter().copied().fold(0.0, f64::max);
-        self.corrected(self.read(&facets, |i| z[i] > PIVOTING * 1e-2 * largest), counters)
-    }
-
-    /// Lemke's pivoting over all active facets, with their own flow or an associated one: pieces to
-    /// correct, or the ray of a mechanism.
-    fn pivoted(&self, associated: bool, counters: &mut u64) -> Option<Pivoted> {
-        let OverFacets { facets, unit, m, q } = self.over_facets(associated)?;
-        let facet = |i: usize| &self.points[facets[i].0].facets[facets[i].1];
-        let flow = |i: usize| if associated { facet(i).normal } else { facet(i).flow };
-        let (z, ray) = match lemke(&m, &q, counters) {
-            Lemke::Solution(z) => (z, false),
-            Lemke::Ray(z) => (z, true),
-            Lemke::Unfinished => return None,
-        };
-        let mut gaps = vec![[0.0; 2]; self.points.len()];
-        for (i, (k, _)) in facets.iter().enumerate() {
-            let d = flow(i);
-            gaps[*k][0] -= z[i] / unit[i] * d[0];
-            gaps[*k][1] -= z[i] / unit[i] * d[1];
-        }
-        let z_size = z.iter().copied().fold(1e-300, f64::max);
-        if ray {
-            let w = &m * DVector::from_vec(z.clone());
-            let moves = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-            let largest = unit.iter().copied().fold(0.0, f64::max);
-            let still = w.amax() <= PIVOTING * z_size && z.iter().all(|z| *z >= -PIVOTING * z_size);
-            if !still
-                || moves * largest <= PIVOTING * z_size
-                || (!associated && q.dot(&DVector::from_vec(z.clone())) > 0.0)
-            {
-                return None;
-            }
-            let pieces = self.read(&facets, |i| z[i] > 1e-8 * z_size);
-            // What does not flow does not move, not even by rounding.
-            for (gap, _) in gaps.iter_mut().zip(&pieces).filter(|(_, piece)| **piece == Piece::Stick) {
-                *gap = [0.0; 2];
-            }
-            return Some(Pivoted::Ray(Rate { factor: 0.0, pieces, gaps }));
-        }
-        let w = &q + &m * DVector::from_vec(z.clone());
-        let w_size = w.amax().max(1e-300);
-        let pieces = self.read(&facets, |i| z[i] / z_size > (w[i] / w_size).max(1e-12));
-        Some(Pivoted::Guess(pieces))
-    }
-
-    /// Pieces from which facets (point, index) flow.
-    fn read(&self, facets: &[(usize, usize)], flows: impl Fn(usize) -> bool) -> Vec<Piece> {
-        let mut pieces = vec![Piece::Stick; self.points.len()];
-        for i in (0..facets.len()).filter(|i| flows(*i)) {
-            let (k, f) = facets[i];
-            let point = &self.points[k];
-            let opens = point.facets[f].mode == FacetMode::Opening;
-            pieces[k] = match pieces[k] {
-                Piece::Stick if point.apex && opens => Piece::Free,
-                Piece::Stick => Piece::Facet(f),
-                _ if point.apex => Piece::Free,
-                Piece::Facet(other) => Piece::Corner(other, f),
-                kept => kept,
-            };
-        }
-        pieces
     }
 
     /// Associated flow makes the problem monotone: from its solution the flow is turned step by step
@@ -610,7 +502,7 @@ impl RateProblem<'_> {
 
     /// Whether a mechanism means that the load does not grow: from nothing only where slip with
     /// associated flow does not carry it either.
-    fn proves(&self, counters: &mut u64) -> bool {
+    pub(super) fn proves(&self, counters: &mut u64) -> bool {
         !self.from_nothing || self.associated() || matches!(self.pivoted(true, counters), Some(Pivoted::Ray(_)))
     }
 
@@ -633,7 +525,7 @@ impl RateProblem<'_> {
     }
 
     /// A motion without forces in which every point keeps its piece, close to a given one.
-    fn mechanism(&self, pieces: &[Piece], gaps: &[[f64; 2]]) -> Option<Rate> {
+    pub(super) fn mechanism(&self, pieces: &[Piece], gaps: &[[f64; 2]]) -> Option<Rate> {
         let (flows, matrix) = self.system(pieces);
         let n = flows.len();
         if n == 0 {
@@ -707,8 +599,8 @@ impl RateProblem<'_> {
             if let Some(rate) = self.turned_from_associated(counters) {
                 return Verdict::Found(rate, None);
             }
-            if let Some(rate) = self.searched(counters) {
-                return Verdict::Found(rate, None);
+            if let Some(verdict) = self.searched(counters) {
+                return verdict;
             }
             return Verdict::Undecided(combinations);
         }
@@ -721,11 +613,7 @@ impl RateProblem<'_> {
         if let Some(rate) = best {
             return Verdict::Found(rate.clone(), Some(rising.saturating_sub(1)));
         }
-        let goes_on = |rate: &&Rate| {
-            rate.factor < 0.0
-                && self.points.iter().zip(&rate.pieces).any(|(point, piece)| point.hit && *piece != Piece::Stick)
-        };
-        match all.iter().find(goes_on) {
+        match all.iter().find(|rate| self.goes_on(rate)) {
             Some(rate) => Verdict::Falling(rate.clone()),
             None => Verdict::Nothing,
         }
