@@ -24,6 +24,7 @@
 //! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
 
 use super::{ContactLaw, Loading, PathObserver, PathProblem, PathState};
+use crate::geometry::cross;
 use crate::interface::{Facet, FacetMode};
 use std::collections::BTreeMap;
 
@@ -131,10 +132,10 @@ impl Watch {
             }
         }
         for (contact, force) in problem.contacts.iter().zip(&state.force) {
-            for plus in [false, true] {
-                let rows = problem.kinematics(contact, plus);
-                let body = if plus { contact.plus.body } else { contact.minus.body };
-                (0..3).for_each(|i| wrench[body][i] += rows[0][i] * force[0] + rows[1][i] * force[1]);
+            let push = contact.normal * force[0] + contact.tangent * force[1];
+            for (body, push) in [(contact.plus.body, push), (contact.minus.body, -push)] {
+                let moment = cross(contact.position - problem.bodies[body].pole, push);
+                [push.x, push.y, moment].into_iter().zip(&mut wrench[body]).for_each(|(f, sum)| *sum += f);
             }
             size += (force[0] * force[0] + force[1] * force[1]).sqrt();
         }

@@ -10,6 +10,10 @@ use voussoir_core::path::{Drive, DriveEnd, Increment};
 /// Greatest number of steps of a drive.
 const MOST_STEPS: u64 = 5000;
 
+/// Contact points up to which every change of regime counts for the length of the next step; of more the
+/// same share does, so that the number of steps does not grow with the number of joints.
+const ORDINARY: usize = 200;
+
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
@@ -228,6 +232,8 @@ impl Tracer<'_, '_> {
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
             before_peak_rate = next_rate.factor * direction;
             let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
+            // The same share of the joints, whatever their number.
+            let changes = changes * ORDINARY / next.regime.len().max(ORDINARY);
             let softening = self.model.response_changes(&self.state, &next);
             if !self.commit(next) {
                 return Outcome::Ended;
