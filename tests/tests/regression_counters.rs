@@ -59,13 +59,14 @@ fn newton_steps_hardly_grow_with_the_ring() {
     );
 }
 
-/// An event costs a few solutions on a factorisation that serves dozens, however many joints there are.
+/// An event costs three solutions (two rows of a point, one refinement), now and then those of another
+/// point, on a factorisation that serves dozens, however many joints there are.
 #[test]
 fn an_event_costs_a_few_solutions() {
     for voussoirs in [13, 130] {
         let counters = traced(voussoirs, "event_path").counters;
         let directions = counters["rate_problems"];
-        assert!(counters["solves"] <= 3 * directions, "{voussoirs}: {counters:?}");
+        assert!(2 * counters["solves"] <= 7 * directions, "{voussoirs}: {counters:?}");
         assert!(counters["factorisations"] <= 1 + directions / 25, "{voussoirs}: {counters:?}");
     }
 }
