@@ -64,7 +64,7 @@ fn exact_arch(c: &mut Criterion) {
 fn to_collapse(c: &mut Criterion) {
     for (name, solver) in [
         ("newton_path to collapse against voussoirs", &NewtonPath {} as &dyn PathSolver),
-        ("event_path to collapse against voussoirs", &EventPath {}),
+        ("event_path to collapse against voussoirs", &EventPath {} as &dyn PathSolver),
     ] {
         let mut group = c.benchmark_group(name);
         group.sample_size(10);
