@@ -59,17 +59,25 @@ fn exact_arch(c: &mut Criterion) {
     group.finish();
 }
 
-/// Whole paths to collapse: events grow with the voussoirs, so that the cost grows with their square.
-fn events_against_voussoirs(c: &mut Criterion) {
-    let mut group = c.benchmark_group("event_path against the number of voussoirs, to collapse");
-    group.sample_size(10);
-    for voussoirs in [13, 40, 130] {
-        let case = compliant_ring(voussoirs);
-        group.throughput(Throughput::Elements(voussoirs as u64));
-        group.bench_with_input(BenchmarkId::from_parameter(voussoirs), &case, |b, case| b.iter(|| events(case)));
+/// Whole paths to collapse. Events grow with the voussoirs and each looks at every contact point: the cost
+/// of events grows with their square; that of steps with a little more than their number.
+fn to_collapse(c: &mut Criterion) {
+    for (name, solver) in [
+        ("newton_path to collapse against voussoirs", &NewtonPath {} as &dyn PathSolver),
+        ("event_path to collapse against voussoirs", &EventPath {} as &dyn PathSolver),
+    ] {
+        let mut group = c.benchmark_group(name);
+        group.sample_size(10);
+        for voussoirs in [13, 130, 400] {
+            let case = compliant_ring(voussoirs);
+            group.throughput(Throughput::Elements(voussoirs as u64));
+            group.bench_with_input(BenchmarkId::from_parameter(voussoirs), &case, |b, case| {
+                b.iter(|| traced(solver, case, false));
+            });
+        }
+        group.finish();
     }
-    group.finish();
 }
 
-criterion_group!(benches, the_arch, cost_against_voussoirs, exact_arch, events_against_voussoirs);
+criterion_group!(benches, the_arch, cost_against_voussoirs, exact_arch, to_collapse);
 criterion_main!(benches);

@@ -1,6 +1,7 @@
 //! Work done, as counts: a performance regression fails here without a clock.
 
-use voussoir_tests::{Arch, answered};
+use voussoir::results::CaseResult;
+use voussoir_tests::{Arch, answered, friction};
 
 fn pivots(voussoirs: usize) -> u64 {
     answered(&Arch { voussoirs, ends: "jointed", solver: "limit_chain", ..Arch::default() }.study()).counters["pivots"]
@@ -37,4 +38,35 @@ fn ten_thousand_voussoirs() {
     assert!(result.certificate.passed, "{:?}", result.certificate);
     let [low, high] = result.bounds.expect("bounds");
     assert!((high - low) / high < 1e-12);
+}
+
+/// The benches' ring of rigid voussoirs on compliant joints, followed to its collapse.
+fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
+    let joint = format!("{}\nnormal_stiffness = 1e10\nshear_stiffness = 4e9", friction(0.6));
+    let result = answered(&Arch { voussoirs, ends: "jointed", width: 1.0, joint, solver, ..Arch::default() }.study());
+    assert!(result.certificate.passed, "{voussoirs}, {solver}: {:?}", result.certificate);
+    result
+}
+
+/// Steps of `newton_path` hardly grow with the number of joints, factorisations a step not at all.
+#[test]
+fn newton_steps_hardly_grow_with_the_ring() {
+    let [few, many] = [13, 130].map(|voussoirs| traced(voussoirs, "newton_path").counters);
+    assert!(many["steps"] <= 2 * few["steps"], "{few:?}, {many:?}");
+    assert!(
+        many["factorisations"] * few["steps"] <= few["factorisations"] * many["steps"] * 5 / 4,
+        "{few:?}, {many:?}"
+    );
+}
+
+/// An event costs three solutions (two rows of a point, one refinement), now and then those of another
+/// point, on a factorisation that serves dozens, however many joints there are.
+#[test]
+fn an_event_costs_a_few_solutions() {
+    for voussoirs in [13, 130] {
+        let counters = traced(voussoirs, "event_path").counters;
+        let directions = counters["rate_problems"];
+        assert!(2 * counters["solves"] <= 7 * directions, "{voussoirs}: {counters:?}");
+        assert!(counters["factorisations"] <= 1 + directions / 25, "{voussoirs}: {counters:?}");
+    }
 }

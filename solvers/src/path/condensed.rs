@@ -201,6 +201,11 @@ impl Condensed {
         }
     }
 
+    /// y of all unknowns.
+    pub fn kept_of(&self, x: &[f64]) -> Vec<f64> {
+        self.kept.iter().map(|i| x[*i]).collect()
+    }
+
     /// An unknown that belongs to no contact point, from y.
     pub fn other(&self, index: usize, y: &[f64]) -> f64 {
         y[self.place[index]]

@@ -22,13 +22,22 @@ const SHARING: f64 = 1e-11;
 /// Steps of refinement of the response to a load.
 const REFINEMENTS: usize = 3;
 
+/// Response to ε of a row of a point.
+struct Column {
+    /// Kept unknowns.
+    y: Vec<f64>,
+    /// All unknowns, refined.
+    x: Option<Vec<f64>>,
+}
+
 /// A factorised system.
 pub struct Base {
     /// Piece of each contact point in the matrix.
     pub pieces: Vec<Piece>,
+    /// Whether responses to single points are refined, as what is claimed of the rate problem needs.
+    pub careful: bool,
     equations: Condensed,
-    /// Kept unknowns per ε of a point's rows.
-    columns: BTreeMap<usize, [Vec<f64>; 2]>,
+    columns: BTreeMap<usize, [Column; 2]>,
     drive: Option<(usize, Vec<f64>)>,
 }
 
@@ -53,7 +62,7 @@ pub fn rows(system: &System, c: usize, piece: Piece) -> Option<[[f64; 4]; 2]> {
 
 impl Base {
     /// Assembles and factorises. `None` where the system is singular.
-    pub fn new(system: &System, pieces: Vec<Piece>) -> Option<Self> {
+    pub fn new(system: &System, pieces: Vec<Piece>, careful: bool) -> Option<Self> {
         let nc = system.contacts;
         let (mut entries, mut sharing): (Entries, Entries) = (Vec::new(), Vec::new());
         let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
@@ -83,7 +92,7 @@ impl Base {
             entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
         let equations = Condensed::new(system.size(), nc, &entries, &sharing)?;
-        Some(Base { pieces, equations, columns: BTreeMap::new(), drive: None })
+        Some(Base { pieces, careful, equations, columns: BTreeMap::new(), drive: None })
     }
 
     /// x for λ̇ = 1 with every piece as factorised.
@@ -138,9 +147,18 @@ impl Base {
         };
         let right: Vec<Vec<f64>> = new.iter().flat_map(|c| [unit(2 * c), unit(2 * c + 1)]).collect();
         *solves += right.len() as u64;
-        let mut y = self.equations.condense(&right)?.into_iter();
+        let mut columns: Vec<Column> = Vec::with_capacity(right.len());
+        if self.careful {
+            for right in &right {
+                let x = self.equations.solve(right, REFINEMENTS)?;
+                columns.push(Column { y: self.equations.kept_of(&x), x: Some(x) });
+            }
+        } else {
+            columns.extend(self.equations.condense(&right)?.into_iter().map(|y| Column { y, x: None }));
+        }
+        let mut columns = columns.into_iter();
         for c in new {
-            self.columns.insert(c, [y.next()?, y.next()?]);
+            self.columns.insert(c, [columns.next()?, columns.next()?]);
         }
         Some(())
     }
@@ -155,24 +173,29 @@ impl Base {
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
+        let gap = |row: usize, x: &[f64]| {
+            system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..])
+        };
+        let at = |x: &[f64], c: usize| [x[2 * c], x[2 * c + 1], gap(2 * c, x), gap(2 * c + 1, x)];
         for (k, own) in points.iter().enumerate() {
             let Some(columns) = self.columns.get(own) else { continue };
-            for (i, y) in columns.iter().enumerate() {
+            for (i, column) in columns.iter().enumerate() {
                 let epsilon = [[1.0, 0.0], [0.0, 1.0]][i];
                 let right = |c: usize| if c == *own { epsilon } else { [0.0; 2] };
-                for (row, here) in self.seen(system, points, right, y).into_iter().enumerate() {
+                let seen = match &column.x {
+                    Some(x) => points.iter().map(|c| at(x, *c)).collect(),
+                    None => self.seen(system, points, right, &column.y),
+                };
+                for (row, here) in seen.into_iter().enumerate() {
                     (0..4).for_each(|t| out[(4 * row + t, 2 * k + i)] = here[t]);
                 }
             }
         }
         if let Some((_, x)) = &self.drive {
-            let gap =
-                |row: usize| system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..]);
             for (row, &c) in points.iter().enumerate() {
-                let gap = [0, 1].map(|t| gap(2 * c + t) + load.gap[c][t]);
-                for (t, value) in [x[2 * c], x[2 * c + 1], gap[0], gap[1]].into_iter().enumerate() {
-                    out[(4 * row + t, 2 * n)] = value;
-                }
+                let here = at(x, c);
+                (0..2).for_each(|t| out[(4 * row + t, 2 * n)] = here[t]);
+                (0..2).for_each(|t| out[(4 * row + 2 + t, 2 * n)] = here[2 + t] + load.gap[c][t]);
             }
         }
         out
@@ -209,7 +232,7 @@ impl Base {
             for (i, column) in columns.iter().enumerate() {
                 let epsilon = epsilon[2 * k + i];
                 right[2 * c + i] += epsilon;
-                y.iter_mut().zip(column).for_each(|(y, v)| *y += epsilon * v);
+                y.iter_mut().zip(&column.y).for_each(|(y, v)| *y += epsilon * v);
             }
         }
         self.equations.expand(&right, &y)

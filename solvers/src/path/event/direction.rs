@@ -14,6 +14,9 @@ const RESIDUAL: f64 = 1e-12;
 const REFINED: (f64, usize) = (2e-15, 3);
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
 pub const MECHANISM: f64 = 1e-8;
+/// Forces below this share of the motions (in scaled units): directions are only taken from responses that
+/// are refined one by one, for what tells a mechanism from a soft structure cancels in their sum.
+const SHAKY: f64 = 1e-4;
 /// Points with a piece of their own beside the factorised one before factorising anew.
 const FRESH: usize = 40;
 /// Points at the verge of a change above which they are searched on the whole system.
@@ -51,6 +54,12 @@ impl Rates {
         }
         Rates { x, factor, gaps, worst: 0.0, refinements: 0 }
     }
+
+    /// Whether motions are so large beside the forces that a mechanism is near.
+    fn shaky(&self, forces: usize) -> bool {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        largest(&self.x[..forces]) < SHAKY * largest(&self.x[forces..])
+    }
 }
 
 /// Where the path goes on.
@@ -86,10 +95,13 @@ impl Tracer<'_> {
             // Closed points at the verge of a change make the best conditioned base: close to a collapse
             // one in which they flow is nearly singular.
             let stale = self.base.as_ref().is_none_or(|base| {
-                base.responses() > FRESH.max(2 * verge.len()) || verge.iter().any(|c| base.pieces[*c] != Piece::Stick)
+                // What is claimed here rests on the responses themselves.
+                !base.careful
+                    || base.responses() > FRESH.max(2 * verge.len())
+                    || verge.iter().any(|c| base.pieces[*c] != Piece::Stick)
             });
             let closed = |p: &Point| p.settled().unwrap_or(Piece::Stick);
-            if (fresh || stale) && !self.factorise(self.points.iter().map(closed).collect()) {
+            if (fresh || stale) && !self.factorise(self.points.iter().map(closed).collect(), true) {
                 return Next::Lost("the system is singular with the contact points at the verge of a change closed: a block is held by nothing".into());
             }
             if let Some(next) = self.reduced(load, &verge) {
@@ -99,9 +111,9 @@ impl Tracer<'_> {
         Next::Lost("the stiffness of the contact points at the verge of a change could not be found".into())
     }
 
-    fn factorise(&mut self, pieces: Vec<Piece>) -> bool {
+    fn factorise(&mut self, pieces: Vec<Piece>, careful: bool) -> bool {
         self.counts.factorisations += 1;
-        self.base = Base::new(&self.system, pieces);
+        self.base = Base::new(&self.system, pieces, careful);
         self.base.is_some()
     }
 
@@ -120,19 +132,27 @@ impl Tracer<'_> {
                 return None;
             }
             let mut pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
-            if self.base.as_ref().is_none_or(|base| base.responses() > FRESH.max(2 * open.len()))
-                && !self.factorise(pieces.clone())
+            if self
+                .base
+                .as_ref()
+                .is_none_or(|base| base.careful < self.careful || base.responses() > FRESH.max(2 * open.len()))
+                && !self.factorise(pieces.clone(), self.careful)
             {
                 return None;
             }
             let base = self.base.as_mut()?;
+            let base_careful = base.careful;
             let solves = &mut self.counts.solves;
             let local = Local::new((&self.system, &self.points), base, (self.drive, load), &open, &pieces, solves)?;
             let rate = local.rate.corrected(open.iter().map(|c| pieces[*c]).collect(), &mut self.counts.trials)?;
-            let x = local.combine(base, (self.drive, load), &rate)?;
             open.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
+            let x = local.combine(base, (self.drive, load), &rate)?;
             let rates = self.refined(&local, Rates::new(&self.system, x, 1.0, load), load, &pieces);
             self.counts.solves += rates.refinements;
+            if !base_careful && rates.shaky(2 * self.system.contacts) {
+                self.careful = true;
+                continue;
+            }
             let moved = self.leaving(&rates, verge, &pieces)?;
             if moved.is_empty() {
                 let rates = self.anew(rates, load, &pieces);
@@ -269,7 +289,7 @@ impl Tracer<'_> {
             return rates;
         }
         self.counts.factorisations += 1;
-        let Some(mut base) = Base::new(&self.system, pieces.to_vec()) else { return rates };
+        let Some(mut base) = Base::new(&self.system, pieces.to_vec(), self.careful) else { return rates };
         let Some(direct) = base.drive(&self.system, self.drive, load) else { return rates };
         let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
         // Where the matrix is singular the sense of its solution is rounding.
@@ -347,7 +367,7 @@ impl Tracer<'_> {
         let mut seen: Vec<Vec<Piece>> = Vec::new();
         for round in 0..80 {
             self.counts.factorisations += 1;
-            let mut base = Base::new(&self.system, pieces.clone())?;
+            let mut base = Base::new(&self.system, pieces.clone(), self.careful)?;
             let x = base.drive(&self.system, self.drive, load)?.clone();
             let rates = Rates::new(&self.system, x, 1.0, load);
             let mut changes = self.leaving(&rates, verge, &pieces)?;

@@ -92,7 +92,8 @@ impl<'a> Local<'a> {
         let n = self.points.len();
         let mut right = left.to_vec();
         self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
-        let y = base.kept(&right)?;
+        // Where only these points are left over, nothing else is to be solved.
+        let y = if right.iter().any(|v| *v != 0.0) { base.kept(&right)? } else { base.nothing().1 };
         let held = |k: usize| still && k < self.open;
         let piece = |(k, c): (usize, &usize)| rows(self.system, *c, if held(k) { Piece::Stick } else { pieces[*c] });
         let picks: Vec<[[f64; 4]; 2]> = self.points.iter().enumerate().map(piece).collect::<Option<_>>()?;

@@ -258,9 +258,9 @@ mod tests {
             // At the apex, or pressed and slipping one way.
             let point = |k: usize| Verge {
                 facets: &laws,
-                active: if (number + k) % 4 == 0 { vec![0, 1, 2] } else { vec![1 + k % 2] },
+                active: if (number + k).is_multiple_of(4) { vec![0, 1, 2] } else { vec![1 + k % 2] },
                 open: None,
-                apex: (number + k) % 4 == 0,
+                apex: (number + k).is_multiple_of(4),
                 guess: Piece::Stick,
                 hit: true,
                 stiffness: 1.0,

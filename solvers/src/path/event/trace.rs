@@ -10,6 +10,9 @@ use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{Drive, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
+/// Events after which gaps are computed from the unknowns again.
+const CARRIED: usize = 16;
+
 /// Follows one problem.
 pub struct Tracer<'a> {
     problem: &'a PathProblem,
@@ -18,6 +21,10 @@ pub struct Tracer<'a> {
     pub(super) system: System,
     pub(super) points: Vec<Point>,
     pub(super) base: Option<Base>,
+    /// Whether responses are refined one by one: close to a collapse.
+    pub(super) careful: bool,
+    /// Gaps at the present state with the loads' own, and how often they were carried on by their rates.
+    gaps: Option<(Vec<[f64; 2]>, usize)>,
     /// All unknowns at the present state.
     pub(super) x: Vec<f64>,
     pub(super) drive: usize,
@@ -59,6 +66,8 @@ impl<'a> Tracer<'a> {
             loading_gaps: problem.drives.iter().map(opened).collect(),
             points,
             base: None,
+            careful: false,
+            gaps: None,
             drive: 0,
             factor: 0.0,
             work: 0.0,
@@ -97,6 +106,7 @@ impl<'a> Tracer<'a> {
             if let Some(base) = &mut self.base {
                 base.forget_drive();
             }
+            self.careful = false;
             if self.last.is_none() && !self.record() {
                 return self.finish(Status::Stalled, None, None, Some("stopped by its observer".into()));
             }
@@ -142,6 +152,7 @@ impl<'a> Tracer<'a> {
                     return self.ray(&direction, &load, sense);
                 }
                 self.advance(&direction, step, sense, if whole { &[] } else { &hits });
+                self.carry_gaps(&direction, step);
                 if whole && direction.factor > 0.0 {
                     self.factor = target;
                 }
@@ -206,18 +217,37 @@ impl<'a> Tracer<'a> {
         load_displacement(self.problem, &self.problem.drives[self.drive].loading, &self.motion())
     }
 
-    /// The present state with the energies of the last record.
-    fn state(&self) -> PathState {
+    /// Gaps at the present state in scaled units.
+    fn gaps_at(&self) -> Vec<[f64; 2]> {
         let mut gap = self.system.gaps(&self.x);
-        for (g, initial) in gap.iter_mut().zip(&self.system.gap) {
-            g[0] += initial;
-            g.iter_mut().for_each(|g| *g *= self.system.displacement_unit);
-        }
+        gap.iter_mut().zip(&self.system.gap).for_each(|(g, initial)| g[0] += initial);
         for (opened, factor) in self.loading_gaps.iter().zip(self.problem.applied(self.drive, self.factor)) {
             if let (Some(opened), true) = (opened, factor != 0.0) {
+                let factor = factor / self.system.displacement_unit;
                 gap.iter_mut().flatten().zip(opened.iter().flatten()).for_each(|(g, o)| *g += factor * o);
             }
         }
+        gap
+    }
+
+    /// Carries the gaps on by their rates, and now and then, where rounding would add up, from the unknowns.
+    fn carry_gaps(&mut self, direction: &Direction, step: f64) {
+        match &mut self.gaps {
+            Some((gaps, times)) if *times < CARRIED => {
+                *times += 1;
+                gaps.iter_mut().flatten().zip(direction.gaps.iter().flatten()).for_each(|(g, rate)| *g += step * rate);
+            }
+            _ => self.gaps = Some((self.gaps_at(), 0)),
+        }
+    }
+
+    /// The present state with the energies of the last record.
+    fn state(&self) -> PathState {
+        let mut gap = match &self.gaps {
+            Some((gaps, _)) => gaps.clone(),
+            None => self.gaps_at(),
+        };
+        gap.iter_mut().flatten().for_each(|g| *g *= self.system.displacement_unit);
         let motion = self.motion();
         PathState {
             drive: self.drive,

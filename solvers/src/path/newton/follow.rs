@@ -13,6 +13,10 @@ const MOST_STEPS: u64 = 5000;
 /// Branches with growing λ that are taken at one factor.
 const MOST_BRANCHES: u32 = 3;
 
+/// Contact points up to which every change of regime counts for the length of the next step; of more the
+/// same share does, so that the number of steps does not grow with the number of joints.
+const ORDINARY: usize = 200;
+
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
@@ -292,6 +296,8 @@ impl Tracer<'_, '_> {
             self.plateau(&next, &next_rate);
             before_peak_rate = next_rate.factor * direction;
             let changes = (0..next.regime.len()).filter(|c| next.regime[*c] != self.state.regime[*c]).count();
+            // The same share of the joints, whatever their number.
+            let changes = changes * ORDINARY / next.regime.len().max(ORDINARY);
             let softening = self.model.response_changes(&self.state, &next);
             if !self.commit(next) {
                 return Outcome::Ended;
