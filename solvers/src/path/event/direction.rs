@@ -135,7 +135,7 @@ impl Tracer<'_> {
             if self
                 .base
                 .as_ref()
-                .is_none_or(|base| base.careful < self.careful || base.responses() > FRESH.max(2 * open.len()))
+                .is_none_or(|base| (!base.careful && self.careful) || base.responses() > FRESH.max(2 * open.len()))
                 && !self.factorise(pieces.clone(), self.careful)
             {
                 return None;
