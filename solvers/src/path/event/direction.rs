@@ -308,7 +308,8 @@ impl Tracer<'_> {
         let nc = self.system.contacts;
         let x = &rates.x;
         let largest = |values: &[f64]| values.iter().fold(1e-300, |a: f64, b| a.max(b.abs()));
-        let forces = largest(&x[..2 * nc]);
+        // Where everything comes apart forces are zero, up to what is left of them.
+        let forces = largest(&x[..2 * nc]).max(rates.factor.abs() * load.size);
         let motions = largest(&x[2 * nc..]).max(forces);
         let mut worst: f64 = 0.0;
         let mut left = Vec::with_capacity(x.len());

@@ -41,6 +41,8 @@ pub struct Load {
     pub gap: Vec<[f64; 2]>,
     /// Whether it opens any.
     pub opens: bool,
+    /// Greatest of them all: the size of forces that it causes, in scaled units.
+    pub size: f64,
 }
 
 /// The scaled problem.
@@ -192,7 +194,9 @@ impl System {
         let gap: Vec<[f64; 2]> =
             problem.loading_gaps(loading).into_iter().map(|g| g.map(|g| g / self.displacement_unit)).collect();
         let opens = gap.iter().flatten().any(|g| *g != 0.0);
-        Load { wrench, gap, opens }
+        let all = wrench.iter().flatten().chain(gap.iter().flatten());
+        let size = all.fold(0.0, |a: f64, v| a.max(v.abs()));
+        Load { wrench, gap, opens, size }
     }
 
     /// Gaps that forces and motions open: C r + G q, for a vector of all unknowns.
