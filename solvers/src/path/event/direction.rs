@@ -12,6 +12,11 @@ use super::trace::Tracer;
 const RESIDUAL: f64 = 1e-12;
 /// Relative residual of a direction up to which it is refined, and the most steps of that.
 const REFINED: (f64, usize) = (2e-15, 3);
+/// The same above which a direction is not believed: guess and correction give way to the whole rate
+/// problem, and its answer is given up.
+const BELIEVED: [f64; 2] = [1e-9, 1e-6];
+/// Forces below this share of the motions of a system that is singular to rounding are rounding.
+const SINGULAR: f64 = 1e-6;
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
 pub const MECHANISM: f64 = 1e-8;
 /// Forces below this share of the motions (in scaled units): directions are only taken from responses that
@@ -156,6 +161,9 @@ impl Tracer<'_> {
             let moved = self.leaving(&rates, verge, &pieces)?;
             if moved.is_empty() {
                 let rates = self.anew(rates, load, &pieces);
+                if rates.worst > BELIEVED[0] {
+                    return None;
+                }
                 self.points.iter_mut().zip(pieces).for_each(|(point, piece)| point.piece = piece);
                 return Some(self.completed(rates, load));
             }
@@ -246,6 +254,18 @@ impl Tracer<'_> {
         let rates = self.refined(&local, Rates::new(&self.system, x, rate.factor, load), load, &pieces);
         self.counts.solves += rates.refinements;
         let rates = self.anew(rates, load, &pieces);
+        let rates = if rates.factor != 0.0 && rates.worst > BELIEVED[1] {
+            let worst = rates.worst;
+            let Some(motion) = self.motion_alone(rates, load, verge, &pieces) else {
+                return Some(Next::Lost(format!(
+                    "the rates at λ = {:.9} leave {worst:.1e} of their equations: the system is singular to rounding",
+                    self.factor
+                )));
+            };
+            motion
+        } else {
+            rates
+        };
         for (&c, piece) in verge.iter().zip(&rate.pieces) {
             self.points[c].piece = *piece;
         }
@@ -300,6 +320,23 @@ impl Tracer<'_> {
             return direct;
         }
         rates
+    }
+
+    /// What is left of rates whose system is singular to rounding: the motion alone, where forces are small
+    /// beside it and it keeps to its pieces, in the sense in which it does.
+    fn motion_alone(&self, rates: Rates, load: &Load, verge: &[usize], pieces: &[Piece]) -> Option<Rates> {
+        let forces = 2 * self.system.contacts;
+        let largest = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let size = largest(&rates.x[forces..]);
+        if largest(&rates.x[..forces]) > SINGULAR * size {
+            return None;
+        }
+        [1.0, -1.0].into_iter().find_map(|sense| {
+            let x = rates.x.iter().enumerate().map(|(i, v)| if i < forces { 0.0 } else { sense * v / size });
+            let motion = Rates::new(&self.system, x.collect(), 0.0, load);
+            let fits = self.leaving(&motion, verge, pieces).is_some_and(|moved| moved.iter().all(|m| m.0 <= SINGULAR));
+            (fits && self.left(&motion, load, pieces).0 <= SINGULAR).then_some(motion)
+        })
     }
 
     /// The worst residual of a direction relative to the forces and gaps, and what it leaves of the
@@ -373,6 +410,9 @@ impl Tracer<'_> {
             let rates = Rates::new(&self.system, x, 1.0, load);
             let mut changes = self.leaving(&rates, verge, &pieces)?;
             if changes.is_empty() {
+                if self.left(&rates, load, &pieces).0 > BELIEVED[0] {
+                    return None;
+                }
                 for (c, piece) in pieces.into_iter().enumerate() {
                     self.points[c].piece = piece;
                 }

@@ -10,9 +10,6 @@ use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{Drive, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
-/// Events after which gaps are computed from the unknowns again.
-const CARRIED: usize = 16;
-
 /// Follows one problem.
 pub struct Tracer<'a> {
     problem: &'a PathProblem,
@@ -23,8 +20,6 @@ pub struct Tracer<'a> {
     pub(super) base: Option<Base>,
     /// Whether responses are refined one by one: close to a collapse.
     pub(super) careful: bool,
-    /// Gaps at the present state with the loads' own, and how often they were carried on by their rates.
-    gaps: Option<(Vec<[f64; 2]>, usize)>,
     /// All unknowns at the present state.
     pub(super) x: Vec<f64>,
     pub(super) drive: usize,
@@ -67,7 +62,6 @@ impl<'a> Tracer<'a> {
             points,
             base: None,
             careful: false,
-            gaps: None,
             drive: 0,
             factor: 0.0,
             work: 0.0,
@@ -152,7 +146,6 @@ impl<'a> Tracer<'a> {
                     return self.ray(&direction, &load, sense);
                 }
                 self.advance(&direction, step, sense, if whole { &[] } else { &hits });
-                self.carry_gaps(&direction, step);
                 if whole && direction.factor > 0.0 {
                     self.factor = target;
                 }
@@ -230,23 +223,9 @@ impl<'a> Tracer<'a> {
         gap
     }
 
-    /// Carries the gaps on by their rates, and now and then, where rounding would add up, from the unknowns.
-    fn carry_gaps(&mut self, direction: &Direction, step: f64) {
-        match &mut self.gaps {
-            Some((gaps, times)) if *times < CARRIED => {
-                *times += 1;
-                gaps.iter_mut().flatten().zip(direction.gaps.iter().flatten()).for_each(|(g, rate)| *g += step * rate);
-            }
-            _ => self.gaps = Some((self.gaps_at(), 0)),
-        }
-    }
-
     /// The present state with the energies of the last record.
     fn state(&self) -> PathState {
-        let mut gap = match &self.gaps {
-            Some((gaps, _)) => gaps.clone(),
-            None => self.gaps_at(),
-        };
+        let mut gap = self.gaps_at();
         gap.iter_mut().flatten().for_each(|g| *g *= self.system.displacement_unit);
         let motion = self.motion();
         PathState {
