@@ -75,6 +75,8 @@ pub enum Next {
     Falling(Direction),
     /// Nowhere.
     Nothing,
+    /// Not with λ rising; whether with λ standing still or falling is not decided.
+    NoneRises,
     /// Not decided, and why.
     Lost(String),
 }
@@ -240,6 +242,7 @@ impl Tracer<'_> {
             }
             Verdict::Falling(rate) => (rate, true),
             Verdict::Nothing => return Some(Next::Nothing),
+            Verdict::NoneRises => return Some(Next::NoneRises),
             Verdict::Undecided(combinations) => {
                 return Some(Next::Lost(format!(
                     "the rate problem at λ = {:.9} has {} contact points at the verge of a change ({combinations} combinations), and pivoting did not solve it; newton_path or a slightly different mesh or load may pass",

@@ -44,6 +44,13 @@ struct Pairs {
     q: DVector<f64>,
 }
 
+/// What is known of a complementarity problem; `counters` counts linear programs.
+fn asked(matrix: DMatrix<f64>, constant: DVector<f64>, counters: &mut u64) -> Known {
+    let (known, programs) = Complementarity { matrix, constant }.search(PROGRAMS);
+    *counters += programs;
+    known
+}
+
 impl RateProblem<'_> {
     /// With the laws' own flow or an associated one. `None` where points are open with a strength: their
     /// multipliers have any sign.
@@ -125,6 +132,14 @@ impl RateProblem<'_> {
         Some(Pivoted::Guess(pieces))
     }
 
+    /// Pieces and ġ of multipliers that solve the problem.
+    fn moving(&self, pairs: &Pairs, z: &[f64]) -> (Vec<Piece>, Vec<[f64; 2]>) {
+        let most = z.iter().copied().fold(1e-300, f64::max);
+        let w = &pairs.m * DVector::from_column_slice(z);
+        let pieces = self.read(&pairs.facets, |i| z[i] > 1e-9 * most && z[i] > 1e-9 * w[i]);
+        (pieces, self.gaps_of(pairs, z, false))
+    }
+
     /// Searches for a rate with λ growing, else for one with λ standing still, else for one with λ falling.
     /// `None` where that is not decided.
     pub(super) fn searched(&self, counters: &mut u64) -> Option<Verdict> {
@@ -133,24 +148,20 @@ impl RateProblem<'_> {
         if size == 0.0 {
             return None;
         }
-        let (n, q) = (pairs.facets.len(), &pairs.q / size);
-        let ask = |matrix: DMatrix<f64>, constant: DVector<f64>, counters: &mut u64| {
-            let (known, programs) = Complementarity { matrix, constant }.search(PROGRAMS);
-            *counters += programs;
-            known
-        };
-        let moving = |z: &[f64]| {
-            let most = z.iter().copied().fold(1e-300, f64::max);
-            let w = &pairs.m * DVector::from_column_slice(z);
-            (self.read(&pairs.facets, |i| z[i] > 1e-9 * most && z[i] > 1e-9 * w[i]), self.gaps_of(&pairs, z, false))
-        };
-        match ask(pairs.m.clone(), q.clone(), counters) {
+        let q = &pairs.q / size;
+        match asked(pairs.m.clone(), q.clone(), counters) {
             Known::Solution(z) => {
-                return self.corrected(moving(&z).0, counters).map(|rate| Verdict::Found(rate, None));
+                return self.corrected(self.moving(&pairs, &z).0, counters).map(|rate| Verdict::Found(rate, None));
             }
             Known::Undecided(_) => return None,
             Known::None => {}
         }
+        Some(self.standing_or_falling(&pairs, &q, counters).unwrap_or(Verdict::NoneRises))
+    }
+
+    /// The search where no rate has λ growing, for `q` of size one.
+    fn standing_or_falling(&self, pairs: &Pairs, q: &DVector<f64>, counters: &mut u64) -> Option<Verdict> {
+        let n = pairs.facets.len();
         // t in column n; its row and the column of the last row's partner are empty.
         let cone = |sense: f64, counted: &[f64]| {
             DMatrix::from_fn(n + 2, n + 2, |i, j| match (i < n, j < n) {
@@ -161,10 +172,10 @@ impl RateProblem<'_> {
             })
         };
         let least = DVector::from_fn(n + 2, |i, _| if i == n + 1 { -1.0 } else { 0.0 });
-        for counted in self.counted(&pairs, true, |_| true) {
-            match ask(cone(1.0, &counted), least.clone(), counters) {
+        for counted in self.counted(pairs, true, |_| true) {
+            match asked(cone(1.0, &counted), least.clone(), counters) {
                 Known::Solution(z) => {
-                    let (pieces, gaps) = moving(&z[..n]);
+                    let (pieces, gaps) = self.moving(pairs, &z[..n]);
                     let rate = self.mechanism(&pieces, &gaps).filter(|_| z[n] <= PIVOTING)?;
                     return self.proves(counters).then_some(Verdict::Found(rate, None));
                 }
@@ -173,10 +184,10 @@ impl RateProblem<'_> {
             }
         }
         // Mere unloading is none: a point that has just arrived must flow.
-        for counted in self.counted(&pairs, false, |k| self.points[k].hit) {
-            match ask(cone(-1.0, &counted), least.clone(), counters) {
+        for counted in self.counted(pairs, false, |k| self.points[k].hit) {
+            match asked(cone(-1.0, &counted), least.clone(), counters) {
                 Known::Solution(z) => {
-                    let rate = self.exactly(moving(&z[..n]).0, -1.0)?;
+                    let rate = self.exactly(self.moving(pairs, &z[..n]).0, -1.0)?;
                     return self.goes_on(&rate).then_some(Verdict::Falling(rate));
                 }
                 Known::Undecided(_) => return None,

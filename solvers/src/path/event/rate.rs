@@ -198,6 +198,8 @@ pub enum Verdict {
     Falling(Rate),
     /// None at all that goes on: all combinations were tried.
     Nothing,
+    /// None with λ̇ > 0; whether there are others is not decided.
+    NoneRises,
     /// Not decided: too many combinations.
     Undecided(usize),
 }

@@ -123,6 +123,13 @@ impl<'a> Tracer<'a> {
                         ));
                         return self.ended();
                     }
+                    Next::NoneRises => {
+                        self.notes.push(format!(
+                            "at λ = {:.12} no rate of solution has λ rising: every combination of the contact points at the verge of a change is excluded; whether a rate goes on with λ standing still or falling is not decided",
+                            self.factor
+                        ));
+                        return self.ended();
+                    }
                     Next::Lost(why) => return self.lost(why),
                 };
                 if falling && self.limit_point.is_none() {
