@@ -4,6 +4,8 @@
 //! ones, `invariance.rs` what must not matter, `mistakes.rs` the exact text of every error message.
 
 pub mod random;
+pub mod seen;
+pub mod written;
 
 use voussoir::core::assembly::Assembly;
 use voussoir::core::geometry::Vec2;

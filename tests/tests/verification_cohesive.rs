@@ -3,27 +3,14 @@
 use std::sync::Arc;
 use voussoir::core::limit::Status;
 use voussoir::core::path::certificate::{TOLERANCES, Tolerance, Watch};
-use voussoir::core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState};
+use voussoir::core::path::{Continuation, PathAnswer, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
     arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
     load_control::LoadControl,
 };
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::seen::Seen;
 use voussoir_tests::{Arch, answered, assert_close, first_case};
-
-/// Every state of a path, with its certificate.
-#[derive(Default)]
-struct States {
-    states: Vec<PathState>,
-    watch: Watch,
-}
-
-impl PathObserver for States {
-    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
-        self.states.push(state.clone());
-        self.watch.state(problem, state)
-    }
-}
 
 fn settings(strategy: impl Continuation + 'static) -> PathSettings {
     PathSettings {
@@ -38,7 +25,7 @@ fn settings(strategy: impl Continuation + 'static) -> PathSettings {
 fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Vec<PathState>) {
     let case = first_case(text);
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
-    let mut states = States { watch: Watch::new(settings.finite), ..States::default() };
+    let mut states = Seen { watch: Watch::new(settings.finite), ..Seen::default() };
     let answer = NewtonPath {}.trace(&problem, settings, &mut states);
     for Tolerance { name, result: bound, .. } in TOLERANCES {
         let worst = states.watch.worst.get(name).copied().unwrap_or(0.0);

@@ -10,13 +10,14 @@ use voussoir::core::interface::Facet;
 use voussoir::core::limit::Status;
 use voussoir::core::path::certificate::Watch;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
-    PathSettings, PathSolver, PathState, Unobserved,
+    Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
+    PathSolver, PathState, Unobserved,
 };
 use voussoir::solvers::path::continuation::arc_length::ArcLength;
 use voussoir::solvers::path::continuation::load_control::LoadControl;
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::seen::Record;
 use voussoir_tests::{assert_close, first_case};
 
 fn settings() -> PathSettings {
@@ -287,17 +288,6 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         drives,
         length: 2.0,
         counters: BTreeMap::new(),
-    }
-}
-
-/// Keeps every state.
-#[derive(Default)]
-struct Record(Vec<PathState>);
-
-impl PathObserver for Record {
-    fn state(&mut self, _problem: &PathProblem, state: &PathState) -> bool {
-        self.0.push(state.clone());
-        true
     }
 }
 

@@ -2,22 +2,10 @@
 //! goes wrong without it (docs/crushing.md).
 
 use voussoir::core::path::certificate::Watch;
-use voussoir::core::path::{PathObserver, PathProblem, PathSettings, PathSolver, PathState};
+use voussoir::core::path::{PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::seen::Seen;
 use voussoir_tests::{assert_close, study};
-
-/// Every state of a path, with its certificate.
-struct Seen {
-    states: Vec<PathState>,
-    watch: Watch,
-}
-
-impl PathObserver for Seen {
-    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
-        self.states.push(state.clone());
-        self.watch.state(problem, state)
-    }
-}
 
 /// A row of the table in docs/crushing.md.
 #[derive(Debug)]

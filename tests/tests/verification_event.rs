@@ -11,6 +11,7 @@ use voussoir::core::path::{
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::seen::Record;
 use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
 
 fn settings() -> PathSettings {
@@ -21,17 +22,6 @@ fn elastic(study: &str, mesh: &str) -> String {
     study
         .replace("law = \"rigid\"", "law = \"elastic\"\nyoung_modulus = \"5 GPa\"\npoisson_ratio = 0.3")
         .replace("[materials.stone]", &format!("[scene.mesh]\n{mesh}\n[materials.stone]"))
-}
-
-/// Keeps every state.
-#[derive(Default)]
-struct Record(Vec<PathState>);
-
-impl PathObserver for Record {
-    fn state(&mut self, _problem: &PathProblem, state: &PathState) -> bool {
-        self.0.push(state.clone());
-        true
-    }
 }
 
 /// The last factor is that of limit analysis to 1e-9 on any mesh of any order, also where slip does

@@ -6,24 +6,15 @@ use voussoir::core::geometry::Vec2;
 use voussoir::core::limit::{Counters, Status};
 use voussoir::core::mechanism::MechanismKind;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver,
-    PathProblem, PathSettings, PathSolver, PathState,
+    Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem,
+    PathSettings, PathSolver, PathState,
 };
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::seen::Record;
 use voussoir_tests::{answered, assert_close, first_case};
 
 fn settings(stop_displacement: Option<f64>, continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
     PathSettings { finite: true, tolerance: 1e-9, stop_displacement, stop_factor: None, continuation }
-}
-
-#[derive(Default)]
-struct Record(Vec<PathState>);
-
-impl PathObserver for Record {
-    fn state(&mut self, _: &PathProblem, state: &PathState) -> bool {
-        self.0.push(state.clone());
-        true
-    }
 }
 
 fn followed(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Vec<PathState>) {

@@ -3,16 +3,14 @@
 
 use std::sync::Arc;
 use voussoir::core::limit::Status;
-use voussoir::core::path::{
-    Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver, PathState, Unobserved,
-    certificate::Watch,
-};
+use voussoir::core::path::{Continuation, PathAnswer, PathProblem, PathSettings, PathSolver, PathState, Unobserved};
 use voussoir::solvers::path::continuation::{
     arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
     load_control::LoadControl,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
+use voussoir_tests::seen::Seen;
 use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
 
 /// The paper's stone with p_b = 10 MPa, E = 5 GPa, ν = 0.2; `hardening` in TOML.
@@ -130,29 +128,6 @@ const COLLAPSE: &str = "[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads
 
 fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
     PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation }
-}
-
-/// Everything seen on the way, with the certificate of it all.
-#[derive(Default)]
-struct Seen {
-    states: Vec<PathState>,
-    watch: Watch,
-}
-
-impl PathObserver for Seen {
-    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
-        self.states.push(state.clone());
-        self.watch.state(problem, state)
-    }
-}
-
-impl Seen {
-    fn is_certified(&self) {
-        for name in ["path_equilibrium", "path_kinematics", "path_inner_equilibrium", "path_yield", "path_strength"] {
-            let value = self.watch.worst[name];
-            assert!(value <= 1e-8, "{name} is {value:.2e}");
-        }
-    }
 }
 
 fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Seen) {

@@ -1,11 +1,7 @@
 //! The lower end of a bracket is recomputed: multipliers of products prove it, and no other number passes.
 
 use serde_json::{Value, json};
-use voussoir::kinds::run::answer_case;
-use voussoir::results::StudyResults;
-use voussoir::study::{Study, load};
-use voussoir::verify::verify;
-use voussoir_tests::study;
+use voussoir_tests::written::{findings, results};
 
 /// A wall whose least load is below the associated one.
 fn wall(solver: &str, joint: &str) -> String {
@@ -15,23 +11,6 @@ fn wall(solver: &str, joint: &str) -> String {
 }
 
 const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.9";
-
-fn results(text: &str) -> (Study, Value) {
-    let original = study(text);
-    let resolved = toml::to_string(&original.resolved).expect("a study can be written");
-    let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
-    let cases = original.cases.iter().map(answer_case).collect();
-    let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
-    (again, serde_json::to_value(&results).expect("results can be written"))
-}
-
-fn findings(study: &Study, results: &Value) -> Vec<String> {
-    let text = serde_json::to_string(results).expect("JSON");
-    match serde_json::from_str::<StudyResults>(&text) {
-        Ok(results) => verify(study, &results).into_iter().map(|(_, why)| why).collect(),
-        Err(why) => vec![why.to_string()],
-    }
-}
 
 /// Untouched, the bracket is confirmed; a raised bound, a changed, dropped or negative multiplier, another
 /// range and another proof are found. Walls with friction, with cohesion and tension, and with dilatancy.

@@ -1,29 +1,9 @@
 //! `verify` reads only results.json and resolved.toml and finds every number that was changed.
 
 use serde_json::{Value, json};
-use voussoir::kinds::run::answer_case;
-use voussoir::results::StudyResults;
-use voussoir::study::{Study, load};
 use voussoir::verify::verify;
-use voussoir_tests::{Arch, crushing, friction, study};
-
-/// Results of a study, as they are written, and the study as it is read back from resolved.toml.
-fn results(text: &str) -> (Study, Value) {
-    let original = study(text);
-    let resolved = toml::to_string(&original.resolved).expect("a study can be written");
-    let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
-    let cases = original.cases.iter().map(answer_case).collect();
-    let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
-    (again, serde_json::to_value(&results).expect("results can be written"))
-}
-
-fn findings(study: &Study, results: &Value) -> usize {
-    let text = serde_json::to_string(results).expect("JSON");
-    match serde_json::from_str::<StudyResults>(&text) {
-        Ok(results) => verify(study, &results).len(),
-        Err(_) => 1,
-    }
-}
+use voussoir_tests::written::{findings, results};
+use voussoir_tests::{Arch, crushing, friction};
 
 /// Changes every number below `value` in turn, relatively by `by`, and calls `check` with its path.
 fn each_number(value: &Value, by: f64, path: &str, check: &mut dyn FnMut(&str, f64)) {
@@ -84,7 +64,7 @@ fn every_changed_number_is_found() {
             let small = path.contains("/residuals/") || tiny;
             if !small {
                 tried += 1;
-                assert!(findings(&study, &changed) > 0, "{path} was changed from {slot} and not found");
+                assert!(!findings(&study, &changed).is_empty(), "{path} was changed from {slot} and not found");
             }
         });
         assert!(tried > 20, "only {tried} numbers were tried");
@@ -120,7 +100,7 @@ fn every_changed_word_is_found() {
     ] {
         let mut changed = original.clone();
         *changed.pointer_mut(path).unwrap_or_else(|| panic!("{path}")) = value;
-        assert!(findings(&study, &changed) > 0, "{path} was changed and not found");
+        assert!(!findings(&study, &changed).is_empty(), "{path} was changed and not found");
     }
 }
 
@@ -180,7 +160,7 @@ fn every_changed_number_of_finite_displacements_is_found() {
         let text = serde_json::to_string(&original).expect("JSON");
         assert_eq!(verify(&study, &serde_json::from_str(&text).expect("results")), vec![]);
         let (small, _) = results(&spread(material, joint).replace("kinematics = \"finite\"", "kinematics = \"small\""));
-        assert!(findings(&small, &original) > 0, "small displacements were confirmed");
+        assert!(!findings(&small, &original).is_empty(), "small displacements were confirmed");
         let mut tried = 0;
         for part in ["field", "displacements", "field_factor"] {
             each_number(&case[part], 1e-5, &format!("/cases/0/{part}"), &mut |path, value| {
@@ -195,7 +175,7 @@ fn every_changed_number_of_finite_displacements_is_found() {
                 let mut changed = original.clone();
                 *changed.pointer_mut(path).expect("the path exists") = json!(value);
                 tried += 1;
-                assert!(findings(&study, &changed) > 0, "{path} was changed from {slot} and not found");
+                assert!(!findings(&study, &changed).is_empty(), "{path} was changed from {slot} and not found");
             });
         }
         assert!(tried > 30, "only {tried} numbers were tried");

@@ -75,10 +75,9 @@ impl Tracer<'_> {
         }
     }
 
-    /// Rate of the gap without the opening, which is reversible: a tensile strength that opens stores
+    /// Rate of the gap without its `opening` rate, which is reversible: a tensile strength that opens stores
     /// the work of its force and gives it back.
-    fn irreversible(&self, c: usize, direction: &Direction) -> [f64; 2] {
-        let (gap, opening) = (direction.gaps[c], self.opening_rate(c, direction));
+    fn irreversible(&self, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2] {
         match (&self.system.facets[c], self.points[c].opening_facet) {
             (Some(facets), Some(open)) if self.points[c].piece != Piece::Free => {
                 [0, 1].map(|i| gap[i] + opening * facets[open].flow[i])
@@ -102,16 +101,16 @@ impl Tracer<'_> {
     /// Goes a step along a direction and notes the events at its end.
     pub fn advance(&mut self, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
         let unit = self.system.force_unit * self.system.displacement_unit;
+        let openings: Vec<f64> = (0..self.points.len()).map(|c| self.opening_rate(c, direction)).collect();
         for (c, point) in self.points.iter().enumerate() {
             if matches!(point.piece, Piece::Stick | Piece::Free) {
                 continue;
             }
             let mean = [0, 1].map(|i| self.x[2 * c + i] + 0.5 * step * direction.x[2 * c + i]);
-            let flow = self.irreversible(c, direction);
+            let flow = self.irreversible(c, direction.gaps[c], openings[c]);
             self.dissipated -= dot(mean, flow) * step * unit;
         }
         let before = self.factor;
-        let openings: Vec<f64> = (0..self.points.len()).map(|c| self.opening_rate(c, direction)).collect();
         for (x, rate) in self.x.iter_mut().zip(&direction.x) {
             *x += step * rate;
         }

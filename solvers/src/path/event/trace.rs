@@ -118,7 +118,7 @@ impl<'a> Tracer<'a> {
                     Next::Falling(direction) => (direction, true),
                     Next::Nothing => {
                         self.notes.push(format!(
-                            "at λ = {:.12} no rate of solution goes on, rising or falling: every combination of the contact points at the verge of a change was tried; what follows is dynamic",
+                            "at λ = {:.12} no rate of solution goes on, rising or falling: every combination of the contact points at the verge of a change is excluded; what follows is dynamic",
                             self.factor
                         ));
                         return self.ended();
@@ -135,7 +135,7 @@ impl<'a> Tracer<'a> {
                 if falling && self.limit_point.is_none() {
                     self.limit_point = Some(self.state());
                     self.notes.push(format!(
-                        "at λ = {:.12} no rate of solution has λ rising or standing still: every combination of the contact points at the verge of a change was tried; the path goes on with λ falling",
+                        "at λ = {:.12} no rate of solution has λ rising or standing still: every combination of the contact points at the verge of a change is excluded; the path goes on with λ falling",
                         self.factor
                     ));
                 }

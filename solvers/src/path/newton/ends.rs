@@ -56,8 +56,7 @@ impl Tracer<'_, '_> {
     /// is not decided, or not gone on with, the limit point is not proven. Where blocks flow, combinations
     /// of regimes say nothing of their Gauss points: there the path itself shows its limit point.
     pub(super) fn doubted(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
-        let flows = state.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
-        if self.model.finite() || !self.model.responses.is_empty() || flows {
+        if self.model.finite() || !self.model.responses.is_empty() || state.yields() {
             return None;
         }
         match self.model.rising(state, direction) {

@@ -15,10 +15,9 @@ const FLAT: f64 = 1e-5;
 impl Tracer<'_, '_> {
     /// Whether blocks yield in the step to `next` while the factor stands still.
     pub(super) fn stands_still(&self, next: &State) -> bool {
-        let yields = next.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0);
         let change = (next.factor - self.state.factor).abs();
         let motion = self.model.increment(&self.state, next).motion;
-        yields && change <= STILL * next.factor.abs() && change / self.model.units.factor <= FLAT * motion
+        next.yields() && change <= STILL * next.factor.abs() && change / self.model.units.factor <= FLAT * motion
     }
 
     /// Keeps the first state on a plateau as the limit point.
