@@ -42,7 +42,7 @@ pub struct Base {
 }
 
 /// d⊥, unit.
-fn across(flow: [f64; 2]) -> [f64; 2] {
+pub fn across(flow: [f64; 2]) -> [f64; 2] {
     let l = flow[0].hypot(flow[1]);
     [-flow[1] / l, flow[0] / l]
 }

@@ -139,24 +139,35 @@ impl Tracer<'_> {
                 return None;
             }
             let mut pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
-            if self
-                .base
-                .as_ref()
-                .is_none_or(|base| (!base.careful && self.careful) || base.responses() > FRESH.max(2 * open.len()))
-                && !self.factorise(pieces.clone(), self.careful)
-            {
-                return None;
+            let stale = |base: &Base| {
+                (!base.careful && self.careful)
+                    || base.responses() > FRESH.max(2 * open.len())
+                    || pieces.iter().zip(&base.pieces).filter(|(now, then)| now != then).count() > 2 * FRESH
+            };
+            if self.base.as_ref().is_none_or(stale) {
+                // With what is asked closed: what flows there may be a mechanism.
+                let mut held = pieces.clone();
+                open.iter().for_each(|c| held[*c] = Piece::Stick);
+                if !self.factorise(held, self.careful) {
+                    return None;
+                }
             }
             let base = self.base.as_mut()?;
             let base_careful = base.careful;
             let solves = &mut self.counts.solves;
             let local = Local::new((&self.system, &self.points), base, (self.drive, load), &open, &pieces, solves)?;
-            let rate = local.rate.corrected(open.iter().map(|c| pieces[*c]).collect(), &mut self.counts.trials)?;
+            let guess: Vec<Piece> = open.iter().map(|c| pieces[*c]).collect();
+            let rate = local.rate.corrected(guess.clone(), &mut self.counts.trials);
+            let rate = rate.or_else(|| local.rate.at_constant_load(&guess))?;
             open.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
             let x = local.combine(base, (self.drive, load), &rate)?;
-            let rates = self.refined(&local, Rates::new(&self.system, x, 1.0, load), load, &pieces);
+            let mut rates = self.refined(&local, Rates::new(&self.system, x, rate.factor, load), load, &pieces);
             self.counts.solves += rates.refinements;
-            if !base_careful && rates.shaky(2 * self.system.contacts) {
+            if rates.factor == 0.0 {
+                rates.x[..2 * self.system.contacts].fill(0.0);
+                rates = Rates::new(&self.system, rates.x, 0.0, load);
+                rates.worst = self.left(&rates, load, &pieces).0;
+            } else if !base_careful && rates.shaky(2 * self.system.contacts) {
                 self.careful = true;
                 continue;
             }

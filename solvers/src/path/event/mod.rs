@@ -14,6 +14,7 @@ mod local;
 mod pairs;
 mod point;
 mod rate;
+mod redundants;
 mod step;
 mod system;
 mod trace;

@@ -15,6 +15,8 @@ pub struct Point {
     pub piece: Piece,
     /// Whether it has just arrived at a facet.
     pub hit: bool,
+    /// Whether anything has been noted as having happened to it.
+    pub noted: bool,
     /// Bound at the apex: opening and both senses of slip end in one corner.
     pub apex: bool,
     /// Index of the opening facet.
@@ -34,6 +36,7 @@ impl Point {
             opening: 0.0,
             piece: Piece::Stick,
             hit: false,
+            noted: false,
             apex: false,
             opening_facet: None,
             stiffness,

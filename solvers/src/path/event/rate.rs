@@ -419,6 +419,16 @@ impl RateProblem<'_> {
         None
     }
 
+    /// The motion at constant load that some pieces allow, where the load does work on it.
+    pub fn at_constant_load(&self, pieces: &[Piece]) -> Option<Rate> {
+        let attempt = self.attempt(pieces, 1.0).filter(|attempt| attempt.singular)?;
+        let fits = |sign: &f64| {
+            self.violations(pieces, &attempt, *sign).is_empty()
+                && self.leads_on(&self.rate(pieces, &attempt, *sign, 0.0))
+        };
+        [1.0, -1.0].into_iter().find(fits).map(|sign| self.rate(pieces, &attempt, sign, 0.0))
+    }
+
     /// Number of combinations of pieces.
     pub fn combinations(&self) -> usize {
         self.points.iter().fold(1usize, |n, p| n.saturating_mul(p.candidates().len()))

@@ -9,7 +9,7 @@ use voussoir_core::interface::FacetMode;
 use voussoir_core::path::{Happening, PathEvent};
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
-const SAME: f64 = 1e-12;
+pub const SAME: f64 = 1e-12;
 
 impl Tracer<'_> {
     /// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
@@ -31,7 +31,7 @@ impl Tracer<'_> {
         for (c, point) in self.points.iter().enumerate() {
             let Some(facets) = &self.system.facets[c] else { continue };
             if point.open() {
-                let rate = self.opening_rate(c, direction);
+                let rate = self.opening_rate(c, direction.gaps[c]);
                 if -rate > least_gap {
                     meet(point.opening / -rate, -rate, c, usize::MAX);
                 }
@@ -53,9 +53,8 @@ impl Tracer<'_> {
     }
 
     /// Rate of the opening above the dilated surface.
-    fn opening_rate(&self, c: usize, direction: &Direction) -> f64 {
+    pub(super) fn opening_rate(&self, c: usize, gap: [f64; 2]) -> f64 {
         let Some(facets) = &self.system.facets[c] else { return 0.0 };
-        let gap = direction.gaps[c];
         match self.points[c].piece {
             Piece::Free => gap[0] - dilatancy(facets) * gap[1].abs(),
             Piece::Facet(f) if facets[f].mode == FacetMode::Opening => {
@@ -101,7 +100,7 @@ impl Tracer<'_> {
     /// Goes a step along a direction and notes the events at its end.
     pub fn advance(&mut self, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
         let unit = self.system.force_unit * self.system.displacement_unit;
-        let openings: Vec<f64> = (0..self.points.len()).map(|c| self.opening_rate(c, direction)).collect();
+        let openings: Vec<f64> = (0..self.points.len()).map(|c| self.opening_rate(c, direction.gaps[c])).collect();
         for (c, point) in self.points.iter().enumerate() {
             if matches!(point.piece, Piece::Stick | Piece::Free) {
                 continue;
@@ -116,57 +115,62 @@ impl Tracer<'_> {
         }
         self.factor += sense * step * direction.factor;
         let size = direction.x[..2 * self.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let mut events = Vec::new();
         for (c, opening_rate) in openings.into_iter().enumerate() {
             let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
-            let Some(facets) = &self.system.facets[c] else { continue };
-            let was_open = self.points[c].open();
-            let was_hit = std::mem::take(&mut self.points[c].hit);
-            let point = &mut self.points[c];
-            if !was_open && point.piece == Piece::Stick && point.active.is_empty() {
-                continue;
-            }
-            point.opening = if was_open || matches!(point.piece, Piece::Free | Piece::Facet(_) | Piece::Corner(..)) {
-                (point.opening + step * opening_rate).max(0.0)
-            } else {
-                0.0
-            };
-            if !was_open && point.open() {
-                events.push((before, c, Happening::Opens));
-            }
-            if was_hit || !point.active.is_empty() {
-                // What began to flow in this step began at its start.
-                if let Piece::Facet(f) = point.piece
-                    && was_hit
-                {
-                    let what = match facets[f].mode {
-                        FacetMode::Sliding if facets[f].flow[1] > 0.0 => Some(Happening::SlipsBackward),
-                        FacetMode::Sliding => Some(Happening::SlipsForward),
-                        FacetMode::Crushing => Some(Happening::Crushes),
-                        FacetMode::Opening => None,
-                    };
-                    events.extend(what.map(|what| (before, c, what)));
-                }
-            }
-            // Facets that this direction leaves are active no more.
-            if !(point.open() && point.apex) {
-                let force = [self.x[2 * c], self.x[2 * c + 1]];
-                let had = point.active.len();
-                point.active.retain(|f| {
-                    let facet = &facets[*f];
-                    dot(facet.normal, rate) > -1e-11 * size || facet.slack(force) <= SAME
-                });
-                if had > 0 && point.active.is_empty() && !was_hit && self.events.iter().rev().any(|e| e.contact == c) {
-                    events.push((before, c, Happening::Sticks));
-                }
+            self.stepped(c, rate, step * opening_rate, before, size);
+        }
+        self.arrive(hits);
+    }
+
+    /// What a step changes of a contact point: its opening, which facets it leaves, and what it then notes as
+    /// having happened at the factor `before` it. `size`: greatest rate of force.
+    pub(super) fn stepped(&mut self, c: usize, rate: [f64; 2], opening: f64, before: f64, size: f64) {
+        let Some(facets) = &self.system.facets[c] else { return };
+        let was_open = self.points[c].open();
+        let was_hit = std::mem::take(&mut self.points[c].hit);
+        let point = &mut self.points[c];
+        if !was_open && point.piece == Piece::Stick && point.active.is_empty() {
+            return;
+        }
+        point.opening = if was_open || matches!(point.piece, Piece::Free | Piece::Facet(_) | Piece::Corner(..)) {
+            (point.opening + opening).max(0.0)
+        } else {
+            0.0
+        };
+        let mut happened = Vec::new();
+        if !was_open && point.open() {
+            happened.push(Happening::Opens);
+        }
+        // What began to flow in this step began at its start.
+        if let Piece::Facet(f) = point.piece
+            && was_hit
+        {
+            happened.extend(match facets[f].mode {
+                FacetMode::Sliding if facets[f].flow[1] > 0.0 => Some(Happening::SlipsBackward),
+                FacetMode::Sliding => Some(Happening::SlipsForward),
+                FacetMode::Crushing => Some(Happening::Crushes),
+                FacetMode::Opening => None,
+            });
+        }
+        // Facets that this direction leaves are active no more.
+        if !(point.open() && point.apex) {
+            let force = [self.x[2 * c], self.x[2 * c + 1]];
+            let had = point.active.len();
+            point.active.retain(|f| {
+                let facet = &facets[*f];
+                dot(facet.normal, rate) > -1e-11 * size || facet.slack(force) <= SAME
+            });
+            if had > 0 && point.active.is_empty() && !was_hit && point.noted {
+                happened.push(Happening::Sticks);
             }
         }
-        self.events.extend(events.into_iter().map(|(factor, contact, what)| PathEvent {
-            drive: self.drive,
-            factor,
-            contact,
-            what,
-        }));
+        point.noted |= !happened.is_empty();
+        let (drive, factor, contact) = (self.drive, before, c);
+        self.events.extend(happened.into_iter().map(|what| PathEvent { drive, factor, contact, what }));
+    }
+
+    /// Contact points that arrive at a facet, or (`usize::MAX`) close.
+    pub(super) fn arrive(&mut self, hits: &[(usize, usize)]) {
         for &(c, f) in hits {
             let Some(facets) = &self.system.facets[c] else { continue };
             let point = &mut self.points[c];
@@ -177,6 +181,7 @@ impl Tracer<'_> {
                     point.active = (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
                 }
                 point.piece = Piece::Stick;
+                point.noted = true;
                 self.events.push(PathEvent {
                     drive: self.drive,
                     factor: self.factor,

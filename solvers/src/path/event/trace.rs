@@ -4,11 +4,15 @@ use super::base::Base;
 use super::direction::{Direction, Next};
 use super::energy::{Snapshot, load_displacement, snapshot, work};
 use super::point::Point;
+use super::redundants::{Followed, Sections};
 use super::system::{Load, System};
 use super::unique::unique;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{Drive, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
+
+/// Rate problems put to the whole system, at most, before the force method is tried again.
+const MOST_RESTS: u32 = 32;
 
 /// Follows one problem.
 pub struct Tracer<'a> {
@@ -18,13 +22,15 @@ pub struct Tracer<'a> {
     pub(super) system: System,
     pub(super) points: Vec<Point>,
     pub(super) base: Option<Base>,
+    /// Where statics leaves little open.
+    pub(super) sections: Option<Sections>,
     /// Whether responses are refined one by one: close to a collapse.
     pub(super) careful: bool,
     /// All unknowns at the present state.
     pub(super) x: Vec<f64>,
     pub(super) drive: usize,
     pub(super) factor: f64,
-    work: f64,
+    pub(super) work: f64,
     pub(super) dissipated: f64,
     last: Option<(Snapshot, Vec<f64>)>,
     pub(super) events: Vec<PathEvent>,
@@ -44,6 +50,10 @@ pub struct Counts {
     pub(super) rate_problems: u64,
     pub(super) trials: u64,
     pub(super) bifurcations: u64,
+    /// Rate problems of the force method.
+    pub(super) by_redundants: u64,
+    /// Sections whose points it looked at.
+    pub(super) sections: u64,
 }
 
 impl<'a> Tracer<'a> {
@@ -61,6 +71,7 @@ impl<'a> Tracer<'a> {
             loading_gaps: problem.drives.iter().map(opened).collect(),
             points,
             base: None,
+            sections: Sections::new(&system, problem),
             careful: false,
             drive: 0,
             factor: 0.0,
@@ -108,7 +119,24 @@ impl<'a> Tracer<'a> {
                 DriveEnd::Factor(f) | DriveEnd::Collapse(f) => f,
             };
             let mut steps = 0;
+            // Rate problems that are put to the whole system before the few equations are asked again.
+            let (mut rests, mut patience) = (0_u32, 1);
             while (target - self.factor) * sense > 0.0 {
+                if rests > 0 || self.limit_point.is_some() {
+                    rests = rests.saturating_sub(1);
+                } else {
+                    let before = steps;
+                    match self.by_redundants(&load, sense, target, &mut steps, greatest_events) {
+                        Followed::Reached => continue,
+                        Followed::Stopped => {
+                            let stopped = Some("stopped by its observer".into());
+                            return self.finish(Status::Stalled, None, None, stopped);
+                        }
+                        Followed::Left => {}
+                    }
+                    patience = if steps > before { 1 } else { (2 * patience).min(MOST_RESTS) };
+                    rests = patience - 1;
+                }
                 steps += 1;
                 if steps > greatest_events {
                     return self.lost(format!("{greatest_events} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them"));
@@ -251,7 +279,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Energy balance and observer. Returns whether to go on.
-    fn record(&mut self) -> bool {
+    pub(super) fn record(&mut self) -> bool {
         let mut state = self.state();
         let mut now = snapshot(self.problem, &state);
         now.stored += self.stored_by_opening();
@@ -321,6 +349,8 @@ impl<'a> Tracer<'a> {
             ("rate_problems", self.counts.rate_problems),
             ("rate_trials", self.counts.trials),
             ("bifurcations", self.counts.bifurcations),
+            ("rate_problems_by_redundants", self.counts.by_redundants),
+            ("sections_looked_at", self.counts.sections),
             ("events", self.events.len() as u64),
         ] {
             counters.insert(name.into(), count);
