@@ -9,7 +9,7 @@ use voussoir_core::interface::FacetMode;
 use voussoir_core::path::{Happening, PathEvent};
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
-pub const SAME: f64 = 1e-12;
+const SAME: f64 = 1e-12;
 
 impl Tracer<'_> {
     /// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a

@@ -141,9 +141,13 @@ impl Joint {
         // Relative to the section with all points stuck, so that levers do not matter.
         let unit = stuck.diagonal().map(|v| 1.0 / v.sqrt());
         let scaled = Matrix3::from_fn(|i, j| stiffness[(i, j)] * unit[i] * unit[j]);
+        // Of a matrix of rank 1 everything in the formula for the inverse is rounding: it must be one.
+        let serves = |inverse: &Matrix3<f64>| {
+            inverse.amax() < WEAK && (scaled * inverse - Matrix3::identity()).amax() < WEAK * f64::EPSILON
+        };
         self.flexibility = scaled
             .try_inverse()
-            .filter(|inverse| inverse.amax() < WEAK)
+            .filter(serves)
             .map(|inverse| Matrix3::from_fn(|i, j| inverse[(i, j)] * unit[i] * unit[j]));
         self.dirty = false;
         Some(())

@@ -26,7 +26,6 @@ mod section;
 pub use section::Sections;
 
 use super::rate::{Piece, dilatancy};
-use super::step::SAME;
 use super::system::{Load, dot};
 use super::trace::Tracer;
 use equations::{Equations, Solution};
@@ -41,6 +40,9 @@ const NEIGHBOURHOOD: f64 = 0.3;
 const INEQUALITY: f64 = 1e-10;
 /// Changes of a section's rate below this share of the greatest rate of a gap are rounding.
 const ROUNDING: f64 = 1e-13;
+/// Slacks and gaps below this (in scaled units) are events of the same moment: a redundant is rounded by all
+/// sections of its cycle, which must not tell the two halves of a symmetric arch apart.
+const MOMENT: f64 = 1e-11;
 /// Rounds of correction, and those in which all points are corrected at once.
 const ROUNDS: [usize; 2] = [40, 12];
 /// Events that are all recorded; of more, so many each time their number grows e-fold.
@@ -248,7 +250,7 @@ impl<'s> Run<'s> {
             }
             if changes.is_empty() {
                 let all = self.looked.iter().flat_map(|(_, hits)| hits);
-                let hits = all.filter(|hit| (hit.0 - best) * hit.1 <= SAME).copied().collect();
+                let hits = all.filter(|hit| (hit.0 - best) * hit.1 <= MOMENT).copied().collect();
                 return Some((solution, best, hits));
             }
             if round >= ROUNDS[1] {
@@ -325,17 +327,16 @@ impl<'s> Run<'s> {
                 }
                 ahead.push((distance, rate, sensitivity));
             };
+            if point.piece == Piece::Free {
+                joint.turn(k, gap[1]);
+                if dilatancy(facets) > 0.0 && section.slip.is_some() {
+                    joint.slips = Some(if gap[1] < 0.0 { -1.0 } else { 1.0 });
+                } else if dilatancy(facets) > 0.0 {
+                    allowed = allowed.min(0.5 * gap[1].abs());
+                }
+            }
             if point.open() {
                 let rate = tracer.opening_rate(c, gap);
-                if point.apex {
-                    joint.turn(k, gap[1]);
-                    let dilates = dilatancy(facets);
-                    if dilates > 0.0 && section.slip.is_some() {
-                        joint.slips = Some(if gap[1] < 0.0 { -1.0 } else { 1.0 });
-                    } else if dilates > 0.0 {
-                        allowed = allowed.min(0.5 * gap[1].abs());
-                    }
-                }
                 let opens = joint.opening_sensitivity(k, facets, point.piece);
                 met(point.opening, -rate, opens * by_gap, 1e-13 * self.sizes[1], usize::MAX);
                 if point.apex {
