@@ -57,7 +57,7 @@ pub(in crate::path) struct Condensed {
 }
 
 /// A value in one of two places.
-fn pair(k: usize, value: f64) -> [f64; 2] {
+pub(in crate::path) fn pair(k: usize, value: f64) -> [f64; 2] {
     if k == 0 { [value, 0.0] } else { [0.0, value] }
 }
 
@@ -170,6 +170,43 @@ impl Condensed {
         };
         let rights: Vec<Vec<f64>> = rights.iter().map(reduced).collect();
         self.reduced.solve(&rights, 0)
+    }
+
+    /// y for unit right-hand sides of the two rows of a contact point.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let mut rights = vec![vec![0.0; self.kept.len()]; 2];
+        for (k, right) in rights.iter_mut().enumerate() {
+            match self.of[contact] {
+                None => right[self.place[2 * contact + k]] = 1.0,
+                Some(point) => {
+                    let own = self.points[point].own(pair(k, 1.0));
+                    for (row, right) in right.iter_mut().enumerate() {
+                        let all = &self.down.1[self.down.0[row]..self.down.0[row + 1]];
+                        for (_, f) in all.iter().filter(|(p, _)| *p == point) {
+                            *right -= f[0] * own[0] + f[1] * own[1];
+                        }
+                    }
+                }
+            }
+        }
+        let mut columns = self.reduced.solve(&rights, 0)?.into_iter();
+        Some([columns.next()?, columns.next()?])
+    }
+
+    /// A row times all unknowns, from y and the right-hand sides of the contact points.
+    pub fn dot(&self, row: &[f64], right: impl Fn(usize) -> [f64; 2], y: &[f64]) -> f64 {
+        let kept: f64 = self.kept.iter().zip(y).map(|(i, y)| row[*i] * y).sum();
+        let condensed = self.points.iter().filter(|p| row[p.first] != 0.0 || row[p.first + 1] != 0.0);
+        let forces = condensed.map(|p| {
+            let r = self.recovered(p, right(p.first / 2), y);
+            row[p.first] * r[0] + row[p.first + 1] * r[1]
+        });
+        kept + forces.sum::<f64>()
+    }
+
+    /// Number of contact points.
+    pub fn contacts(&self) -> usize {
+        self.of.len()
     }
 
     /// r = A⁻¹ (f − E y).

@@ -16,7 +16,7 @@
 //! 469-483).
 
 use crate::lu::Entries;
-use crate::path::condensed::Condensed;
+use crate::path::condensed::{Condensed, pair};
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
@@ -69,6 +69,26 @@ impl Bordered {
             }
         }
         None
+    }
+
+    /// The equations above the control, the control's row in them or an unknown held in its place.
+    pub fn equations(&self) -> &Condensed {
+        &self.equations
+    }
+
+    /// What unit right-hand sides of the two rows of a contact point give, without the unknowns that
+    /// are condensed out.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let mut columns = self.equations.units(contact)?;
+        if let Some((control, w, along)) = &self.border {
+            let w = self.equations.kept_of(w);
+            for (k, y) in columns.iter_mut().enumerate() {
+                let right = |c: usize| if c == contact { pair(k, 1.0) } else { [0.0; 2] };
+                let t = -self.equations.dot(control, right, y) / along;
+                y.iter_mut().zip(&w).for_each(|(y, w)| *y += t * w);
+            }
+        }
+        Some(columns)
     }
 
     /// Once, without refinement.

@@ -85,6 +85,19 @@ impl Model<'_> {
         Place { state, step_gap, cells, offset }
     }
 
+    /// Right-hand sides of the rows of a contact point, in units: what is left of its residual of the gaps.
+    fn driven(&self, place: &Place, c: usize) -> [f64; 2] {
+        let e = place.offset[c].map(|e| e / self.units.displacement);
+        match (place.state.regime[c], self.law(c)) {
+            (Regime::Facet(i), Some(law)) => {
+                let d = law.facets[i as usize].flow;
+                [0.0, -(e[0] * d[1] - e[1] * d[0])]
+            }
+            (Regime::Corner(_), Some(_)) => [0.0; 2],
+            _ => [-e[0], -e[1]],
+        }
+    }
+
     fn walked(
         &mut self,
         start: &State,
@@ -101,42 +114,36 @@ impl Model<'_> {
         let curvature = self.curvature(&place.state, &slopes);
         let row = self.control_row(start, &place.state, control, &constraint, &curvature);
         let size = self.size();
-        let mut frame = Frame::new(self, &curvature, &row);
+        let mut frame = Frame::new(self, &curvature, row);
+        let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
+        right[size - 1] = -left;
+        frame.drive(&right);
+        for c in 0..points {
+            if let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) {
+                place.state.regime[c] = law.regime_of(cell);
+            } else {
+                place.state.regime[c] = Regime::Stuck;
+            }
+            frame.set(self, c, place.state.regime[c], self.driven(&place, c));
+        }
         let most = 400 + 20 * points;
         let mut walk = Walk::new();
         for _ in 0..most {
-            for c in 0..points {
-                place.state.regime[c] = match (place.cells[c], self.law(c)) {
-                    (Some(cell), Some(law)) => law.regime_of(cell),
-                    _ => Regime::Stuck,
-                };
-            }
-            let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
-            right[size - 1] = -left;
-            for c in 0..points {
-                let e = place.offset[c].map(|e| e / self.units.displacement);
-                let rows = match (place.state.regime[c], self.law(c)) {
-                    (Regime::Facet(i), Some(law)) => {
-                        let d = law.facets[i as usize].flow;
-                        [0.0, -(e[0] * d[1] - e[1] * d[0])]
-                    }
-                    (Regime::Corner(_), Some(_)) => [0.0; 2],
-                    _ => [-e[0], -e[1]],
-                };
-                right[2 * c] = rows[0];
-                right[2 * c + 1] = rows[1];
-            }
             self.count("pivots", 1);
-            let Some((x, factorisations)) = frame.solve(self, &place.state.regime, &right) else {
+            let Some((x, factorisations)) = frame.solve(self) else {
                 return Err("a combination of cells has no direction".into());
             };
             self.count("factorisations", factorisations);
             if x.iter().any(|x| !x.is_finite()) {
                 return Err("a combination of cells has no finite direction".into());
             }
-            let rate = self.rate_from(&x, &place.state, &curvature);
-            let gap_rate: Vec<[f64; 2]> =
-                (0..points).map(|c| [0, 1].map(|k| rate.gap[c][k] + place.offset[c][k])).collect();
+            let rate = self.moving(&x);
+            let gap_rate: Vec<[f64; 2]> = (0..points)
+                .map(|c| {
+                    let (own, offset) = (frame.gap(c, &x), place.offset[c]);
+                    [0, 1].map(|k| own[k] * self.units.displacement + offset[k])
+                })
+                .collect();
             // Over walls without a change of equations the direction stays.
             loop {
                 let (along, met) = walk.on(points, |c| {
@@ -158,7 +165,6 @@ impl Model<'_> {
                 };
                 advance(&mut place.state.force, &rate.force);
                 advance(&mut place.step_gap, &gap_rate);
-                advance(&mut place.state.gap, &rate.gap);
                 for (q, dq) in place.state.motion.iter_mut().zip(&rate.motion) {
                     (0..3).for_each(|k| q[k] += along * dq[k]);
                 }
@@ -171,7 +177,10 @@ impl Model<'_> {
                 let (to, wall) = law.cells.cells[cell].1[index].behind;
                 place.cells[c] = Some(to);
                 walk.enters(c, wall);
-                if law.regime_of(to) != place.state.regime[c] {
+                let regime = law.regime_of(to);
+                if regime != place.state.regime[c] {
+                    place.state.regime[c] = regime;
+                    frame.set(self, c, regime, self.driven(&place, c));
                     break;
                 }
             }

@@ -244,14 +244,21 @@ impl Model<'_> {
         Some(self.rate_from(&x, state, curvature))
     }
 
-    /// The rate of a solution of the linear equations.
-    pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
-        let (mut force, mut motion) = (vec![[0.0; 2]; state.force.len()], vec![[0.0; 3]; state.motion.len()]);
+    /// Forces, motions and the factor of a solution of the linear equations, without the gaps.
+    pub(super) fn moving(&self, x: &[f64]) -> Rate {
+        let points = self.problem.contacts.len();
+        let (mut force, mut motion) = (vec![[0.0; 2]; points], vec![[0.0; 3]; self.free.len()]);
         self.add(&mut force, &mut motion, x, 1.0);
         let factor = x[x.len() - 1] * self.units.factor;
         for (body, settlement) in &self.loaded.growing.settlements {
             (0..3).for_each(|k| motion[*body][k] += factor * settlement[k]);
         }
+        Rate { force, motion, factor, gap: Vec::new() }
+    }
+
+    /// The rate of a solution of the linear equations.
+    pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
+        let Rate { force, motion, factor, .. } = self.moving(x);
         let points = state.gap.len();
         let mut gap = vec![[0.0; 2]; points];
         for &(i, j, value) in curvature.entries.iter().filter(|e| e.0 < 2 * points) {
