@@ -16,7 +16,7 @@
 //! refinement leave the accuracy of the equations before condensation.
 
 use super::rows::Rows;
-use crate::lu::{Entries, SparseLu};
+use crate::lu::{Analysis, Entries, SparseLu};
 
 /// Own equations of a point must be at least this strong, relative to the others in its rows.
 const STRONG: f64 = 1e-3;
@@ -66,8 +66,13 @@ impl Condensed {
     /// points, with something added that refinement takes out again. `None` where they are singular in
     /// their pattern.
     pub fn new(size: usize, contacts: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
-        let rows = Rows::new(size, entries);
-        let shifts = Rows::new(size, shift);
+        let (rows, shifts) = (Rows::new(size, entries), Rows::new(size, shift));
+        Condensed::of(rows, &shifts, contacts, &mut Analysis::default())
+    }
+
+    /// The same from rows, by the analysis of what was factorised before.
+    pub fn of(rows: Rows, shifts: &Rows, contacts: usize, analysis: &mut Analysis) -> Option<Self> {
+        let size = rows.len();
         let forces = 2 * contacts;
         let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
         let mut alone = vec![true; contacts];
@@ -153,7 +158,7 @@ impl Condensed {
             down.0.push(down.1.len());
             reduced.extend(columns.iter().map(|&j| (k, j, row[j])));
         }
-        let reduced = SparseLu::new(kept.len(), &reduced)?;
+        let reduced = SparseLu::analysed(kept.len(), &reduced, analysis)?;
         Some(Condensed { rows, points, across, down, of, kept, place, reduced })
     }
 
@@ -202,6 +207,11 @@ impl Condensed {
             row[p.first] * r[0] + row[p.first + 1] * r[1]
         });
         kept + forces.sum::<f64>()
+    }
+
+    /// The equations themselves.
+    pub fn into_rows(self) -> Rows {
+        self.rows
     }
 
     /// Number of contact points.

@@ -14,15 +14,15 @@
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
 //! that no combination of regimes is without a direction.
 
-use super::border::Bordered;
-use super::kinematics::Curvature;
+use super::border::{Bordered, Held};
+use super::equations::Equations;
 use super::law::Regime;
 use super::model::Model;
-use super::system::SHIFT;
-use crate::lu::Entries;
+use crate::lu::Analysis;
 use crate::path::condensed::Condensed;
 use crate::path::rows::Rows;
 use nalgebra::{DMatrix, DVector};
+use std::rc::Rc;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
@@ -51,16 +51,13 @@ struct Base {
 
 /// Equations of all points and bodies, in units, with a right-hand side and a factorisation.
 pub(super) struct Frame {
-    size: usize,
     points: usize,
-    /// Rows of the gaps, two per contact point.
-    gaps: Rows,
-    /// Rows of the bodies.
-    bodies: Entries,
+    equations: Rc<Equations>,
     control: Vec<f64>,
     regimes: Vec<Regime>,
     right: Vec<f64>,
     base: Option<Base>,
+    analysis: Analysis,
 }
 
 fn norm(v: &[f64]) -> f64 {
@@ -82,37 +79,10 @@ fn along(row: &Row, contact: usize, factors: &Condensed, y: &[f64], right: &impl
 
 impl Frame {
     /// Equations with a control, all points stuck, nothing on the right-hand side.
-    pub fn new(model: &Model, curvature: &Curvature, control: Vec<f64>) -> Frame {
-        let (points, size) = (model.problem.contacts.len(), model.size());
-        let (u, last) = (model.units, size - 1);
-        let (mut gaps, mut bodies): (Entries, Entries) = (Vec::with_capacity(curvature.entries.len()), Vec::new());
-        let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
-        let mut place = |i: usize, column: usize, value: f64| {
-            if i < 2 * points {
-                gaps.push((i, column, value / u.displacement));
-            } else if let Some((row, _)) = model.column(i) {
-                bodies.push((row, column, value / row_unit(i)));
-            }
-        };
-        for &(i, j, value) in &curvature.entries {
-            if let Some((column, unit)) = model.column(j) {
-                place(i, column, value * unit);
-            }
-        }
-        for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-            place(i, last, value * u.factor);
-        }
-        bodies.extend((2 * points..last).map(|i| (i, i, -SHIFT)));
-        Frame {
-            size,
-            points,
-            gaps: Rows::new(2 * points, &gaps),
-            bodies,
-            control,
-            regimes: vec![Regime::Stuck; points],
-            right: vec![0.0; size],
-            base: None,
-        }
+    pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> Frame {
+        let right = vec![0.0; control.len()];
+        let regimes = vec![Regime::Stuck; points];
+        Frame { points, equations, control, regimes, right, base: None, analysis: Analysis::default() }
     }
 
     /// Right-hand sides of the rows that belong to no contact point.
@@ -147,32 +117,12 @@ impl Frame {
 
     /// The two rows of a contact point in a regime.
     fn rows_of(&self, model: &Model, c: usize, regime: Regime) -> [Row; 2] {
-        let gap = [self.gaps.row(2 * c), self.gaps.row(2 * c + 1)];
-        match (regime, model.law(c)) {
-            (Regime::Facet(i), Some(law)) => {
-                let f = &law.facets[i as usize];
-                let d = f.flow;
-                let square = d[0] * d[0] + d[1] * d[1];
-                let mut yields: Row = vec![(2 * c, f.normal[0]), (2 * c + 1, f.normal[1])];
-                let mut across = Row::new();
-                for k in 0..2 {
-                    yields.extend(gap[k].iter().map(|&(j, v)| (j, SHIFT * d[k] / square * v)));
-                    let weight = if k == 0 { d[1] } else { -d[0] };
-                    across.extend(gap[k].iter().map(|&(j, v)| (j, weight * v)));
-                }
-                [yields, across]
-            }
-            (Regime::Corner(_), Some(_)) => [0, 1].map(|k| {
-                let mut row: Row = vec![(2 * c + k, 1.0)];
-                row.extend(gap[k].iter().map(|&(j, v)| (j, SHIFT * v)));
-                row
-            }),
-            _ => [0, 1].map(|k| {
-                let mut row = gap[k].to_vec();
-                row.push((2 * c + k, SHIFT));
-                row
-            }),
-        }
+        [0, 1].map(|k| {
+            let (mut row, mut shift) = (Row::new(), Row::new());
+            self.equations.point(model.law(c), c, k, regime, &mut row, &mut shift);
+            row.append(&mut shift);
+            row
+        })
     }
 
     /// All unknowns; how many factorisations that took. `None` where the equations are singular.
@@ -180,14 +130,24 @@ impl Frame {
         if let Some(x) = self.updated() {
             return Some((x, 0));
         }
-        let mut entries: Entries = Vec::new();
+        let (mut rows, mut shifts) = (Rows::none(0), Rows::none(0));
         for c in 0..self.points {
-            for (k, row) in self.rows_of(model, c, self.regimes[c]).iter().enumerate() {
-                entries.extend(row.iter().map(|&(j, v)| (2 * c + k, j, v)));
+            for k in 0..2 {
+                let law = model.law(c);
+                self.equations.point(law, c, k, self.regimes[c], rows.open(), shifts.open());
+                rows.end_row();
+                shifts.end_row();
             }
         }
-        entries.extend(&self.bodies);
-        let factors = Bordered::new(self.size, self.points, entries, &Vec::new(), &self.control)?;
+        self.equations.bodies(&mut rows, &mut shifts);
+        let held = Held::new(
+            rows.with(&shifts),
+            Rows::empty(self.control.len() - 1),
+            self.points,
+            &self.control,
+            &mut self.analysis,
+        )?;
+        let factors = Bordered::new(Rc::new(held), &self.control)?;
         let mut x = factors.apply(&self.right)?;
         let step = factors.apply(&factors.left(&self.right, &x))?;
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
@@ -233,6 +193,6 @@ impl Frame {
 
     /// Rate of a contact point's gap in a solution, in units.
     pub fn gap(&self, contact: usize, x: &[f64]) -> [f64; 2] {
-        [0, 1].map(|k| self.gaps.along(2 * contact + k, x))
+        [0, 1].map(|k| self.equations.gaps.along(2 * contact + k, x))
     }
 }

@@ -114,7 +114,7 @@ impl Model<'_> {
         let curvature = self.curvature(&place.state, &slopes);
         let row = self.control_row(start, &place.state, control, &constraint, &curvature);
         let size = self.size();
-        let mut frame = Frame::new(self, &curvature, row);
+        let mut frame = Frame::new(self.equations(&curvature), points, row);
         let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
         right[size - 1] = -left;
         frame.drive(&right);
