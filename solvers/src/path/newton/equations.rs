@@ -8,6 +8,7 @@ use crate::lu::Entries;
 use crate::path::rows::Rows;
 
 /// Gaps and balance by all unknowns.
+#[derive(Debug)]
 pub(super) struct Equations {
     /// Two rows per contact point: normal and tangential gap.
     pub gaps: Rows,

@@ -16,7 +16,6 @@
 //! [`condensed`](crate::path::condensed).
 
 use super::border::{Bordered, Held};
-use super::equations::Equations;
 use super::kinematics::{Curvature, Slopes};
 use super::law::Regime;
 use super::model::{Control, Model, Rate, State, load_size};
@@ -32,8 +31,6 @@ pub(super) const SHIFT: f64 = 1e-9;
 /// What the last factorisation leaves to the next.
 #[derive(Default)]
 pub(super) struct Factorised {
-    /// Rows of gaps and balance of the present drive (small displacements).
-    equations: Option<Rc<Equations>>,
     /// Regimes with their factors, where nothing else makes the matrix.
     last: Option<(Vec<Regime>, Rc<Held>)>,
     analysis: Analysis,
@@ -42,7 +39,7 @@ pub(super) struct Factorised {
 impl Factorised {
     /// Another load grows.
     pub fn forget(&mut self) {
-        (self.equations, self.last) = (None, None);
+        self.last = None;
     }
 }
 
@@ -137,17 +134,10 @@ impl Model<'_> {
         if by_gap.iter().all(|w| *w == 0.0) {
             return;
         }
-        for &(i, j, value) in &curvature.entries {
-            if i < by_gap.len()
-                && by_gap[i] != 0.0
-                && let Some((column, unit)) = self.column(j)
-            {
-                row[column] += by_gap[i] * value * unit;
-            }
-        }
-        let last = row.len() - 1;
-        for (i, weight) in by_gap.iter().enumerate() {
-            row[last] += weight * curvature.factor[i] * self.units.factor;
+        let rows = &curvature.rows(self).gaps;
+        for (i, weight) in by_gap.iter().enumerate().filter(|(_, w)| **w != 0.0) {
+            let by = weight * self.units.displacement;
+            rows.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
         }
     }
 
@@ -238,19 +228,6 @@ impl Model<'_> {
         out
     }
 
-    /// Rows of gaps and balance; with small displacements those of the present drive.
-    pub(super) fn equations(&mut self, curvature: &Curvature) -> Rc<Equations> {
-        let constant = self.is_constant(curvature);
-        if let Some(equations) = self.factorised.equations.as_ref().filter(|_| constant) {
-            return equations.clone();
-        }
-        let equations = Rc::new(Equations::new(self, curvature));
-        if constant {
-            self.factorised.equations = Some(equations.clone());
-        }
-        equations
-    }
-
     fn is_constant(&self, curvature: &Curvature) -> bool {
         self.constant.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, curvature))
     }
@@ -265,7 +242,7 @@ impl Model<'_> {
         {
             return Some((held.clone(), true));
         }
-        let equations = self.equations(curvature);
+        let equations = curvature.rows(self);
         let capacity = curvature.entries.len();
         let (mut rows, mut shifts) = (Rows::none(capacity), Rows::none(capacity));
         for (c, regime) in state.regime.iter().enumerate() {
