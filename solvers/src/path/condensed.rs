@@ -2,8 +2,8 @@
 //! their own.
 //!
 //! Unknowns are (r_n, r_t) of every contact point, then all others. Where the two rows of a point hold no
-//! other contact force and its forces stand in the rows of no other point (rigid bodies with compliant
-//! joints: C is diagonal), they are condensed out exactly,
+//! other contact force (rigid bodies with compliant joints: C is diagonal; points that are open, r = 0),
+//! they are condensed out exactly,
 //!
 //! ```text
 //! A_c r_c + E_c y = f_c      r_c = A_c⁻¹ (f_c − E_c y)
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! so that what is factorised has three unknowns a body and not 2 × the contact points of its joints
-//! more. Points with C of elastic bodies stay. In S forces are differences of motions, which rounds by
+//! more. Points pressed on elastic bodies, whose gaps depend on other forces, stay. Here forces are differences of motions, which rounds by
 //! the size of the motions: residuals are those of all the equations, and one or two steps of iterative
 //! refinement leave the accuracy of the equations before condensation.
 
@@ -77,9 +77,7 @@ impl Condensed {
         let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
         let mut alone = vec![true; contacts];
         for i in 0..forces {
-            for (j, _) in both(i).filter(|e| e.0 < forces && e.0 / 2 != i / 2) {
-                (alone[i / 2], alone[j / 2]) = (false, false);
-            }
+            alone[i / 2] &= both(i).all(|(j, _)| j >= forces || j / 2 == i / 2);
         }
         let mut points: Vec<Point> = Vec::new();
         let mut of = vec![None; contacts];
@@ -214,6 +212,11 @@ impl Condensed {
         self.rows
     }
 
+    /// One row times a vector.
+    pub fn along(&self, row: usize, x: &[f64]) -> f64 {
+        self.rows.along(row, x)
+    }
+
     /// Number of contact points.
     pub fn contacts(&self) -> usize {
         self.of.len()
@@ -285,6 +288,24 @@ impl Condensed {
             (x, left) = (better, now);
         }
         x.iter().all(|v| v.is_finite()).then_some(x)
+    }
+
+    /// The same, and the greatest backward error of a row: what is left of it, relative to the sizes of what it adds up
+    /// (Arioli, Demmel & Duff 1989, SIAM J. Matrix Anal. Appl. 10, 165-190).
+    pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let mut worst = 0.0f64;
+        let by_row = |(i, right): (usize, &f64)| {
+            let (mut left, mut size) = (*right, right.abs());
+            for &(j, value) in self.rows.row(i) {
+                left -= value * x[j];
+                size += (value * x[j]).abs();
+            }
+            // A row of zeros is solved; what is no number is not.
+            let error = if left == 0.0 { 0.0 } else { (left / size).abs() };
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            left
+        };
+        (right.iter().enumerate().map(by_row).collect(), worst)
     }
 
     /// What the equations without what was added leave of a right-hand side.

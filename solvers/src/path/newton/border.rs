@@ -156,12 +156,20 @@ impl Bordered {
         z.iter().all(|v| v.is_finite()).then_some(z)
     }
 
-    /// What all rows leave of a right-hand side.
-    pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
-        let mut left = self.held.equations.left(right, x);
-        if let (Some((control, _)), Some(last)) = (&self.border, left.last_mut()) {
-            *last = right[right.len() - 1] - dot(control, x);
+    /// What all rows leave of a right-hand side, and the greatest backward error of a row.
+    pub fn left(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let Some((control, _)) = &self.border else { return self.held.equations.errors(right, x) };
+        // The row in the control's place is the control's, not that of the unknown that is held.
+        let last = right.len() - 1;
+        let mut above = right.to_vec();
+        above[last] = self.held.equations.along(last, x);
+        let (mut left, error) = self.held.equations.errors(&above, x);
+        let (mut own, mut size) = (right[last], right[last].abs());
+        for (c, x) in control.iter().zip(x) {
+            own -= c * x;
+            size += (c * x).abs();
         }
-        left
+        left[last] = own;
+        (left, if own == 0.0 { error } else { error.max((own / size).abs()) })
     }
 }

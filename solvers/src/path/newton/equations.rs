@@ -45,8 +45,21 @@ impl Equations {
         Equations { gaps: Rows::new(base, &gaps), bodies: Rows::new(last - base, &bodies) }
     }
 
-    /// Adds row k of a contact point in a regime to open rows: its equation, and what is added.
-    pub fn point(&self, law: Option<&Polygon>, c: usize, k: usize, regime: Regime, equation: Open, shift: Open) {
+    /// Adds row k of a contact point in a regime to open rows: its equation, and what is added. The latter
+    /// keeps the equations monotone where it is `whole`; where the forces of other points are left out of
+    /// it, those of open points have equations of their own, which can be condensed out.
+    #[allow(clippy::too_many_arguments)]
+    pub fn point(
+        &self,
+        law: Option<&Polygon>,
+        c: usize,
+        k: usize,
+        regime: Regime,
+        whole: bool,
+        equation: Open,
+        shift: Open,
+    ) {
+        let forces = self.gaps.len();
         let gap = |k: usize, by: f64| self.gaps.row(2 * c + k).iter().map(move |&(j, v)| (j, by * v));
         match (regime, law) {
             (Regime::Facet(i), Some(law)) => {
@@ -62,7 +75,7 @@ impl Equations {
             }
             (Regime::Corner(_), Some(_)) => {
                 equation.push((2 * c + k, 1.0));
-                shift.extend(gap(k, SHIFT));
+                shift.extend(gap(k, SHIFT).filter(|&(j, _)| whole || j >= forces || j / 2 == c));
             }
             _ => {
                 equation.extend_from_slice(self.gaps.row(2 * c + k));

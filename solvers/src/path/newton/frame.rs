@@ -119,7 +119,7 @@ impl Frame {
     fn rows_of(&self, model: &Model, c: usize, regime: Regime) -> [Row; 2] {
         [0, 1].map(|k| {
             let (mut row, mut shift) = (Row::new(), Row::new());
-            self.equations.point(model.law(c), c, k, regime, &mut row, &mut shift);
+            self.equations.point(model.law(c), c, k, regime, true, &mut row, &mut shift);
             row.append(&mut shift);
             row
         })
@@ -134,7 +134,7 @@ impl Frame {
         for c in 0..self.points {
             for k in 0..2 {
                 let law = model.law(c);
-                self.equations.point(law, c, k, self.regimes[c], rows.open(), shifts.open());
+                self.equations.point(law, c, k, self.regimes[c], true, rows.open(), shifts.open());
                 rows.end_row();
                 shifts.end_row();
             }
@@ -149,7 +149,7 @@ impl Frame {
         )?;
         let factors = Bordered::new(Rc::new(held), &self.control)?;
         let mut x = factors.apply(&self.right)?;
-        let step = factors.apply(&factors.left(&self.right, &x))?;
+        let step = factors.apply(&factors.left(&self.right, &x).0)?;
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let from = factors.equations().kept_of(&x);
         self.base = Some(Base { factors, from, changes: Vec::new() });

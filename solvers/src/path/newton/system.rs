@@ -25,6 +25,9 @@ use std::rc::Rc;
 use voussoir_core::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
+/// Backward error of every row that is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// The shift of the factorised matrix.
 pub(super) const SHIFT: f64 = 1e-9;
 
@@ -251,7 +254,7 @@ impl Model<'_> {
                 let (equation, shift) = (rows.open(), shifts.open());
                 match &answer {
                     Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
-                    None => equations.point(self.law(c), c, k, *regime, equation, shift),
+                    None => equations.point(self.law(c), c, k, *regime, false, equation, shift),
                 }
                 rows.end_row();
                 shifts.end_row();
@@ -300,12 +303,13 @@ fn refined(bordered: &Bordered, right: &[f64]) -> Option<(Vec<f64>, bool)> {
     for _ in 0..30 {
         let step = bordered.apply(&rest)?;
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-        rest = bordered.left(right, &x);
+        let (left, error) = bordered.left(right, &x);
+        rest = left;
         let now = norm(&rest);
         if now < before {
             best.copy_from_slice(&x);
         }
-        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim {
+        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim || error <= ROUNDING {
             before = before.min(now);
             break;
         }
