@@ -50,16 +50,23 @@ fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usiz
         (0..size).for_each(|i| start[i + 1] += start[i]);
         start
     };
-    let mut next = starts(|entry| entry.0);
-    let mut sorted = vec![(0, 0, 0.0); entries.len()];
-    for entry in entries {
-        sorted[next[entry.0]] = *entry;
-        next[entry.0] += 1;
-    }
+    let by_rows: Entries;
+    let sorted = if entries.is_sorted_by_key(|entry| entry.0) {
+        entries
+    } else {
+        let mut next = starts(|entry| entry.0);
+        let mut sorted = vec![(0, 0, 0.0); entries.len()];
+        for entry in entries {
+            sorted[next[entry.0]] = *entry;
+            next[entry.0] += 1;
+        }
+        by_rows = sorted;
+        &by_rows
+    };
     let start = starts(|entry| entry.1);
     let mut end = start[..size].to_vec();
     let (mut rows, mut values) = (vec![0; entries.len()], vec![0.0; entries.len()]);
-    for (i, j, value) in sorted {
+    for &(i, j, value) in sorted {
         let at = end[j];
         if at > start[j] && rows[at - 1] == i {
             values[at - 1] += value;

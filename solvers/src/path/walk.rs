@@ -64,7 +64,12 @@ impl Walk {
                 if speed >= 0.0 {
                     continue;
                 }
-                let when = wall.slack(point.force, point.gap, point.area).max(0.0) / -speed;
+                let slack = wall.slack(point.force, point.gap, point.area).max(0.0);
+                // Most walls are further away than the nearest so far: without a division.
+                if next.is_some_and(|n| slack > n.0 * -speed) {
+                    continue;
+                }
+                let when = slack / -speed;
                 if next.is_none_or(|n| when < n.0 || (when == n.0 && -speed > n.1)) {
                     next = Some((when, -speed, c, index));
                 }

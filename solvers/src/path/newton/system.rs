@@ -34,8 +34,8 @@ pub(super) const SHIFT: f64 = 1e-9;
 /// What the last factorisation leaves to the next.
 #[derive(Default)]
 pub(super) struct Factorised {
-    /// Regimes with their factors, where nothing else makes the matrix.
-    last: Option<(Vec<Regime>, Rc<Held>)>,
+    /// Factors with the regimes and the laws' directions they are of, where nothing else makes the matrix.
+    last: Option<(Vec<Regime>, Vec<[f64; 4]>, Rc<Held>)>,
     analysis: Analysis,
 }
 
@@ -239,8 +239,14 @@ impl Model<'_> {
     /// the same regimes are taken again.
     fn factorised(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<(Rc<Held>, bool)> {
         let again = self.responses.is_empty() && self.is_constant(curvature);
-        if let Some((regimes, held)) = self.factorised.last.as_ref().filter(|_| again)
+        let directions: Vec<[f64; 4]> = self
+            .polygons
+            .iter()
+            .flat_map(|law| law.facets.iter().map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]))
+            .collect();
+        if let Some((regimes, of, held)) = self.factorised.last.as_ref().filter(|_| again)
             && *regimes == state.regime
+            && *of == directions
             && held.serves(row)
         {
             return Some((held.clone(), true));
@@ -264,7 +270,7 @@ impl Model<'_> {
         self.count("factorisations", 1);
         let held = Held::new(rows, shifts, state.regime.len(), row, &mut self.factorised.analysis)?;
         let held = Rc::new(held);
-        self.factorised.last = again.then(|| (state.regime.clone(), held.clone()));
+        self.factorised.last = again.then(|| (state.regime.clone(), directions, held.clone()));
         Some((held, false))
     }
 
