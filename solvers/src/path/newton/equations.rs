@@ -48,12 +48,10 @@ impl Equations {
     /// Adds row k of a contact point in a regime to open rows: its equation, and what is added. The latter
     /// keeps the equations monotone where it is `whole`; where the forces of other points are left out of
     /// it, those of open points have equations of their own, which can be condensed out.
-    #[allow(clippy::too_many_arguments)]
     pub fn point(
         &self,
         law: Option<&Polygon>,
-        c: usize,
-        k: usize,
+        (c, k): (usize, usize),
         regime: Regime,
         whole: bool,
         equation: Open,

@@ -119,7 +119,7 @@ impl Frame {
     fn rows_of(&self, model: &Model, c: usize, regime: Regime) -> [Row; 2] {
         [0, 1].map(|k| {
             let (mut row, mut shift) = (Row::new(), Row::new());
-            self.equations.point(model.law(c), c, k, regime, true, &mut row, &mut shift);
+            self.equations.point(model.law(c), (c, k), regime, true, &mut row, &mut shift);
             row.append(&mut shift);
             row
         })
@@ -134,7 +134,7 @@ impl Frame {
         for c in 0..self.points {
             for k in 0..2 {
                 let law = model.law(c);
-                self.equations.point(law, c, k, self.regimes[c], true, rows.open(), shifts.open());
+                self.equations.point(law, (c, k), self.regimes[c], true, rows.open(), shifts.open());
                 rows.end_row();
                 shifts.end_row();
             }

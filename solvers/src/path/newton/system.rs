@@ -260,7 +260,7 @@ impl Model<'_> {
                 let (equation, shift) = (rows.open(), shifts.open());
                 match &answer {
                     Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
-                    None => equations.point(self.law(c), c, k, *regime, false, equation, shift),
+                    None => equations.point(self.law(c), (c, k), *regime, false, equation, shift),
                 }
                 rows.end_row();
                 shifts.end_row();
