@@ -31,11 +31,19 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// The shift of the factorised matrix.
 pub(super) const SHIFT: f64 = 1e-9;
 
+/// Factors with what they are of.
+struct Kept {
+    regimes: Vec<Regime>,
+    /// Normals and flows of the laws' facets.
+    directions: Vec<[f64; 4]>,
+    held: Rc<Held>,
+}
+
 /// What the last factorisation leaves to the next.
 #[derive(Default)]
 pub(super) struct Factorised {
-    /// Factors with the regimes and the laws' directions they are of, where nothing else makes the matrix.
-    last: Option<(Vec<Regime>, Vec<[f64; 4]>, Rc<Held>)>,
+    /// The last ones, where nothing but regimes and laws makes the matrix.
+    last: Option<Kept>,
     analysis: Analysis,
 }
 
@@ -244,12 +252,12 @@ impl Model<'_> {
             .iter()
             .flat_map(|law| law.facets.iter().map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]))
             .collect();
-        if let Some((regimes, of, held)) = self.factorised.last.as_ref().filter(|_| again)
-            && *regimes == state.regime
-            && *of == directions
-            && held.serves(row)
+        if let Some(kept) = self.factorised.last.as_ref().filter(|_| again)
+            && kept.regimes == state.regime
+            && kept.directions == directions
+            && kept.held.serves(row)
         {
-            return Some((held.clone(), true));
+            return Some((kept.held.clone(), true));
         }
         let equations = curvature.rows(self);
         let capacity = curvature.entries.len();
@@ -270,7 +278,7 @@ impl Model<'_> {
         self.count("factorisations", 1);
         let held = Held::new(rows, shifts, state.regime.len(), row, &mut self.factorised.analysis)?;
         let held = Rc::new(held);
-        self.factorised.last = again.then(|| (state.regime.clone(), directions, held.clone()));
+        self.factorised.last = again.then(|| Kept { regimes: state.regime.clone(), directions, held: held.clone() });
         Some((held, false))
     }
 
