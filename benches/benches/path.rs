@@ -62,14 +62,17 @@ fn exact_arch(c: &mut Criterion) {
 /// Whole paths to collapse. Events grow with the voussoirs and each looks at every contact point: the cost
 /// of events grows with their square; that of steps with a little more than their number.
 fn to_collapse(c: &mut Criterion) {
-    for (name, solver) in [
-        ("newton_path to collapse against voussoirs", &NewtonPath {} as &dyn PathSolver),
-        ("event_path to collapse against voussoirs", &EventPath {} as &dyn PathSolver),
+    let (newton, events) = (&NewtonPath {} as &dyn PathSolver, &EventPath {} as &dyn PathSolver);
+    for (name, solver, elastic, sizes) in [
+        ("newton_path to collapse against voussoirs, rigid", newton, false, vec![13, 130, 400, 1300]),
+        ("newton_path to collapse against voussoirs, elastic", newton, true, vec![13, 40, 130]),
+        ("event_path to collapse against voussoirs, rigid", events, false, vec![13, 130, 400]),
+        ("event_path to collapse against voussoirs, elastic", events, true, vec![13, 40]),
     ] {
         let mut group = c.benchmark_group(name);
         group.sample_size(10);
-        for voussoirs in [13, 130, 400] {
-            let case = compliant_ring(voussoirs);
+        for voussoirs in sizes {
+            let case = if elastic { elastic_ring(voussoirs) } else { compliant_ring(voussoirs) };
             group.throughput(Throughput::Elements(voussoirs as u64));
             group.bench_with_input(BenchmarkId::from_parameter(voussoirs), &case, |b, case| {
                 b.iter(|| traced(solver, case, false));

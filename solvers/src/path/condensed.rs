@@ -2,8 +2,8 @@
 //! their own.
 //!
 //! Unknowns are (r_n, r_t) of every contact point, then all others. Where the two rows of a point hold no
-//! other contact force and its forces stand in the rows of no other point (rigid bodies with compliant
-//! joints: C is diagonal), they are condensed out exactly,
+//! other contact force (rigid bodies with compliant joints: C is diagonal; points that are open, r = 0),
+//! they are condensed out exactly,
 //!
 //! ```text
 //! A_c r_c + E_c y = f_c      r_c = A_c⁻¹ (f_c − E_c y)
@@ -11,12 +11,12 @@
 //! ```
 //!
 //! so that what is factorised has three unknowns a body and not 2 × the contact points of its joints
-//! more. Points with C of elastic bodies stay. In S forces are differences of motions, which rounds by
+//! more. Points pressed on elastic bodies, whose gaps depend on other forces, stay. Here forces are differences of motions, which rounds by
 //! the size of the motions: residuals are those of all the equations, and one or two steps of iterative
 //! refinement leave the accuracy of the equations before condensation.
 
 use super::rows::Rows;
-use crate::lu::{Entries, SparseLu};
+use crate::lu::{Analysis, Entries, SparseLu};
 
 /// Own equations of a point must be at least this strong, relative to the others in its rows.
 const STRONG: f64 = 1e-3;
@@ -57,7 +57,7 @@ pub(in crate::path) struct Condensed {
 }
 
 /// A value in one of two places.
-fn pair(k: usize, value: f64) -> [f64; 2] {
+pub(in crate::path) fn pair(k: usize, value: f64) -> [f64; 2] {
     if k == 0 { [value, 0.0] } else { [0.0, value] }
 }
 
@@ -66,15 +66,18 @@ impl Condensed {
     /// points, with something added that refinement takes out again. `None` where they are singular in
     /// their pattern.
     pub fn new(size: usize, contacts: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
-        let rows = Rows::new(size, entries);
-        let shifts = Rows::new(size, shift);
+        let (rows, shifts) = (Rows::new(size, entries), Rows::new(size, shift));
+        Condensed::of(rows, &shifts, contacts, &mut Analysis::default())
+    }
+
+    /// The same from rows, by the analysis of what was factorised before.
+    pub fn of(rows: Rows, shifts: &Rows, contacts: usize, analysis: &mut Analysis) -> Option<Self> {
+        let size = rows.len();
         let forces = 2 * contacts;
         let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
         let mut alone = vec![true; contacts];
         for i in 0..forces {
-            for (j, _) in both(i).filter(|e| e.0 < forces && e.0 / 2 != i / 2) {
-                (alone[i / 2], alone[j / 2]) = (false, false);
-            }
+            alone[i / 2] &= both(i).all(|(j, _)| j >= forces || j / 2 == i / 2);
         }
         let mut points: Vec<Point> = Vec::new();
         let mut of = vec![None; contacts];
@@ -153,7 +156,7 @@ impl Condensed {
             down.0.push(down.1.len());
             reduced.extend(columns.iter().map(|&j| (k, j, row[j])));
         }
-        let reduced = SparseLu::new(kept.len(), &reduced)?;
+        let reduced = SparseLu::analysed(kept.len(), &reduced, analysis)?;
         Some(Condensed { rows, points, across, down, of, kept, place, reduced })
     }
 
@@ -170,6 +173,53 @@ impl Condensed {
         };
         let rights: Vec<Vec<f64>> = rights.iter().map(reduced).collect();
         self.reduced.solve(&rights, 0)
+    }
+
+    /// y for unit right-hand sides of the two rows of a contact point.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let mut rights = vec![vec![0.0; self.kept.len()]; 2];
+        for (k, right) in rights.iter_mut().enumerate() {
+            match self.of[contact] {
+                None => right[self.place[2 * contact + k]] = 1.0,
+                Some(point) => {
+                    let own = self.points[point].own(pair(k, 1.0));
+                    for (row, right) in right.iter_mut().enumerate() {
+                        let all = &self.down.1[self.down.0[row]..self.down.0[row + 1]];
+                        for (_, f) in all.iter().filter(|(p, _)| *p == point) {
+                            *right -= f[0] * own[0] + f[1] * own[1];
+                        }
+                    }
+                }
+            }
+        }
+        let mut columns = self.reduced.solve(&rights, 0)?.into_iter();
+        Some([columns.next()?, columns.next()?])
+    }
+
+    /// A row times all unknowns, from y and the right-hand sides of the contact points.
+    pub fn dot(&self, row: &[f64], right: impl Fn(usize) -> [f64; 2], y: &[f64]) -> f64 {
+        let kept: f64 = self.kept.iter().zip(y).map(|(i, y)| row[*i] * y).sum();
+        let condensed = self.points.iter().filter(|p| row[p.first] != 0.0 || row[p.first + 1] != 0.0);
+        let forces = condensed.map(|p| {
+            let r = self.recovered(p, right(p.first / 2), y);
+            row[p.first] * r[0] + row[p.first + 1] * r[1]
+        });
+        kept + forces.sum::<f64>()
+    }
+
+    /// The equations themselves.
+    pub fn into_rows(self) -> Rows {
+        self.rows
+    }
+
+    /// One row times a vector.
+    pub fn along(&self, row: usize, x: &[f64]) -> f64 {
+        self.rows.along(row, x)
+    }
+
+    /// Number of contact points.
+    pub fn contacts(&self) -> usize {
+        self.of.len()
     }
 
     /// r = A⁻¹ (f − E y).
@@ -238,6 +288,24 @@ impl Condensed {
             (x, left) = (better, now);
         }
         x.iter().all(|v| v.is_finite()).then_some(x)
+    }
+
+    /// The same, and the greatest backward error of a row: what is left of it, relative to the sizes of what it adds up
+    /// (Arioli, Demmel & Duff 1989, SIAM J. Matrix Anal. Appl. 10, 165-190).
+    pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let mut worst = 0.0f64;
+        let by_row = |(i, right): (usize, &f64)| {
+            let (mut left, mut size) = (*right, right.abs());
+            for &(j, value) in self.rows.row(i) {
+                left -= value * x[j];
+                size += (value * x[j]).abs();
+            }
+            // A row of zeros is solved; what is no number is not.
+            let error = if left == 0.0 { 0.0 } else { (left / size).abs() };
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            left
+        };
+        (right.iter().enumerate().map(by_row).collect(), worst)
     }
 
     /// What the equations without what was added leave of a right-hand side.

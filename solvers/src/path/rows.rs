@@ -38,6 +38,45 @@ impl Rows {
         all
     }
 
+    /// No row.
+    pub fn none(capacity: usize) -> Self {
+        Rows { start: vec![0], entries: Vec::with_capacity(capacity) }
+    }
+
+    /// Rows without entries.
+    pub fn empty(rows: usize) -> Self {
+        Rows { start: vec![0; rows + 1], entries: Vec::new() }
+    }
+
+    /// Rows with those of others added.
+    pub fn with(&self, others: &Rows) -> Self {
+        let mut both = Rows::none(self.entries.len() + others.entries.len());
+        for i in 0..self.len() {
+            both.entries.extend_from_slice(self.row(i));
+            both.entries.extend_from_slice(others.row(i));
+            both.end_row();
+        }
+        both
+    }
+
+    /// Entries of the row that [`Rows::end_row`] ends, behind those of the rows before.
+    pub fn open(&mut self) -> &mut Vec<(usize, f64)> {
+        &mut self.entries
+    }
+
+    /// Ends a row.
+    pub fn end_row(&mut self) {
+        self.start.push(self.entries.len());
+    }
+
+    /// The last row, taken off.
+    pub fn pop(&mut self) {
+        if self.start.len() > 1 {
+            self.start.pop();
+            self.entries.truncate(self.start[self.start.len() - 1]);
+        }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.start.len() - 1

@@ -5,6 +5,7 @@
 //! it: it may turn back.
 
 use super::cells::Wall;
+use std::borrow::Borrow;
 
 /// Values of t behind which a path that turned back is given up.
 const LOST: f64 = -30.0;
@@ -46,22 +47,29 @@ impl Walk {
 
     /// Goes on to what comes next: what it is, and by how much t changes until then. Points without a
     /// cell are `None`.
-    pub fn on<'a>(&mut self, points: usize, at: impl Fn(usize) -> Option<Standing<'a>>) -> (f64, Met) {
+    pub fn on<'a, P: Borrow<Standing<'a>>>(&mut self, points: usize, at: impl Fn(usize) -> Option<P>) -> (f64, Met) {
         if let Some((c, wall)) = self.entered.take()
             && let Some(point) = at(c)
         {
+            let point = point.borrow();
             self.sense = if point.walls[wall].speed(point.force_rate, point.gap_rate) < 0.0 { -1.0 } else { 1.0 };
         }
         // When, how fast (of walls that are met together the fastest first), which.
         let mut next: Option<(f64, f64, usize, usize)> = None;
         for c in 0..points {
             let Some(point) = at(c) else { continue };
+            let point = point.borrow();
             for (index, wall) in point.walls.iter().enumerate() {
                 let speed = self.sense * wall.speed(point.force_rate, point.gap_rate);
                 if speed >= 0.0 {
                     continue;
                 }
-                let when = wall.slack(point.force, point.gap, point.area).max(0.0) / -speed;
+                let slack = wall.slack(point.force, point.gap, point.area).max(0.0);
+                // Most walls are further away than the nearest so far: without a division.
+                if next.is_some_and(|n| slack > n.0 * -speed) {
+                    continue;
+                }
+                let when = slack / -speed;
                 if next.is_none_or(|n| when < n.0 || (when == n.0 && -speed > n.1)) {
                     next = Some((when, -speed, c, index));
                 }

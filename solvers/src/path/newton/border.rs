@@ -15,19 +15,35 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use crate::lu::Entries;
-use crate::path::condensed::Condensed;
+use crate::lu::Analysis;
+use crate::path::condensed::{Condensed, pair};
+use crate::path::rows::Rows;
+use std::rc::Rc;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
 /// Least rate of the unknown that is held, relative to the greatest.
 const MOVES: f64 = 1e-4;
 
+/// What stands in the last row of factorised equations.
+enum Last {
+    /// The control.
+    Control(Vec<(usize, f64)>),
+    /// An unknown that is held; w, and w without the unknowns that are condensed out.
+    Unknown(Vec<f64>, Vec<f64>),
+}
+
+/// Factorised equations without a control of their own: they serve every control that is a border.
+pub(super) struct Held {
+    equations: Condensed,
+    last: Last,
+}
+
 /// Factorised equations with a control.
 pub(super) struct Bordered {
-    equations: Condensed,
-    /// The control's row with its w and c·w, where it is not part of the matrix.
-    border: Option<(Vec<f64>, Vec<f64>, f64)>,
+    held: Rc<Held>,
+    /// The control's row with c·w, where it is not part of the matrix.
+    border: Option<(Vec<f64>, f64)>,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -39,56 +55,121 @@ fn greatest(v: &[f64]) -> usize {
     (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best })
 }
 
-impl Bordered {
-    /// Factorises the equations above the last row with the `control` as that row. `None` where they are
-    /// singular.
-    pub fn new(size: usize, contacts: usize, equations: Entries, shift: &Entries, control: &[f64]) -> Option<Self> {
-        let mut equations = equations;
+/// The entries of a control's row, where it is part of the matrix.
+fn few(control: &[f64]) -> Option<Vec<(usize, f64)>> {
+    let entries = || control.iter().enumerate().filter(|(_, v)| **v != 0.0);
+    (entries().nth(SPARSE).is_none()).then(|| entries().map(|(j, v)| (j, *v)).collect())
+}
+
+impl Held {
+    /// Factorises the equations above the last row, which the rows do not hold, with what the `control`
+    /// asks for in its place. `None` where they are singular.
+    pub fn new(
+        mut rows: Rows,
+        mut shifts: Rows,
+        contacts: usize,
+        control: &[f64],
+        analysis: &mut Analysis,
+    ) -> Option<Self> {
+        let size = control.len();
         let last = size - 1;
-        let few: Entries = control.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(j, v)| (last, j, *v)).collect();
-        if few.len() <= SPARSE {
-            equations.extend(few);
-            return Some(Bordered { equations: Condensed::new(size, contacts, &equations, shift)?, border: None });
+        shifts.end_row();
+        if let Some(few) = few(control) {
+            rows.open().extend(&few);
+            rows.end_row();
+            let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
+            return Some(Held { equations, last: Last::Control(few) });
         }
         let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
         let mut held = 2 * contacts + greatest(&control[2 * contacts..]);
         for again in [true, false] {
-            equations.push((last, held, 1.0));
-            let factors = Condensed::new(size, contacts, &equations, shift)?;
-            equations.pop();
-            if let Some(w) = factors.apply(&end) {
+            rows.open().push((held, 1.0));
+            rows.end_row();
+            let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
+            if let Some(w) = equations.apply(&end) {
                 let most = 2 * contacts + greatest(&w[2 * contacts..]);
                 if !again || w[held].abs() >= MOVES * w[most].abs() {
-                    let along = dot(control, &w);
-                    let border = Some((control.to_vec(), w, along)).filter(|_| along != 0.0)?;
-                    return Some(Bordered { equations: factors, border: Some(border) });
+                    let kept = equations.kept_of(&w);
+                    return Some(Held { equations, last: Last::Unknown(w, kept) });
                 }
                 held = most;
-            } else if again {
+            } else {
                 held = last;
             }
+            rows = equations.into_rows();
+            rows.pop();
         }
         None
     }
 
+    /// Whether it serves a control.
+    pub fn serves(&self, control: &[f64]) -> bool {
+        match (&self.last, few(control)) {
+            (Last::Control(own), Some(few)) => *own == few,
+            (Last::Unknown(..), None) => true,
+            _ => false,
+        }
+    }
+}
+
+impl Bordered {
+    /// With a control that the factorised equations serve. `None` where it is orthogonal to w.
+    pub fn new(held: Rc<Held>, control: &[f64]) -> Option<Self> {
+        let border = match &held.last {
+            Last::Control(_) => None,
+            Last::Unknown(w, _) => Some((control.to_vec(), Some(dot(control, w)).filter(|along| *along != 0.0)?)),
+        };
+        Some(Bordered { held, border })
+    }
+
+    /// The equations above the control, the control's row in them or an unknown held in its place.
+    pub fn equations(&self) -> &Condensed {
+        &self.held.equations
+    }
+
+    /// What unit right-hand sides of the two rows of a contact point give, without the unknowns that
+    /// are condensed out.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let equations = &self.held.equations;
+        let mut columns = equations.units(contact)?;
+        if let (Last::Unknown(_, w), Some((control, along))) = (&self.held.last, &self.border) {
+            for (k, y) in columns.iter_mut().enumerate() {
+                let right = |c: usize| if c == contact { pair(k, 1.0) } else { [0.0; 2] };
+                let t = -equations.dot(control, right, y) / along;
+                y.iter_mut().zip(w).for_each(|(y, w)| *y += t * w);
+            }
+        }
+        Some(columns)
+    }
+
     /// Once, without refinement.
     pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
-        let Some((control, w, along)) = &self.border else { return self.equations.apply(right) };
+        let (Last::Unknown(w, _), Some((control, along))) = (&self.held.last, &self.border) else {
+            return self.held.equations.apply(right);
+        };
         let last = right.len() - 1;
         let mut above = right.to_vec();
         above[last] = 0.0;
-        let mut z = self.equations.apply(&above)?;
+        let mut z = self.held.equations.apply(&above)?;
         let t = (right[last] - dot(control, &z)) / along;
         z.iter_mut().zip(w).for_each(|(z, w)| *z += t * w);
         z.iter().all(|v| v.is_finite()).then_some(z)
     }
 
-    /// What all rows leave of a right-hand side.
-    pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
-        let mut left = self.equations.left(right, x);
-        if let (Some((control, ..)), Some(last)) = (&self.border, left.last_mut()) {
-            *last = right[right.len() - 1] - dot(control, x);
+    /// What all rows leave of a right-hand side, and the greatest backward error of a row.
+    pub fn left(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let Some((control, _)) = &self.border else { return self.held.equations.errors(right, x) };
+        // The row in the control's place is the control's, not that of the unknown that is held.
+        let last = right.len() - 1;
+        let mut above = right.to_vec();
+        above[last] = self.held.equations.along(last, x);
+        let (mut left, error) = self.held.equations.errors(&above, x);
+        let (mut own, mut size) = (right[last], right[last].abs());
+        for (c, x) in control.iter().zip(x) {
+            own -= c * x;
+            size += (c * x).abs();
         }
-        left
+        left[last] = own;
+        (left, if own == 0.0 { error } else { error.max((own / size).abs()) })
     }
 }

@@ -1,16 +1,28 @@
 //! One factorisation for many pivots: contact points whose regime has changed since enter by their
-//! two rows (Sherman, Morrison & Woodbury), and where that leaves residuals the matrix is factorised
-//! anew. The matrix is the shifted one of [`super::system`]: strictly monotone where flow is
-//! associated, so that no combination of regimes is without a direction.
+//! two rows (Sherman, Morrison & Woodbury), and where many have, or where that leaves residuals, the
+//! matrix is factorised anew.
+//!
+//! ```text
+//! B x_0 = f     B Y = [e_i]     (1 + D Y) w = D x_0     x = x_0 − Y w
+//! ```
+//!
+//! B: rows of the regimes that were factorised, D: what the rows i of changed points are more than
+//! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::path::condensed)
+//! takes out, and x_0 follows every change of f by Y: a pivot solves for two columns at most, all else
+//! are products. Rows that have not changed hold as exactly as B is solved; those that have are checked.
+//!
+//! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
+//! that no combination of regimes is without a direction.
 
-use super::kinematics::Curvature;
+use super::border::{Bordered, Held};
+use super::equations::Equations;
 use super::law::Regime;
 use super::model::Model;
-use super::system::SHIFT;
-use crate::lu::SparseLu;
+use crate::lu::Analysis;
+use crate::path::condensed::Condensed;
+use crate::path::rows::Rows;
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use std::rc::Rc;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
@@ -20,180 +32,167 @@ const RESIDUAL: f64 = 1e-9;
 /// A sparse row.
 type Row = Vec<(usize, f64)>;
 
-/// Rows of the equations, in units, and a factorisation.
-pub(super) struct Frame {
-    size: usize,
-    /// Rows of the gaps, two per contact point.
-    gaps: Vec<Row>,
-    /// Rows of the bodies and of the control.
-    rest: Vec<Row>,
-    regimes: Vec<Regime>,
-    rows: Vec<[Row; 2]>,
-    factors: Option<SparseLu>,
-    columns: BTreeMap<usize, [Vec<f64>; 2]>,
+/// A contact point whose rows are no longer those of B.
+struct Change {
+    contact: usize,
+    /// Columns of Y of its rows.
+    columns: [Vec<f64>; 2],
+    /// Its present rows and those of B.
+    rows: [[Row; 2]; 2],
 }
 
-fn along(row: &Row, x: &[f64]) -> f64 {
-    row.iter().map(|&(j, v)| v * x[j]).sum()
+/// A factorisation with what has changed since.
+struct Base {
+    factors: Bordered,
+    /// x_0.
+    from: Vec<f64>,
+    changes: Vec<Change>,
+}
+
+/// Equations of all points and bodies, in units, with a right-hand side and a factorisation.
+pub(super) struct Frame {
+    points: usize,
+    equations: Rc<Equations>,
+    control: Vec<f64>,
+    regimes: Vec<Regime>,
+    right: Vec<f64>,
+    base: Option<Base>,
+    analysis: Analysis,
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |a: f64, b| if b.is_nan() { f64::NAN } else { a.max(b.abs()) })
+}
+
+/// A contact point's row times a solution of which the condensed unknowns and the right-hand sides of
+/// the points are given.
+fn along(row: &Row, contact: usize, factors: &Condensed, y: &[f64], right: &impl Fn(usize) -> [f64; 2]) -> f64 {
+    let own = factors.force(contact, right(contact), y);
+    let forces = 2 * factors.contacts();
+    let value = |j: usize| match j {
+        j if j / 2 == contact => own[j % 2],
+        j if j < forces => factors.force(j / 2, right(j / 2), y)[j % 2],
+        j => factors.other(j, y),
+    };
+    row.iter().map(|&(j, v)| v * value(j)).sum()
 }
 
 impl Frame {
-    /// Rows of the equations with a control.
-    pub fn new(model: &Model, curvature: &Curvature, control: &[f64]) -> Frame {
-        let (points, size) = (model.problem.contacts.len(), model.size());
-        let (u, last) = (model.units, size - 1);
-        let mut gaps = vec![Row::new(); 2 * points];
-        let mut rest = vec![Row::new(); size - 2 * points];
-        let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
-        let mut place = |i: usize, column: usize, value: f64| {
-            if i < 2 * points {
-                gaps[i].push((column, value / u.displacement));
-            } else if let Some((row, _)) = model.column(i) {
-                rest[row - 2 * points].push((column, value / row_unit(i)));
+    /// Equations with a control, all points stuck, nothing on the right-hand side.
+    pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> Frame {
+        let right = vec![0.0; control.len()];
+        let regimes = vec![Regime::Stuck; points];
+        Frame { points, equations, control, regimes, right, base: None, analysis: Analysis::default() }
+    }
+
+    /// Right-hand sides of the rows that belong to no contact point.
+    pub fn drive(&mut self, right: &[f64]) {
+        self.right[2 * self.points..].copy_from_slice(&right[2 * self.points..]);
+        self.base = None;
+    }
+
+    /// A contact point's regime and the right-hand sides of its rows.
+    pub fn set(&mut self, model: &Model, contact: usize, regime: Regime, right: [f64; 2]) {
+        let old = self.regimes[contact];
+        self.regimes[contact] = regime;
+        let before = [0, 1].map(|k| std::mem::replace(&mut self.right[2 * contact + k], right[k]));
+        let Some(mut base) = self.base.take() else { return };
+        if !base.changes.iter().any(|change| change.contact == contact) {
+            if base.changes.len() >= FRESH {
+                return;
             }
-        };
-        for &(i, j, value) in &curvature.entries {
-            if let Some((column, unit)) = model.column(j) {
-                place(i, column, value * unit);
+            let Some(columns) = base.factors.units(contact) else { return };
+            let rows = self.rows_of(model, contact, old);
+            base.changes.push(Change { contact, columns, rows: [rows.clone(), rows] });
+        }
+        for change in base.changes.iter_mut().filter(|change| change.contact == contact) {
+            for (k, column) in change.columns.iter().enumerate() {
+                let by = right[k] - before[k];
+                base.from.iter_mut().zip(column).for_each(|(x, y)| *x += by * y);
             }
+            change.rows[0] = self.rows_of(model, contact, regime);
         }
-        for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-            place(i, last, value * u.factor);
-        }
-        for (k, row) in rest.iter_mut().enumerate().take(last - 2 * points) {
-            row.push((2 * points + k, -SHIFT));
-        }
-        rest[last - 2 * points] = control.iter().copied().enumerate().filter(|(_, v)| *v != 0.0).collect();
-        let merged = |row: &mut Row| {
-            row.sort_by_key(|e| e.0);
-            row.dedup_by(|b, a| {
-                let same = a.0 == b.0;
-                if same {
-                    a.1 += b.1;
-                }
-                same
-            });
-        };
-        gaps.iter_mut().chain(rest.iter_mut()).for_each(merged);
-        let rows = vec![[Row::new(), Row::new()]; points];
-        Frame { size, gaps, rest, regimes: vec![Regime::Stuck; points], rows, factors: None, columns: BTreeMap::new() }
+        self.base = Some(base);
     }
 
     /// The two rows of a contact point in a regime.
     fn rows_of(&self, model: &Model, c: usize, regime: Regime) -> [Row; 2] {
-        let gap = [&self.gaps[2 * c], &self.gaps[2 * c + 1]];
-        match (regime, model.law(c)) {
-            (Regime::Facet(i), Some(law)) => {
-                let f = &law.facets[i as usize];
-                let d = f.flow;
-                let square = d[0] * d[0] + d[1] * d[1];
-                let mut yields: Row = vec![(2 * c, f.normal[0]), (2 * c + 1, f.normal[1])];
-                let mut across = Row::new();
-                for k in 0..2 {
-                    yields.extend(gap[k].iter().map(|&(j, v)| (j, SHIFT * d[k] / square * v)));
-                    let weight = if k == 0 { d[1] } else { -d[0] };
-                    across.extend(gap[k].iter().map(|&(j, v)| (j, weight * v)));
-                }
-                [yields, across]
-            }
-            (Regime::Corner(_), Some(_)) => [0, 1].map(|k| {
-                let mut row: Row = vec![(2 * c + k, 1.0)];
-                row.extend(gap[k].iter().map(|&(j, v)| (j, SHIFT * v)));
-                row
-            }),
-            _ => [0, 1].map(|k| {
-                let mut row = gap[k].clone();
-                row.push((2 * c + k, SHIFT));
-                row
-            }),
-        }
+        [0, 1].map(|k| {
+            let (mut row, mut shift) = (Row::new(), Row::new());
+            self.equations.point(model.law(c), (c, k), regime, true, &mut row, &mut shift);
+            row.append(&mut shift);
+            row
+        })
     }
 
-    fn factorise(&mut self, model: &Model, regimes: &[Regime]) -> Option<()> {
-        self.regimes = regimes.to_vec();
-        self.columns.clear();
-        let mut entries = Vec::new();
-        for (c, regime) in regimes.iter().enumerate() {
-            self.rows[c] = self.rows_of(model, c, *regime);
-            for (k, row) in self.rows[c].iter().enumerate() {
-                entries.extend(row.iter().map(|&(j, v)| (2 * c + k, j, v)));
-            }
-        }
-        for (k, row) in self.rest.iter().enumerate() {
-            entries.extend(row.iter().map(|&(j, v)| (2 * regimes.len() + k, j, v)));
-        }
-        self.factors = Some(SparseLu::new(self.size, &entries)?);
-        Some(())
-    }
-
-    /// Solves with regimes; how many factorisations that took.
-    pub fn solve(&mut self, model: &Model, regimes: &[Regime], right: &[f64]) -> Option<(Vec<f64>, u64)> {
-        let changed: Vec<usize> = (0..regimes.len()).filter(|c| regimes[*c] != self.regimes[*c]).collect();
-        if self.factors.is_some()
-            && changed.len() <= FRESH
-            && let Some(x) = self.updated(model, regimes, &changed, right)
-        {
+    /// All unknowns; how many factorisations that took. `None` where the equations are singular.
+    pub fn solve(&mut self, model: &Model) -> Option<(Vec<f64>, u64)> {
+        if let Some(x) = self.updated() {
             return Some((x, 0));
         }
-        self.factorise(model, regimes)?;
-        let x = self.factors.as_ref()?.solve(&[right.to_vec()], 1)?.swap_remove(0);
+        let (mut rows, mut shifts) = (Rows::none(0), Rows::none(0));
+        for c in 0..self.points {
+            for k in 0..2 {
+                let law = model.law(c);
+                self.equations.point(law, (c, k), self.regimes[c], true, rows.open(), shifts.open());
+                rows.end_row();
+                shifts.end_row();
+            }
+        }
+        self.equations.bodies(&mut rows, &mut shifts);
+        let held = Held::new(
+            rows.with(&shifts),
+            Rows::empty(self.control.len() - 1),
+            self.points,
+            &self.control,
+            &mut self.analysis,
+        )?;
+        let factors = Bordered::new(Rc::new(held), &self.control)?;
+        let mut x = factors.apply(&self.right)?;
+        let step = factors.apply(&factors.left(&self.right, &x).0)?;
+        x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+        let from = factors.equations().kept_of(&x);
+        self.base = Some(Base { factors, from, changes: Vec::new() });
         Some((x, 1))
     }
 
-    /// By the changed rows; `None` where that leaves residuals.
-    fn updated(&mut self, model: &Model, regimes: &[Regime], changed: &[usize], right: &[f64]) -> Option<Vec<f64>> {
-        let factors = self.factors.as_ref()?;
-        let unit = |row: usize| {
-            let mut e = vec![0.0; self.size];
-            e[row] = 1.0;
-            e
+    /// By the changed rows; `None` where there is no factorisation, or that leaves residuals.
+    fn updated(&self) -> Option<Vec<f64>> {
+        let Base { factors, from, changes } = self.base.as_ref()?;
+        let equations = factors.equations();
+        let n = 2 * changes.len();
+        let present = |c: usize| [self.right[2 * c], self.right[2 * c + 1]];
+        let row = |i: usize, which: usize, y: &[f64], right: &dyn Fn(usize) -> [f64; 2]| {
+            along(&changes[i / 2].rows[which][i % 2], changes[i / 2].contact, equations, y, &right)
         };
-        for &c in changed {
-            if let Entry::Vacant(column) = self.columns.entry(c) {
-                let mut x = factors.solve(&[unit(2 * c), unit(2 * c + 1)], 0)?.into_iter();
-                column.insert([x.next()?, x.next()?]);
-            }
-        }
-        let new: Vec<[Row; 2]> = changed.iter().map(|c| self.rows_of(model, *c, regimes[*c])).collect();
-        let columns: Vec<&Vec<f64>> = changed.iter().flat_map(|c| &self.columns[c]).collect();
         let difference =
-            |i: usize, x: &[f64]| along(&new[i / 2][i % 2], x) - along(&self.rows[changed[i / 2]][i % 2], x);
-        let n = 2 * changed.len();
-        let small = DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) + difference(i, columns[j])).lu();
-        let product = |x: &[f64]| -> Vec<f64> {
-            let mut out = vec![0.0; self.size];
-            for (c, rows) in self.rows.iter().enumerate() {
-                (0..2).for_each(|k| out[2 * c + k] = along(&rows[k], x));
-            }
-            for (c, rows) in changed.iter().zip(&new) {
-                (0..2).for_each(|k| out[2 * c + k] = along(&rows[k], x));
-            }
-            let base = 2 * self.rows.len();
-            for (k, row) in self.rest.iter().enumerate() {
-                out[base + k] = along(row, x);
-            }
-            out
-        };
-        let apply = |right: &[f64]| -> Option<Vec<f64>> {
-            let mut x = factors.solve(&[right.to_vec()], 0)?.swap_remove(0);
-            if n > 0 {
-                let by = small.solve(&DVector::from_fn(n, |i, _| difference(i, &x)))?;
-                for (column, w) in columns.iter().zip(by.iter()) {
-                    x.iter_mut().zip(column.iter()).for_each(|(x, y)| *x -= w * y);
-                }
-            }
-            Some(x)
-        };
-        let left = |x: &[f64]| -> Vec<f64> { right.iter().zip(product(x)).map(|(b, p)| b - p).collect() };
-        let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| if b.is_nan() { f64::NAN } else { a.max(b.abs()) });
-        let mut x = apply(right)?;
-        let rest = left(&x);
-        let bound = RESIDUAL * norm(right);
-        if norm(&rest) <= bound {
-            return Some(x);
+            |i: usize, y: &[f64], right: &dyn Fn(usize) -> [f64; 2]| row(i, 0, y, right) - row(i, 1, y, right);
+        let small = DMatrix::from_fn(n, n, |i, j| {
+            let change = &changes[j / 2];
+            let unit = |c: usize| match c == change.contact {
+                true => [f64::from(u8::from(j % 2 == 0)), f64::from(u8::from(j % 2 == 1))],
+                false => [0.0; 2],
+            };
+            f64::from(u8::from(i == j)) + difference(i, &change.columns[j % 2], &unit)
+        });
+        let by = small.lu().solve(&DVector::from_fn(n, |i, _| difference(i, from, &present)))?;
+        let (mut y, mut right) = (from.clone(), self.right.clone());
+        for (i, w) in by.iter().enumerate() {
+            let change = &changes[i / 2];
+            y.iter_mut().zip(&change.columns[i % 2]).for_each(|(y, column)| *y -= w * column);
+            right[2 * change.contact + i % 2] -= w;
         }
-        let step = apply(&rest)?;
-        x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-        (norm(&left(&x)) <= bound).then_some(x)
+        let changed = |c: usize| [right[2 * c], right[2 * c + 1]];
+        let bound = RESIDUAL * norm(&self.right);
+        let holds = |i: usize| {
+            let at = 2 * changes[i / 2].contact + i % 2;
+            (row(i, 0, &y, &changed) - self.right[at]).abs() <= bound
+        };
+        ((0..n).all(holds) && norm(&y).is_finite()).then(|| equations.expand(&right, &y))
+    }
+
+    /// Rate of a contact point's gap in a solution, in units.
+    pub fn gap(&self, contact: usize, x: &[f64]) -> [f64; 2] {
+        [0, 1].map(|k| self.equations.gaps.along(2 * contact + k, x))
     }
 }

@@ -17,8 +17,12 @@
 //! Source: the mixed form of Hellinger and Reissner with corotational frames (Wriggers 2006,
 //! Computational Contact Mechanics; Crisfield 1997, Non-linear Finite Element Analysis 2, ch. 17).
 
+use super::equations::Equations;
 use super::inelastic::Inner;
+use super::model::Model;
 use nalgebra::Matrix2;
+use std::cell::OnceCell;
+use std::rc::Rc;
 use voussoir_core::geometry::{Vec2, turned};
 use voussoir_core::path::{Loading, PathProblem};
 
@@ -75,6 +79,14 @@ pub(super) struct Slopes {
 pub(super) struct Curvature {
     pub entries: Vec<(usize, usize, f64)>,
     pub factor: Vec<f64>,
+    rows: OnceCell<Rc<Equations>>,
+}
+
+impl Curvature {
+    /// The same as rows in units, made when they are asked for first.
+    pub fn rows(&self, model: &Model) -> &Rc<Equations> {
+        self.rows.get_or_init(|| Rc::new(Equations::new(model, self)))
+    }
 }
 
 /// Geometry of a problem as the path solver sees it.
@@ -187,7 +199,7 @@ impl<'a> Kinematics<'a> {
         let problem = self.problem;
         let base = 2 * problem.contacts.len();
         let size = base + 3 * problem.bodies.len();
-        let mut out = Curvature { entries: Vec::new(), factor: vec![0.0; size] };
+        let mut out = Curvature { factor: vec![0.0; size], ..Curvature::default() };
         let both = |entries: &mut Vec<(usize, usize, f64)>, i: usize, j: usize, value: f64| {
             entries.push((i, j, value));
             entries.push((j, i, value));

@@ -5,6 +5,7 @@ mod border;
 mod claims;
 mod deformation;
 mod ends;
+mod equations;
 mod flow;
 mod flowing;
 mod follow;

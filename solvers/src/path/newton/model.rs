@@ -109,6 +109,7 @@ pub(super) struct Model<'a> {
     blocks: Vec<Option<Inner>>,
     /// Second derivatives with small displacements, of the present drive.
     pub(super) constant: Option<std::rc::Rc<Curvature>>,
+    pub(super) factorised: super::system::Factorised,
 }
 
 /// Why a step was not found.
@@ -191,6 +192,7 @@ impl<'a> Model<'a> {
             residuals: Vec::new(),
             blocks: super::inelastic::undeformed(problem)?,
             constant: None,
+            factorised: super::system::Factorised::default(),
         })
     }
 
@@ -210,6 +212,7 @@ impl<'a> Model<'a> {
         };
         self.loaded = loaded;
         self.constant = None;
+        self.factorised.forget();
     }
 
     pub fn count(&mut self, what: &str, by: u64) {

@@ -22,13 +22,14 @@ use super::law::Regime;
 use super::model::{Control, Model, Refusal, State};
 use crate::path::shuffle::Shuffle;
 use crate::path::walk::{Met, Standing, Walk};
+use voussoir_core::path::ContactLaw;
 
 /// Sizes of the shift of the guess that are tried, relative to forces.
 const SHIFTS: [f64; 3] = [1e-3, 0.03, 0.5];
 /// A point of the path.
 struct Place {
     state: State,
-    /// Δg less what of the residual is left of it \[m\].
+    /// Δg less what of the residual is left of it, at t = 0 \[m\].
     step_gap: Vec<[f64; 2]>,
     cells: Vec<Option<usize>>,
     /// Residual of the gaps at t = 0 \[m\].
@@ -54,13 +55,18 @@ impl Model<'_> {
         Err(refusal)
     }
 
+    /// Held bodies where their settlements put them.
+    fn settle_in(&self, state: &mut State) {
+        let mut motion = std::mem::take(&mut state.motion);
+        self.settle(&mut motion, state.factor);
+        state.motion = motion;
+    }
+
     /// The guess with every point in a cell, shifted.
     fn placed(&mut self, start: &State, guess: &State, shift: f64, seed: u64) -> Place {
         let points = guess.gap.len();
         let mut state = guess.clone();
-        let mut motion = std::mem::take(&mut state.motion);
-        self.settle(&mut motion, state.factor);
-        state.motion = motion;
+        self.settle_in(&mut state);
         let gap = self.slopes(&state).gap;
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
         let mean = self.units.displacement / self.units.force;
@@ -85,6 +91,19 @@ impl Model<'_> {
         Place { state, step_gap, cells, offset }
     }
 
+    /// Right-hand sides of the rows of a contact point, in units: what is left of its residual of the gaps.
+    fn driven(&self, place: &Place, c: usize) -> [f64; 2] {
+        let e = place.offset[c].map(|e| e / self.units.displacement);
+        match (place.state.regime[c], self.law(c)) {
+            (Regime::Facet(i), Some(law)) => {
+                let d = law.facets[i as usize].flow;
+                [0.0, -(e[0] * d[1] - e[1] * d[0])]
+            }
+            (Regime::Corner(_), Some(_)) => [0.0; 2],
+            _ => [-e[0], -e[1]],
+        }
+    }
+
     fn walked(
         &mut self,
         start: &State,
@@ -101,64 +120,72 @@ impl Model<'_> {
         let curvature = self.curvature(&place.state, &slopes);
         let row = self.control_row(start, &place.state, control, &constraint, &curvature);
         let size = self.size();
-        let mut frame = Frame::new(self, &curvature, &row);
+        let mut frame = Frame::new(curvature.rows(self).clone(), points, row);
+        let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
+        right[size - 1] = -left;
+        frame.drive(&right);
+        let laws = self.polygons.clone();
+        let contacts = &self.problem.contacts;
+        let law_of = |c: usize| match contacts[c].law {
+            ContactLaw::Law(law) => Some(&laws[law]),
+            ContactLaw::Bonded => None,
+        };
+        let mut standing: Vec<Option<Standing>> = Vec::with_capacity(points);
+        for (c, contact) in contacts.iter().enumerate() {
+            let cell = place.cells[c].zip(law_of(c));
+            place.state.regime[c] = cell.map_or(Regime::Stuck, |(cell, law)| law.regime_of(cell));
+            frame.set(self, c, place.state.regime[c], self.driven(&place, c));
+            standing.push(cell.map(|(cell, law)| Standing {
+                walls: &law.cells.cells[cell].1,
+                force: place.state.force[c],
+                gap: place.step_gap[c],
+                area: contact.area,
+                force_rate: [0.0; 2],
+                gap_rate: [0.0; 2],
+            }));
+        }
         let most = 400 + 20 * points;
         let mut walk = Walk::new();
         for _ in 0..most {
-            for c in 0..points {
-                place.state.regime[c] = match (place.cells[c], self.law(c)) {
-                    (Some(cell), Some(law)) => law.regime_of(cell),
-                    _ => Regime::Stuck,
-                };
-            }
-            let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
-            right[size - 1] = -left;
-            for c in 0..points {
-                let e = place.offset[c].map(|e| e / self.units.displacement);
-                let rows = match (place.state.regime[c], self.law(c)) {
-                    (Regime::Facet(i), Some(law)) => {
-                        let d = law.facets[i as usize].flow;
-                        [0.0, -(e[0] * d[1] - e[1] * d[0])]
-                    }
-                    (Regime::Corner(_), Some(_)) => [0.0; 2],
-                    _ => [-e[0], -e[1]],
-                };
-                right[2 * c] = rows[0];
-                right[2 * c + 1] = rows[1];
-            }
             self.count("pivots", 1);
-            let Some((x, factorisations)) = frame.solve(self, &place.state.regime, &right) else {
+            let Some((x, factorisations)) = frame.solve(self) else {
                 return Err("a combination of cells has no direction".into());
             };
             self.count("factorisations", factorisations);
             if x.iter().any(|x| !x.is_finite()) {
                 return Err("a combination of cells has no finite direction".into());
             }
-            let rate = self.rate_from(&x, &place.state, &curvature);
-            let gap_rate: Vec<[f64; 2]> =
-                (0..points).map(|c| [0, 1].map(|k| rate.gap[c][k] + place.offset[c][k])).collect();
+            let rate = self.moving(&x);
+            for (c, point) in standing.iter_mut().enumerate() {
+                let Some(point) = point else { continue };
+                point.force_rate = rate.force[c];
+                // That of a stuck point is nothing.
+                point.gap_rate = match place.state.regime[c] {
+                    Regime::Stuck => [0.0; 2],
+                    _ => {
+                        let (own, offset) = (frame.gap(c, &x), place.offset[c]);
+                        [0, 1].map(|k| own[k] * self.units.displacement + offset[k])
+                    }
+                };
+            }
             // Over walls without a change of equations the direction stays.
             loop {
-                let (along, met) = walk.on(points, |c| {
-                    let (cell, law) = (place.cells[c]?, self.law(c)?);
-                    Some(Standing {
-                        walls: &law.cells.cells[cell].1,
-                        force: place.state.force[c],
-                        gap: place.step_gap[c],
-                        area: self.problem.contacts[c].area,
-                        force_rate: rate.force[c],
-                        gap_rate: gap_rate[c],
-                    })
-                });
+                let (along, met) = walk.on(points, |c| standing[c].as_ref());
                 if matches!(met, Met::Ray) {
                     return Err("the path of pivoting leaves along a ray".into());
                 }
-                let advance = |to: &mut [[f64; 2]], by: &[[f64; 2]]| {
-                    to.iter_mut().flatten().zip(by.iter().flatten()).for_each(|(x, rate)| *x += along * rate);
-                };
-                advance(&mut place.state.force, &rate.force);
-                advance(&mut place.step_gap, &gap_rate);
-                advance(&mut place.state.gap, &rate.gap);
+                for point in standing.iter_mut().flatten() {
+                    for k in 0..2 {
+                        point.force[k] += along * point.force_rate[k];
+                        point.gap[k] += along * point.gap_rate[k];
+                    }
+                }
+                for (c, force) in place.state.force.iter_mut().enumerate() {
+                    match &standing[c] {
+                        Some(point) => *force = point.force,
+                        None => (0..2).for_each(|k| force[k] += along * rate.force[c][k]),
+                    }
+                }
                 for (q, dq) in place.state.motion.iter_mut().zip(&rate.motion) {
                     (0..3).for_each(|k| q[k] += along * dq[k]);
                 }
@@ -167,11 +194,17 @@ impl Model<'_> {
                 if walk.is_lost() {
                     return Err("the path of pivoting turned back".into());
                 }
-                let (Some(cell), Some(law)) = (place.cells[c], self.law(c)) else { continue };
+                let (Some(cell), Some(law), Some(point)) = (place.cells[c], law_of(c), &mut standing[c]) else {
+                    continue;
+                };
                 let (to, wall) = law.cells.cells[cell].1[index].behind;
                 place.cells[c] = Some(to);
+                point.walls = &law.cells.cells[to].1;
                 walk.enters(c, wall);
-                if law.regime_of(to) != place.state.regime[c] {
+                let regime = law.regime_of(to);
+                if regime != place.state.regime[c] {
+                    place.state.regime[c] = regime;
+                    frame.set(self, c, regime, self.driven(&place, c));
                     break;
                 }
             }

@@ -4,6 +4,11 @@ use super::kinematics::Curvature;
 use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 
+/// Contact points that want to change above which, twice running where eight times fewer did before, an
+/// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
+/// come back.
+const ASTRAY: usize = 200;
+
 impl Model<'_> {
     pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
         self.add(&mut state.force, &mut state.motion, step, share);
@@ -123,7 +128,7 @@ impl Model<'_> {
         };
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
-        let mut unsolved = 0;
+        let (mut unsolved, mut astray) = (0, 0);
         let mut last_norm = f64::INFINITY;
         // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
         let most = match (self.responses.is_empty(), self.finite()) {
@@ -179,6 +184,10 @@ impl Model<'_> {
             let wanted = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
             changed = !differ.is_empty();
+            astray = if differ.len() > ASTRAY && differ.len() / 8 > fewest { astray + 1 } else { 0 };
+            if astray > 1 {
+                return Err(Refusal { why: "the regimes of contact points keep changing".into(), restless: differ });
+            }
             if differ.len() < fewest && (patience > 0 || differ.len() <= 1) {
                 (fewest, budget) = (differ.len(), patience);
                 state.regime = wanted;
@@ -244,24 +253,23 @@ impl Model<'_> {
         Some(self.rate_from(&x, state, curvature))
     }
 
-    /// The rate of a solution of the linear equations.
-    pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
-        let (mut force, mut motion) = (vec![[0.0; 2]; state.force.len()], vec![[0.0; 3]; state.motion.len()]);
+    /// Forces, motions and the factor of a solution of the linear equations, without the gaps.
+    pub(super) fn moving(&self, x: &[f64]) -> Rate {
+        let points = self.problem.contacts.len();
+        let (mut force, mut motion) = (vec![[0.0; 2]; points], vec![[0.0; 3]; self.free.len()]);
         self.add(&mut force, &mut motion, x, 1.0);
         let factor = x[x.len() - 1] * self.units.factor;
         for (body, settlement) in &self.loaded.growing.settlements {
             (0..3).for_each(|k| motion[*body][k] += factor * settlement[k]);
         }
-        let points = state.gap.len();
-        let mut gap = vec![[0.0; 2]; points];
-        for &(i, j, value) in curvature.entries.iter().filter(|e| e.0 < 2 * points) {
-            if let Some((column, unit)) = self.column(j) {
-                gap[i / 2][i % 2] += value * unit * x[column];
-            }
-        }
-        for (c, gap) in gap.iter_mut().enumerate() {
-            (0..2).for_each(|k| gap[k] += curvature.factor[2 * c + k] * factor);
-        }
-        Rate { force, motion, factor, gap }
+        Rate { force, motion, factor, gap: Vec::new() }
+    }
+
+    /// The rate of a solution of the linear equations.
+    pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
+        let rows = &curvature.rows(self).gaps;
+        let along = |i: usize| rows.along(i, x) * self.units.displacement;
+        let gap = (0..state.gap.len()).map(|c| [along(2 * c), along(2 * c + 1)]).collect();
+        Rate { gap, ..self.moving(x) }
     }
 }

@@ -15,16 +15,44 @@
 //! regimes have no solution, and the step is refused. How it is factorised: see `border` and
 //! [`condensed`](crate::path::condensed).
 
-use super::border::Bordered;
+use super::border::{Bordered, Held};
 use super::kinematics::{Curvature, Slopes};
 use super::law::Regime;
 use super::model::{Control, Model, Rate, State, load_size};
-use crate::lu::Entries;
+use crate::lu::Analysis;
+use crate::path::rows::Rows;
+use std::rc::Rc;
 use voussoir_core::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
+/// Backward error of every row that is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// The shift of the factorised matrix.
 pub(super) const SHIFT: f64 = 1e-9;
+
+/// Factors with what they are of.
+struct Kept {
+    regimes: Vec<Regime>,
+    /// Normals and flows of the laws' facets.
+    directions: Vec<[f64; 4]>,
+    held: Rc<Held>,
+}
+
+/// What the last factorisation leaves to the next.
+#[derive(Default)]
+pub(super) struct Factorised {
+    /// The last ones, where nothing but regimes and laws makes the matrix.
+    last: Option<Kept>,
+    analysis: Analysis,
+}
+
+impl Factorised {
+    /// Another load grows.
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+}
 
 impl Model<'_> {
     /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
@@ -117,17 +145,10 @@ impl Model<'_> {
         if by_gap.iter().all(|w| *w == 0.0) {
             return;
         }
-        for &(i, j, value) in &curvature.entries {
-            if i < by_gap.len()
-                && by_gap[i] != 0.0
-                && let Some((column, unit)) = self.column(j)
-            {
-                row[column] += by_gap[i] * value * unit;
-            }
-        }
-        let last = row.len() - 1;
-        for (i, weight) in by_gap.iter().enumerate() {
-            row[last] += weight * curvature.factor[i] * self.units.factor;
+        let rows = &curvature.rows(self).gaps;
+        for (i, weight) in by_gap.iter().enumerate().filter(|(_, w)| **w != 0.0) {
+            let by = weight * self.units.displacement;
+            rows.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
         }
     }
 
@@ -218,6 +239,49 @@ impl Model<'_> {
         out
     }
 
+    fn is_constant(&self, curvature: &Curvature) -> bool {
+        self.constant.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, curvature))
+    }
+
+    /// The regimes' linear equations, factorised: where nothing else than regimes makes them, those of
+    /// the same regimes are taken again.
+    fn factorised(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<(Rc<Held>, bool)> {
+        let again = self.responses.is_empty() && self.is_constant(curvature);
+        let directions: Vec<[f64; 4]> = self
+            .polygons
+            .iter()
+            .flat_map(|law| law.facets.iter().map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]))
+            .collect();
+        if let Some(kept) = self.factorised.last.as_ref().filter(|_| again)
+            && kept.regimes == state.regime
+            && kept.directions == directions
+            && kept.held.serves(row)
+        {
+            return Some((kept.held.clone(), true));
+        }
+        let equations = curvature.rows(self);
+        let capacity = curvature.entries.len();
+        let (mut rows, mut shifts) = (Rows::none(capacity), Rows::none(capacity));
+        for (c, regime) in state.regime.iter().enumerate() {
+            let answer = self.responses.is(c).then(|| self.response_row(state, c));
+            for k in 0..2 {
+                let (equation, shift) = (rows.open(), shifts.open());
+                match &answer {
+                    Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
+                    None => equations.point(self.law(c), (c, k), *regime, false, equation, shift),
+                }
+                rows.end_row();
+                shifts.end_row();
+            }
+        }
+        equations.bodies(&mut rows, &mut shifts);
+        self.count("factorisations", 1);
+        let held = Held::new(rows, shifts, state.regime.len(), row, &mut self.factorised.analysis)?;
+        let held = Rc::new(held);
+        self.factorised.last = again.then(|| Kept { regimes: state.regime.clone(), directions, held: held.clone() });
+        Some((held, false))
+    }
+
     /// Solves the regimes' linear equations for one right-hand side in units, and whether it is solved:
     /// where the equations contradict each other, what comes back is the answer of the shifted ones.
     pub(super) fn solve(
@@ -227,106 +291,45 @@ impl Model<'_> {
         row: &[f64],
         right: &[f64],
     ) -> Option<(Vec<f64>, bool)> {
-        let u = self.units;
-        let regimes = &state.regime;
-        let (points, size) = (regimes.len(), self.size());
-        let last = size - 1;
-        let rows: Vec<_> = (0..points).map(|c| self.responses.is(c).then(|| self.response_row(state, c))).collect();
-        let mut entries: Entries = Vec::with_capacity(curvature.entries.len() + 4 * size);
-        let mut shifts: Entries = Vec::new();
-        let row_unit = |i: usize| if (i - 2 * points) % 3 == 2 { u.force * u.length } else { u.force };
-        let mut place = |i: usize, column: usize, value: f64| {
-            // `value` in SI per scaled unknown.
-            if i >= 2 * points {
-                if let Some((free_row, _)) = self.column(i) {
-                    entries.push((free_row, column, value / row_unit(i)));
-                }
-                return;
-            }
-            let (c, k) = (i / 2, i % 2);
-            let value = value / u.displacement;
-            if let Some((_, stiffness)) = rows[c] {
-                for (row, s) in stiffness.iter().enumerate().filter(|(_, s)| s[k] != 0.0) {
-                    entries.push((2 * c + row, column, s[k] * value));
-                }
-                shifts.push((i, column, SHIFT * value));
-                return;
-            }
-            match (regimes[c], self.law(c)) {
-                (Regime::Facet(f), Some(law)) => {
-                    let d = law.facets[f as usize].flow;
-                    entries.push((2 * c + 1, column, value * if k == 0 { d[1] } else { -d[0] }));
-                    let weight = d[k] / (d[0] * d[0] + d[1] * d[1]);
-                    shifts.push((2 * c, column, SHIFT * weight * value));
-                }
-                (Regime::Corner(_), Some(_)) => shifts.push((i, column, SHIFT * value)),
-                _ => entries.push((i, column, value)),
-            }
-        };
-        for &(i, j, value) in &curvature.entries {
-            if let Some((column, unit)) = self.column(j) {
-                place(i, column, value * unit);
-            }
+        let (held, again) = self.factorised(state, curvature, row)?;
+        let found = Bordered::new(held, row).and_then(|bordered| refined(&bordered, right));
+        if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
+            return found;
         }
-        for (i, value) in curvature.factor.iter().enumerate() {
-            if *value != 0.0 {
-                place(i, last, value * u.factor);
-            }
-        }
-        for (c, regime) in regimes.iter().enumerate() {
-            if let Some((own, _)) = rows[c] {
-                for (k, own) in own.iter().enumerate() {
-                    entries.push((2 * c + k, 2 * c + k, *own));
-                    shifts.push((2 * c + k, 2 * c + k, SHIFT));
-                }
-                continue;
-            }
-            match (*regime, self.law(c)) {
-                (Regime::Facet(f), Some(law)) => {
-                    let a = law.facets[f as usize].normal;
-                    entries.push((2 * c, 2 * c, a[0]));
-                    entries.push((2 * c, 2 * c + 1, a[1]));
-                }
-                (Regime::Corner(_), Some(_)) => {
-                    entries.push((2 * c, 2 * c, 1.0));
-                    entries.push((2 * c + 1, 2 * c + 1, 1.0));
-                }
-                _ => {
-                    shifts.push((2 * c, 2 * c, SHIFT));
-                    shifts.push((2 * c + 1, 2 * c + 1, SHIFT));
-                }
-            }
-        }
-        for free in 2 * points..last {
-            shifts.push((free, free, -SHIFT));
-        }
-        self.count("factorisations", 1);
-        let bordered = Bordered::new(size, points, entries, &shifts, row)?;
-        let mut x = vec![0.0; size];
-        let mut rest = right.to_vec();
-        let mut before = f64::INFINITY;
-        let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
-        let aim = norm(right);
-        if aim == 0.0 {
-            return Some((x, true));
-        }
-        let mut best = x.clone();
-        for _ in 0..30 {
-            let step = bordered.apply(&rest)?;
-            x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-            rest = bordered.left(right, &x);
-            let now = norm(&rest);
-            if now < before {
-                best.copy_from_slice(&x);
-            }
-            if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim {
-                before = before.min(now);
-                break;
-            }
-            before = now;
-        }
-        // What is left over is rounding of the solution's own size, or the system has no solution.
-        let size = norm(&best).max(aim);
-        Some((best, before <= 1e-9 * size))
+        // Another unknown held may serve this control better.
+        self.factorised.last = None;
+        let (held, _) = self.factorised(state, curvature, row)?;
+        refined(&Bordered::new(held, row)?, right)
     }
+}
+
+/// The solution of the equations without what was added, by refinement, and whether there is one.
+fn refined(bordered: &Bordered, right: &[f64]) -> Option<(Vec<f64>, bool)> {
+    let mut x = vec![0.0; right.len()];
+    let mut rest = right.to_vec();
+    let mut before = f64::INFINITY;
+    let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let aim = norm(right);
+    if aim == 0.0 {
+        return Some((x, true));
+    }
+    let mut best = x.clone();
+    for _ in 0..30 {
+        let step = bordered.apply(&rest)?;
+        x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+        let (left, error) = bordered.left(right, &x);
+        rest = left;
+        let now = norm(&rest);
+        if now < before {
+            best.copy_from_slice(&x);
+        }
+        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim || error <= ROUNDING {
+            before = before.min(now);
+            break;
+        }
+        before = now;
+    }
+    // What is left over is rounding of the solution's own size, or the system has no solution.
+    let size = norm(&best).max(aim);
+    Some((best, before <= 1e-9 * size))
 }
