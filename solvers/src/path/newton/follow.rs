@@ -17,6 +17,9 @@ const MOST_BRANCHES: u32 = 3;
 /// same share does, so that the number of steps does not grow with the number of joints.
 const ORDINARY: usize = 200;
 
+/// Length, relative to the first step, down to which regimes guessed at a corner are tried before rates are searched.
+const UNFOLLOWED: f64 = 1e-4;
+
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
@@ -64,7 +67,9 @@ impl Tracer<'_, '_> {
             step => step,
         } * self.model.units.length
             / self.model.units.displacement;
+        let linear = !self.model.finite() && self.model.piecewise_linear();
         let mut switched_at: Option<u64> = None;
+        let mut searched_at: Option<u64> = None;
         let mut yielding: Option<Vec<Regime>> = None;
         let mut inaccurate = 0;
         let mut before_peak_rate = rate.factor * direction;
@@ -126,6 +131,7 @@ impl Tracer<'_, '_> {
                 let judged = self.judge(&rate, step, &next, target, direction, reaches);
                 judged.map(|()| (next, iterations))
             });
+            let found = found.and_then(|(next, iterations)| self.follows(next, iterations, &control));
             let found = match found {
                 // A step by arc length may go back; one by λ cannot.
                 Err(refusal)
@@ -212,8 +218,13 @@ impl Tracer<'_, '_> {
                             continue;
                         }
                     }
-                    length = if slip > 1e-9 * share && slip < share { slip * per_rate } else { 0.3 * length };
-                    if length < 1e-10 * initial {
+                    // Rounding must not leave the length as it is.
+                    length = if slip > 1e-9 * share && slip < 0.9 * share { slip * per_rate } else { 0.3 * length };
+                    // Regimes that were guessed at a corner and that no step follows: the search knows better.
+                    let guessed = linear && yielding.is_some() && self.peak.is_none() && length < UNFOLLOWED * initial;
+                    let unsearched = guessed && searched_at != steps;
+                    if length < 1e-10 * initial || unsearched {
+                        searched_at = steps;
                         let state = self.state.clone();
                         let rises = if self.peak.is_none() { self.rises(&state, direction) } else { None };
                         if let Some((other, regimes)) = rises {
@@ -223,9 +234,8 @@ impl Tracer<'_, '_> {
                             length = 0.1 * initial;
                             continue;
                         }
-                        let linear = !self.model.finite() && self.model.piecewise_linear();
-                        if linear && self.peak.is_none() && self.doubt.is_none() {
-                            let why = format!("the path was not followed behind it: {}", refusal.why);
+                        if linear && self.doubt.is_none() {
+                            let why = self.not_followed(&refusal.why);
                             self.end(Status::LimitPoint, why);
                         } else {
                             self.no_step(&refusal, &rate, direction);
@@ -327,11 +337,24 @@ impl Tracer<'_, '_> {
             let growth = accuracy.clamp(0.25, growth);
             length = growth * strategy.constraint(&increment, previous.as_ref()).value;
         }
+        if linear && self.peak.is_some() && self.doubt.is_none() {
+            let why = self.not_followed(&format!("{MOST_STEPS} steps were not enough"));
+            self.end(Status::LimitPoint, why);
+            return Outcome::Ended;
+        }
         self.end(
             Status::Stalled,
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended
+    }
+
+    /// Why the path ends at a proven limit point, or behind it.
+    fn not_followed(&self, why: &str) -> String {
+        match &self.peak {
+            None => format!("the path was not followed behind it: {why}"),
+            Some(_) => format!("behind it the path was followed to factor {} only: {why}", self.state.factor),
+        }
     }
 
     /// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise

@@ -3,6 +3,7 @@
 
 mod border;
 mod claims;
+mod corners;
 mod deformation;
 mod ends;
 mod flow;
@@ -14,6 +15,7 @@ mod kinematics;
 pub(super) mod law;
 mod ledger;
 mod measure;
+mod mechanism;
 mod model;
 mod pivot;
 mod reach;

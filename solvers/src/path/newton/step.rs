@@ -31,7 +31,6 @@ impl Model<'_> {
     fn wanted(&mut self, start: &State, state: &State) -> Vec<Regime> {
         self.count("law_evaluations", state.gap.len() as u64);
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
-        let mean = self.units.displacement / self.units.force;
         let gaps = state.gap.iter().flatten().map(|g| g.abs());
         let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * self.units.length));
         // Gaps are differences of motions: beyond rounding of those a gap means nothing.
@@ -40,7 +39,7 @@ impl Model<'_> {
             .map(|c| match self.law(c) {
                 None => Regime::Stuck,
                 Some(law) => {
-                    let rho = self.compliance[c].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean });
+                    let rho = self.stiffness(c);
                     let gap = self.step_gap(start, state, c);
                     let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
                     // A certificate allows 1e-8 of the greatest force.
