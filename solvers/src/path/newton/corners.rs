@@ -51,9 +51,8 @@ impl Model<'_> {
         if size.is_nan() || size <= 0.0 {
             return None;
         }
-        let along: f64 = (0..next.gap.len())
-            .flat_map(|c| [0, 1].map(|k| (next.gap[c][k] - start.gap[c][k]) * rate.gap[c][k]))
-            .sum();
+        let along: f64 =
+            (0..next.gap.len()).flat_map(|c| [0, 1].map(|k| (next.gap[c][k] - start.gap[c][k]) * rate.gap[c][k])).sum();
         let share = (step.motion.hypot(step.factor) / size).copysign(along);
         let grows = |&(c, now): &(usize, f64)| {
             let more = violation(self, c, Some((&rate, share))) / now - 1.0;

@@ -20,6 +20,10 @@ const ORDINARY: usize = 200;
 /// Length, relative to the first step, down to which regimes guessed at a corner are tried before rates are searched.
 const UNFOLLOWED: f64 = 1e-4;
 
+/// Length, relative to the first step, from which on a line search helps. What shorter steps do not find is a corner,
+/// where branches are chosen: a line search may find another state close by, on none of them.
+const SEARCHED: f64 = 1e-3;
+
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
@@ -114,6 +118,7 @@ impl Tracer<'_, '_> {
                 guess.regime = regimes.clone();
             }
             let mut control = control;
+            self.model.searches = !self.model.finite() || length >= SEARCHED * initial;
             let mut found = self.model.newton(&self.state, guess.clone(), &control);
             // Where flow is not associated pivoting may step over a limit point: the last resort.
             let last = strategy.passes_limit_points() && length < 1e-8 * initial;

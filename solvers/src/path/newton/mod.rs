@@ -14,6 +14,7 @@ mod inelastic;
 mod kinematics;
 pub(super) mod law;
 mod ledger;
+mod line_search;
 mod measure;
 mod mechanism;
 mod model;

@@ -2,6 +2,7 @@
 
 use super::kinematics::Curvature;
 use super::law::Regime;
+use super::line_search::LineSearch;
 use super::model::{Control, Model, Rate, Refusal, State};
 
 impl Model<'_> {
@@ -52,21 +53,28 @@ impl Model<'_> {
 
     /// Newton's method from a guess. Regimes change all at once as long as their number falls, else
     /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
-    /// Res. 21), so that regimes that flip for ever are seen. Where that fails, once more with one
-    /// change at a time from the beginning, with small displacements and a given factor by pivoting.
+    /// Res. 21), so that regimes that flip for ever are seen. Where that fails, by a line search, then
+    /// with one change at a time from the beginning; with small displacements and a given factor by
+    /// pivoting, with associated flow by the caller's (a line search finds nothing there that it does not).
     pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        let found = self.iterate(start, guess.clone(), control, 8);
+        let found = self.iterate(start, guess.clone(), control, 8, None);
         if found.is_ok() || (!self.responses.is_empty() && self.polygons.iter().all(|law| law.facets.is_empty())) {
             return found;
         }
         if self.finite() || !self.piecewise_linear() {
-            return self.iterate(start, guess, control, 0);
+            if self.searches
+                && let Ok(found) = self.line_searched(start, guess.clone(), control)
+            {
+                return Ok(found);
+            }
+            return self.iterate(start, guess, control, 0, None);
         }
         // Where flow is not associated pivoting may step over a limit point: from nothing only.
         match control {
             Control::Factor(factor) if self.monotone() || start.force.iter().flatten().all(|r| *r == 0.0) => {
                 self.pivoted(start, &State { factor: *factor, ..guess }, control)
             }
+            _ if self.searches && !self.monotone() => self.line_searched(start, guess, control).or(found),
             _ => found,
         }
     }
@@ -100,7 +108,11 @@ impl Model<'_> {
         guess: State,
         control: &Control,
         patience: u32,
+        mut search: Option<LineSearch>,
     ) -> Result<(State, u64), Refusal> {
+        if !self.responses.is_empty() {
+            search = Some(LineSearch::of_tractions());
+        }
         let mut state = guess;
         let factor = if let Control::Factor(target) = control { *target } else { state.factor };
         state.factor = factor;
@@ -125,7 +137,7 @@ impl Model<'_> {
         let mut unsolved = 0;
         let mut last_norm = f64::INFINITY;
         // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
-        let most = match (self.responses.is_empty(), self.finite()) {
+        let most = match (self.responses.is_empty(), self.finite() && search.is_none()) {
             (false, _) => 25,
             (true, true) => 60 + (state.gap.len() as u64).min(200),
             (true, false) => 30,
@@ -169,12 +181,10 @@ impl Model<'_> {
             } else {
                 1.0
             };
-            let share = self.damped(start, &state, control, &step, share, norm);
-            self.apply(&mut state, &step, share);
-            self.deform(&mut state)?;
-            slopes = self.slopes(&state);
-            state.gap = slopes.gap.clone();
-            self.respond(start, &mut state).map_err(refused)?;
+            (state, slopes) = match &mut search {
+                Some(search) => self.searched(start, (&state, &slopes), control, (&step[..], share), search)?,
+                None => self.advanced(start, &state, &step, share)?,
+            };
             let wanted = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
             changed = !differ.is_empty();
