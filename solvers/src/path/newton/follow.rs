@@ -239,6 +239,10 @@ impl Tracer<'_, '_> {
                             length = 0.1 * initial;
                             continue;
                         }
+                        if unsearched && self.doubt.take().is_some() {
+                            // Not decided: shorter steps may still find the way.
+                            continue;
+                        }
                         if linear && self.doubt.is_none() {
                             let why = self.not_followed(&refusal.why);
                             self.end(Status::LimitPoint, why);

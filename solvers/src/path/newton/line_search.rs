@@ -27,8 +27,8 @@
 use super::kinematics::Slopes;
 use super::model::{Control, Model, Refusal, State};
 
-/// Merits below this are rounding.
-const NOTHING: f64 = 1e-12;
+/// Merits below which whole steps are taken: what they leave is the linear equations' own accuracy.
+const NOTHING: f64 = 1e-9;
 
 /// The rule of a line search and the merits of its last iterations.
 pub(super) struct LineSearch {
@@ -103,7 +103,8 @@ impl Model<'_> {
         Ok((next, slopes))
     }
 
-    /// The state on a step at which the merit is low enough, else that of the least merit. Of the step no more than `most`.
+    /// The state on a step at which the merit is low enough, else that of the least merit, and whether the step
+    /// is whole. Of the step no more than `most`.
     pub(super) fn searched(
         &mut self,
         start: &State,
@@ -111,13 +112,13 @@ impl Model<'_> {
         control: &Control,
         (step, most): (&[f64], f64),
         search: &mut LineSearch,
-    ) -> Result<(State, Slopes), Refusal> {
+    ) -> Result<(State, Slopes, bool), Refusal> {
         if search.merits.is_empty() {
             search.merits.push(self.merit(start, state, slopes, control));
         }
         let recent = search.merits.iter().rev().take(search.memory);
         let reference = recent.fold(0.0, |a: f64, m| a.max(*m));
-        let mut best: Option<(f64, State, Slopes)> = None;
+        let mut best: Option<(f64, State, Slopes, bool)> = None;
         let mut refusal = None;
         for halvings in 0..=search.halvings {
             let share = most * 0.5f64.powi(halvings);
@@ -135,15 +136,15 @@ impl Model<'_> {
             };
             let merit = self.merit(start, &next, &slopes, control);
             if best.as_ref().is_none_or(|best| merit < best.0) {
-                best = Some((merit, next, slopes));
+                best = Some((merit, next, slopes, halvings == 0));
             }
             if merit <= (1.0 - search.decrease * share) * reference || merit <= NOTHING {
                 break;
             }
         }
         let unknown = Refusal { why: "an iteration left the numbers".into(), restless: Vec::new() };
-        let Some((merit, next, slopes)) = best else { return Err(refusal.unwrap_or(unknown)) };
+        let Some((merit, next, slopes, whole)) = best else { return Err(refusal.unwrap_or(unknown)) };
         search.merits.push(merit);
-        Ok((next, slopes))
+        Ok((next, slopes, whole))
     }
 }

@@ -28,15 +28,17 @@ impl Model<'_> {
         }
     }
 
-    /// Regimes that the present forces and gaps ask for.
-    fn wanted(&mut self, start: &State, state: &State) -> Vec<Regime> {
+    /// Regimes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
+    /// associated the nearest regime need not be the return.
+    fn wanted(&mut self, start: &State, state: &State) -> (Vec<Regime>, bool) {
         self.count("law_evaluations", state.gap.len() as u64);
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
         let gaps = state.gap.iter().flatten().map(|g| g.abs());
         let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * self.units.length));
         // Gaps are differences of motions: beyond rounding of those a gap means nothing.
         let rounding = 8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max);
-        (0..state.gap.len())
+        let mut holds = true;
+        let regimes = (0..state.gap.len())
             .map(|c| match self.law(c) {
                 None => Regime::Stuck,
                 Some(law) => {
@@ -45,10 +47,14 @@ impl Model<'_> {
                     let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
                     // A certificate allows 1e-8 of the greatest force.
                     let tolerance = (rounding * rho[0].max(rho[1])).clamp(1e-11 * largest, 3e-9 * largest);
-                    law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, tolerance)
+                    let area = self.problem.contacts[c].area;
+                    let regime = law.regime(state.regime[c], z, rho, area, tolerance);
+                    holds &= regime != state.regime[c] || law.violation(regime, z, rho, area) <= tolerance;
+                    regime
                 }
             })
-            .collect()
+            .collect();
+        (regimes, holds)
     }
 
     /// Newton's method from a guess. Regimes change all at once as long as their number falls, else
@@ -135,7 +141,7 @@ impl Model<'_> {
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
-        let mut last_norm = f64::INFINITY;
+        let (mut last_norm, mut whole) = (f64::INFINITY, true);
         // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
         let most = match (self.responses.is_empty(), self.finite() && search.is_none()) {
             (false, _) => 25,
@@ -152,7 +158,9 @@ impl Model<'_> {
             if !norm.is_finite() {
                 return Err(Refusal { why: "an iteration left the numbers".into(), restless });
             }
-            let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && norm > 0.3 * last_norm);
+            // Rounding is what a whole step does not lower.
+            let stays = whole && norm > 0.3 * last_norm;
+            let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && stays);
             if iteration > 0 && !changed && settled && self.law_error(&state) <= 1e-9 {
                 return Ok((state, iteration));
             }
@@ -181,13 +189,16 @@ impl Model<'_> {
             } else {
                 1.0
             };
-            (state, slopes) = match &mut search {
+            (state, slopes, whole) = match &mut search {
                 Some(search) => self.searched(start, (&state, &slopes), control, (&step[..], share), search)?,
-                None => self.advanced(start, &state, &step, share)?,
+                None => {
+                    let (state, slopes) = self.advanced(start, &state, &step, share)?;
+                    (state, slopes, true)
+                }
             };
-            let wanted = self.wanted(start, &state);
+            let (wanted, holds) = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
-            changed = !differ.is_empty();
+            changed = !differ.is_empty() || !holds;
             if differ.len() < fewest && (patience > 0 || differ.len() <= 1) {
                 (fewest, budget) = (differ.len(), patience);
                 state.regime = wanted;
@@ -222,7 +233,7 @@ impl Model<'_> {
     pub fn regimes_ahead(&mut self, state: &State, ahead: &State) -> Vec<Regime> {
         let mut ahead = ahead.clone();
         ahead.gap = self.slopes(&ahead).gap;
-        self.wanted(state, &ahead)
+        self.wanted(state, &ahead).0
     }
 
     /// Rate with other regimes than the state's, per unit of the sum of the multipliers of the points
