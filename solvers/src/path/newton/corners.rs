@@ -7,6 +7,7 @@
 //! of its rates. Such a step is refused: what it violates grows in proportion to it. Where a guess of the regimes at
 //! a corner is followed by no step, the rates are searched to their end instead (`rising`).
 
+use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 use super::trace::Tracer;
 
@@ -14,6 +15,8 @@ use super::trace::Tracer;
 const ROUNDING: f64 = 1e-14;
 /// Violations below this share of what the step adds to a point's own force change nothing.
 const MATTERS: f64 = 1e-3;
+/// Branches with growing λ that are taken at one factor.
+const MOST_BRANCHES: u32 = 3;
 /// What another step like the last adds to its violation, relative to it, where the step creeps.
 const GROWTH: [f64; 2] = [0.3, 3.0];
 
@@ -80,5 +83,58 @@ impl Tracer<'_, '_> {
                 Err(Refusal { why: why.into(), restless: vec![c] })
             }
         }
+    }
+
+    /// Why the path ends at a proven limit point, or behind it.
+    pub(super) fn not_followed(&self, why: &str) -> String {
+        match &self.peak {
+            None => format!("the path was not followed behind it: {why}"),
+            Some(_) => format!("behind it the path was followed to factor {} only: {why}", self.state.factor),
+        }
+    }
+
+    /// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise
+    /// the limit point is proven, or in doubt.
+    pub(super) fn rises(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
+        let other = self.doubted(state, direction)?;
+        let same = |factor: f64| (state.factor - factor) * direction <= 1e-10 * factor.abs();
+        let times = match self.rose {
+            Some((factor, times)) if same(factor) => times + 1,
+            _ => 1,
+        };
+        if times > MOST_BRANCHES {
+            return None;
+        }
+        self.rose = Some((state.factor, times));
+        self.doubt = None;
+        self.model.count("branches", 1);
+        Some(other)
+    }
+
+    /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
+    pub(super) fn yielding(&mut self, rate: &Rate, share: f64) -> Option<(Rate, Vec<Regime>)> {
+        let ahead = self.moved(rate, 1e-3 * share);
+        let state = self.state.clone();
+        let regimes = self.model.regimes_ahead(&state, &ahead);
+        if regimes == state.regime {
+            return None;
+        }
+        self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
+    }
+
+    /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
+    /// in which they dissipate. Their next predictor is that of the yielding tangent.
+    pub(super) fn beyond_yield(&mut self, rate: &Rate, share: f64) -> Option<Rate> {
+        let mut ahead = self.moved(rate, share);
+        self.model.deform(&mut ahead).ok()?;
+        let mut turning = self.state.clone();
+        turning.blocks = ahead.blocks;
+        if !turning.yields() {
+            return None;
+        }
+        let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;
+        let power = self.model.plastic_power(&turning, &other);
+        self.state.blocks = turning.blocks;
+        Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
     }
 }

@@ -10,9 +10,6 @@ use voussoir_core::path::{Drive, DriveEnd, Increment};
 /// Greatest number of steps of a drive.
 const MOST_STEPS: u64 = 5000;
 
-/// Branches with growing λ that are taken at one factor.
-const MOST_BRANCHES: u32 = 3;
-
 /// Contact points up to which every change of regime counts for the length of the next step; of more the
 /// same share does, so that the number of steps does not grow with the number of joints.
 const ORDINARY: usize = 200;
@@ -358,32 +355,6 @@ impl Tracer<'_, '_> {
         Outcome::Ended
     }
 
-    /// Why the path ends at a proven limit point, or behind it.
-    fn not_followed(&self, why: &str) -> String {
-        match &self.peak {
-            None => format!("the path was not followed behind it: {why}"),
-            Some(_) => format!("behind it the path was followed to factor {} only: {why}", self.state.factor),
-        }
-    }
-
-    /// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise
-    /// the limit point is proven, or in doubt.
-    fn rises(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
-        let other = self.doubted(state, direction)?;
-        let same = |factor: f64| (state.factor - factor) * direction <= 1e-10 * factor.abs();
-        let times = match self.rose {
-            Some((factor, times)) if same(factor) => times + 1,
-            _ => 1,
-        };
-        if times > MOST_BRANCHES {
-            return None;
-        }
-        self.rose = Some((state.factor, times));
-        self.doubt = None;
-        self.model.count("branches", 1);
-        Some(other)
-    }
-
     /// Weight of the factor in a control by a spring: with it every step of associated flow is a
     /// monotone problem. Between weight × λ + ∂Π/∂λ and λ there must be a growing relation even with
     /// all points stuck, where ∂Π/∂λ may fall (a settlement pulls at its reaction).
@@ -406,33 +377,6 @@ impl Tracer<'_, '_> {
         }
         guess.factor += share * rate.factor;
         guess
-    }
-
-    /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
-    pub(super) fn yielding(&mut self, rate: &Rate, share: f64) -> Option<(Rate, Vec<Regime>)> {
-        let ahead = self.moved(rate, 1e-3 * share);
-        let state = self.state.clone();
-        let regimes = self.model.regimes_ahead(&state, &ahead);
-        if regimes == state.regime {
-            return None;
-        }
-        self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
-    }
-
-    /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
-    /// in which they dissipate. Their next predictor is that of the yielding tangent.
-    pub(super) fn beyond_yield(&mut self, rate: &Rate, share: f64) -> Option<Rate> {
-        let mut ahead = self.moved(rate, share);
-        self.model.deform(&mut ahead).ok()?;
-        let mut turning = self.state.clone();
-        turning.blocks = ahead.blocks;
-        if !turning.yields() {
-            return None;
-        }
-        let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;
-        let power = self.model.plastic_power(&turning, &other);
-        self.state.blocks = turning.blocks;
-        Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
     }
 
     /// Share of the rate after which the first stuck point whose slip is not associated would slide.

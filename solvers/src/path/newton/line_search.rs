@@ -148,3 +148,103 @@ impl Model<'_> {
         Ok((next, slopes, whole))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::Regime;
+    use super::super::model::Loaded;
+    use super::*;
+    use crate::path::shuffle::Shuffle;
+    use voussoir_core::geometry::Vec2;
+    use voussoir_core::interface::Facet;
+    use voussoir_core::limit::Counters;
+    use voussoir_core::path::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
+
+    /// A rigid block on three compliant points of the ground with friction that dilates, pushed down and aside.
+    fn pushed() -> PathProblem {
+        let body = |held, pole| PathBody {
+            members: vec![0],
+            pole,
+            held,
+            mass: 0.0,
+            points: vec![],
+            flexibility: None,
+            inelastic: None,
+        };
+        let contact = |x: f64| Contact {
+            joint: 0,
+            position: Vec2::new(x, 0.0),
+            normal: Vec2::new(0.0, 1.0),
+            tangent: Vec2::new(-1.0, 0.0),
+            minus: Attachment { body: 0, slot: None },
+            plus: Attachment { body: 1, slot: None },
+            area: 1.0,
+            gap: 0.0,
+            law: ContactLaw::Law(0),
+            compliance: [1e-6, 2e-6],
+        };
+        let pole = Vec2::new(0.0, 0.5);
+        let loading = Loading { forces: vec![(1, None, pole, Vec2::new(4.0, -10.0))], ..Loading::default() };
+        let [left, right] = Facet::friction(0.5, 0.0, 0.2);
+        PathProblem {
+            bodies: vec![body(true, Vec2::zeros()), body(false, pole)],
+            body_of: vec![0, 1],
+            contacts: vec![contact(-1.0), contact(0.2), contact(1.0)],
+            facets: vec![vec![Facet::opening(0.0), left, right]],
+            drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Factor(1.0) }],
+            responses: vec![],
+            length: 2.0,
+            counters: Counters::new(),
+        }
+    }
+
+    /// From any state the step of the regimes of z lowers the merit by its whole per whole step.
+    #[test]
+    fn the_merit_falls_along_the_step() {
+        let problem = pushed();
+        let control = Control::Factor(1.0);
+        for finite in [false, true] {
+            let mut model = Model::new(&problem, finite).expect("a model");
+            model.load(Loaded { earlier: Vec::new(), growing: &problem.drives[0].loading, start: 0.0 });
+            let (start, u) = (model.undeformed(), model.units);
+            let (mut random, mut compared) = (Shuffle::new(5), [0; 3]);
+            for _ in 0..200 {
+                let mut state = start.clone();
+                state.factor = 0.7;
+                state.force.iter_mut().for_each(|r| *r = [u.force * (random.next() + 0.3), u.force * random.next()]);
+                let unit = [u.displacement, u.displacement, u.displacement / u.length];
+                state.motion[1] = unit.map(|unit| unit * random.next());
+                let slopes = model.slopes(&state);
+                state.gap = slopes.gap.clone();
+                state.regime = model.wanted(&start, &state).0;
+                let mut rows = model.residual(&start, &state, &slopes);
+                let (left, constraint) = model.constraint(&start, &state, &control);
+                let last = rows.len() - 1;
+                rows[last] = left;
+                let curvature = model.curvature(&state, &slopes);
+                let row = model.control_row(&start, &state, &control, &constraint, &curvature);
+                let right: Vec<f64> = rows.iter().map(|x| -x).collect();
+                let Some((step, true)) = model.solve(&state, &curvature, &row, &right) else { continue };
+                // Where all points slide to the same side the regimes hold the block by nothing.
+                if step.iter().any(|x| x.abs() > 1e3) {
+                    continue;
+                }
+                let mut at = |share: f64| {
+                    let (state, slopes) = model.advanced(&start, &state, &step, share).expect("a state");
+                    model.merit(&start, &state, &slopes, &control)
+                };
+                let (here, small) = (at(0.0), 1e-7);
+                let slope = (at(small) - here) / small;
+                assert!((slope + here).abs() <= 1e-4 * here, "{finite} {:?}: {slope:e} {here:e}", state.regime);
+                for regime in &state.regime {
+                    compared[match regime {
+                        Regime::Stuck => 0,
+                        Regime::Facet(_) => 1,
+                        Regime::Corner(_) => 2,
+                    }] += 1;
+                }
+            }
+            assert!(compared.iter().all(|n| *n > 20), "{compared:?}");
+        }
+    }
+}

@@ -30,7 +30,7 @@ impl Model<'_> {
 
     /// Regimes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
     /// associated the nearest regime need not be the return.
-    fn wanted(&mut self, start: &State, state: &State) -> (Vec<Regime>, bool) {
+    pub(super) fn wanted(&mut self, start: &State, state: &State) -> (Vec<Regime>, bool) {
         self.count("law_evaluations", state.gap.len() as u64);
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
         let gaps = state.gap.iter().flatten().map(|g| g.abs());
