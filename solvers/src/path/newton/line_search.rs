@@ -208,7 +208,7 @@ mod tests {
             model.load(Loaded { earlier: Vec::new(), growing: &problem.drives[0].loading, start: 0.0 });
             let (start, u) = (model.undeformed(), model.units);
             let (mut random, mut compared) = (Shuffle::new(5), [0; 3]);
-            for _ in 0..200 {
+            for _ in 0..600 {
                 let mut state = start.clone();
                 state.factor = 0.7;
                 state.force.iter_mut().for_each(|r| *r = [u.force * (random.next() + 0.3), u.force * random.next()]);
