@@ -101,7 +101,7 @@ impl RandomScene {
 }
 
 /// Numbers of a random scene; the first is its place in the series.
-type Numbers = (Law, f64, f64, u8, usize, f64, usize, f64, f64, u8);
+pub type Numbers = (Law, f64, f64, u8, usize, f64, usize, f64, f64, u8);
 
 /// Random numbers for [`scene`].
 pub fn numbers() -> impl Strategy<Value = Numbers> {

@@ -164,13 +164,12 @@ fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
 /// SCENES sets how many are tried (24 by default), SHOW prints each, KEEP keeps their studies, ONLY
 /// tries one.
 ///
-/// The 24 scenes of the default (130 s on two very busy cores): every path is solved and all loads agree.
-/// SCENES=220 (25 minutes on one busy core): 108 walls, 128 with sliding, 32 with a history, 100 not associated, median 108
-/// events. Associated and stuck flow: all 120 solved by both paths, all loads agree. Not associated: Newton path
-/// 4 stalled (5000 steps were not enough: scenes 86, 131, 139, 177); exact path 1 (scene 158, 47 points at the verge of a
-/// change under the dead load), and two limit points behind which it is not decided how the path goes on (scenes
-/// 86 and 91). All with strengths are solved. No load above the associated one, 9 pairs on different branches that their
-/// notes name, none apart without a reason.
+/// The 24 scenes of the default (35 s on two busy cores): every path is solved and all loads agree.
+/// SCENES=220 (13 minutes on two busy cores): 108 walls, 129 with sliding, 32 with a history, 100 not associated, median 108
+/// events. All 220 are solved by both paths. Associated and stuck flow: all 120 loads agree. Not associated: the exact path
+/// ends in 11 limit points, two of which leave it undecided how the path goes on behind them (scenes 86 and 91), Newton's in 9.
+/// No load above the associated one, 13 pairs on different branches that their notes name, none apart without a reason.
+/// The scenes at whose corners paths once stopped are tests of their own (regression_corners).
 #[test]
 fn paths_end_where_limit_analysis_does() {
     let cases = std::env::var("SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(24);

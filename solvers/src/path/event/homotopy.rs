@@ -29,7 +29,7 @@ const FRESH: usize = 60;
 /// Residual of a direction above which it is.
 const RESIDUAL: f64 = 1e-7;
 /// The cells of a point.
-struct Law {
+pub(super) struct Law {
     polygon: Polygon,
     cells: Cells,
     /// Facets of the polygon in the point's own numbering.
@@ -40,7 +40,7 @@ struct Law {
 }
 
 impl Law {
-    fn new(point: &Verge<'_>) -> Law {
+    pub fn new(point: &Verge<'_>) -> Law {
         let facet = |f: &usize| {
             let p = &point.facets[*f];
             Facet { mode: p.mode, normal: p.normal, bound: 0.0, flow: p.flow }
@@ -65,6 +65,12 @@ impl Law {
                 _ => Piece::Corner(self.active[i], self.active[j]),
             },
         }
+    }
+
+    /// The piece of z = ṙ − ρ ġ, with ρ the same in both directions, and its return.
+    pub fn returned(&self, z: [f64; 2]) -> (Piece, [f64; 2]) {
+        let (cell, r) = self.polygon.returned(z, [1.0; 2], 1.0);
+        (self.piece(cell), r)
     }
 
     /// A random place: cell, force and gap.

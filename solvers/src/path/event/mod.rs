@@ -10,6 +10,7 @@ mod direction;
 mod energy;
 mod homotopy;
 mod lcp;
+mod line_search;
 mod local;
 mod pairs;
 mod point;

@@ -235,11 +235,11 @@ pub struct RateProblem<'a> {
     pub from_nothing: bool,
 }
 
-struct Attempt {
+pub(super) struct Attempt {
     unknowns: Vec<f64>,
-    gaps: DVector<f64>,
+    pub(super) gaps: DVector<f64>,
     forces: DVector<f64>,
-    singular: bool,
+    pub(super) singular: bool,
 }
 
 impl Attempt {
@@ -279,7 +279,7 @@ impl RateProblem<'_> {
 
     /// Solves for the unknowns of a combination of pieces with λ̇ = `factor`; where the combination
     /// is singular with one null vector, that vector.
-    fn attempt(&self, pieces: &[Piece], factor: f64) -> Option<Attempt> {
+    pub(super) fn attempt(&self, pieces: &[Piece], factor: f64) -> Option<Attempt> {
         let (flows, rows) = self.flows_and_rows(pieces);
         let n = flows.len();
         let mut singular = false;
@@ -598,12 +598,17 @@ impl RateProblem<'_> {
         if combinations > COMBINATIONS {
             match self.pivoted(false, counters) {
                 Some(Pivoted::Guess(pieces)) => {
-                    if let Some(rate) = self.corrected(pieces, counters) {
+                    let corrected = self.corrected(pieces.clone(), counters);
+                    if let Some(rate) = corrected.or_else(|| self.line_searched(&pieces, counters)) {
                         return Verdict::Found(rate, None);
                     }
                 }
                 Some(Pivoted::Ray(rate)) if self.proves(counters) => return Verdict::Found(rate, None),
                 _ => {}
+            }
+            let stuck = vec![Piece::Stick; self.points.len()];
+            if let Some(rate) = self.line_searched(&stuck, counters) {
+                return Verdict::Found(rate, None);
             }
             if let Some(rate) = self.by_homotopy(STARTS, counters) {
                 return Verdict::Found(rate, None);

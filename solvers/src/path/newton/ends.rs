@@ -146,14 +146,18 @@ impl Tracer<'_, '_> {
         let factor = rate.factor / u.factor * direction;
         let still = force <= 1e-9 * motion && factor.abs() <= 1e-9 * motion;
         let force_unit = if still { f64::INFINITY } else { force.max(factor.abs()) * u.force };
-        for c in 0..rate.gap.len() {
-            let Some(law) = self.model.law(c) else { continue };
+        let goes_on = (0..rate.gap.len()).all(|c| {
+            let Some(law) = self.model.law(c) else { return true };
             let gap = rate.gap[c].map(|g| g / (u.displacement * motion));
             let r = rate.force[c].map(|r| r / force_unit);
-            if law.ray_violation(self.state.regime[c], r, gap) > 1e-8 {
-                return false;
-            }
+            law.ray_violation(self.state.regime[c], r, gap) <= 1e-8
+        });
+        // The regimes may leave other motions than this one.
+        let other = if still && !goes_on { self.model.mechanism(&self.state) } else { None };
+        if !goes_on && other.is_none() {
+            return false;
         }
+        let rate = other.as_ref().unwrap_or(rate);
         if !self.model.responses_go_on(&self.state, rate) {
             return false;
         }

@@ -10,12 +10,16 @@ use voussoir_core::path::{Drive, DriveEnd, Increment};
 /// Greatest number of steps of a drive.
 const MOST_STEPS: u64 = 5000;
 
-/// Branches with growing λ that are taken at one factor.
-const MOST_BRANCHES: u32 = 3;
-
 /// Contact points up to which every change of regime counts for the length of the next step; of more the
 /// same share does, so that the number of steps does not grow with the number of joints.
 const ORDINARY: usize = 200;
+
+/// Length, relative to the first step, down to which regimes guessed at a corner are tried before rates are searched.
+const UNFOLLOWED: f64 = 1e-4;
+
+/// Length, relative to the first step, from which on a line search helps. What shorter steps do not find is a corner,
+/// where branches are chosen: a line search may find another state close by, on none of them.
+const SEARCHED: f64 = 1e-3;
 
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
@@ -64,7 +68,9 @@ impl Tracer<'_, '_> {
             step => step,
         } * self.model.units.length
             / self.model.units.displacement;
+        let linear = !self.model.finite() && self.model.piecewise_linear();
         let mut switched_at: Option<u64> = None;
+        let mut searched_at: Option<u64> = None;
         let mut yielding: Option<Vec<Regime>> = None;
         let mut inaccurate = 0;
         let mut before_peak_rate = rate.factor * direction;
@@ -109,6 +115,7 @@ impl Tracer<'_, '_> {
                 guess.regime = regimes.clone();
             }
             let mut control = control;
+            self.model.searches = !self.model.finite() || length >= SEARCHED * initial;
             let mut found = self.model.newton(&self.state, guess.clone(), &control);
             // Where flow is not associated pivoting may step over a limit point: the last resort.
             let last = strategy.passes_limit_points() && length < 1e-8 * initial;
@@ -126,6 +133,7 @@ impl Tracer<'_, '_> {
                 let judged = self.judge(&rate, step, &next, target, direction, reaches);
                 judged.map(|()| (next, iterations))
             });
+            let found = found.and_then(|(next, iterations)| self.follows(next, iterations, &control));
             let found = match found {
                 // A step by arc length may go back; one by λ cannot.
                 Err(refusal)
@@ -212,8 +220,13 @@ impl Tracer<'_, '_> {
                             continue;
                         }
                     }
-                    length = if slip > 1e-9 * share && slip < share { slip * per_rate } else { 0.3 * length };
-                    if length < 1e-10 * initial {
+                    // Rounding must not leave the length as it is.
+                    length = if slip > 1e-9 * share && slip < 0.9 * share { slip * per_rate } else { 0.3 * length };
+                    // Regimes that were guessed at a corner and that no step follows: the search knows better.
+                    let guessed = linear && yielding.is_some() && self.peak.is_none() && length < UNFOLLOWED * initial;
+                    let unsearched = guessed && searched_at != steps;
+                    if length < 1e-10 * initial || unsearched {
+                        searched_at = steps;
                         let state = self.state.clone();
                         let rises = if self.peak.is_none() { self.rises(&state, direction) } else { None };
                         if let Some((other, regimes)) = rises {
@@ -223,9 +236,12 @@ impl Tracer<'_, '_> {
                             length = 0.1 * initial;
                             continue;
                         }
-                        let linear = !self.model.finite() && self.model.piecewise_linear();
-                        if linear && self.peak.is_none() && self.doubt.is_none() {
-                            let why = format!("the path was not followed behind it: {}", refusal.why);
+                        if unsearched && self.doubt.take().is_some() {
+                            // Not decided: shorter steps may still find the way.
+                            continue;
+                        }
+                        if linear && self.doubt.is_none() {
+                            let why = self.not_followed(&refusal.why);
                             self.end(Status::LimitPoint, why);
                         } else {
                             self.no_step(&refusal, &rate, direction);
@@ -327,29 +343,16 @@ impl Tracer<'_, '_> {
             let growth = accuracy.clamp(0.25, growth);
             length = growth * strategy.constraint(&increment, previous.as_ref()).value;
         }
+        if linear && self.peak.is_some() && self.doubt.is_none() {
+            let why = self.not_followed(&format!("{MOST_STEPS} steps were not enough"));
+            self.end(Status::LimitPoint, why);
+            return Outcome::Ended;
+        }
         self.end(
             Status::Stalled,
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended
-    }
-
-    /// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise
-    /// the limit point is proven, or in doubt.
-    fn rises(&mut self, state: &State, direction: f64) -> Option<(Rate, Vec<Regime>)> {
-        let other = self.doubted(state, direction)?;
-        let same = |factor: f64| (state.factor - factor) * direction <= 1e-10 * factor.abs();
-        let times = match self.rose {
-            Some((factor, times)) if same(factor) => times + 1,
-            _ => 1,
-        };
-        if times > MOST_BRANCHES {
-            return None;
-        }
-        self.rose = Some((state.factor, times));
-        self.doubt = None;
-        self.model.count("branches", 1);
-        Some(other)
     }
 
     /// Weight of the factor in a control by a spring: with it every step of associated flow is a
@@ -374,33 +377,6 @@ impl Tracer<'_, '_> {
         }
         guess.factor += share * rate.factor;
         guess
-    }
-
-    /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
-    pub(super) fn yielding(&mut self, rate: &Rate, share: f64) -> Option<(Rate, Vec<Regime>)> {
-        let ahead = self.moved(rate, 1e-3 * share);
-        let state = self.state.clone();
-        let regimes = self.model.regimes_ahead(&state, &ahead);
-        if regimes == state.regime {
-            return None;
-        }
-        self.model.rate_of_yielding(&state, &regimes).map(|rate| (rate, regimes))
-    }
-
-    /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
-    /// in which they dissipate. Their next predictor is that of the yielding tangent.
-    pub(super) fn beyond_yield(&mut self, rate: &Rate, share: f64) -> Option<Rate> {
-        let mut ahead = self.moved(rate, share);
-        self.model.deform(&mut ahead).ok()?;
-        let mut turning = self.state.clone();
-        turning.blocks = ahead.blocks;
-        if !turning.yields() {
-            return None;
-        }
-        let other = self.model.rate(&self.state, &turning, &Control::Factor(self.state.factor))?;
-        let power = self.model.plastic_power(&turning, &other);
-        self.state.blocks = turning.blocks;
-        Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
     }
 
     /// Share of the rate after which the first stuck point whose slip is not associated would slide.

@@ -126,7 +126,7 @@ impl Polygon {
     }
 
     /// How far a regime is from being the return of z = r − ρ Δg, as a force \[N\]; 0 where it is.
-    fn violation(&self, regime: Regime, z: [f64; 2], rho: [f64; 2], area: f64) -> f64 {
+    pub fn violation(&self, regime: Regime, z: [f64; 2], rho: [f64; 2], area: f64) -> f64 {
         let over = |r: [f64; 2], except: Option<usize>| {
             let mut worst: f64 = 0.0;
             for (i, f) in self.facets.iter().enumerate() {

@@ -3,6 +3,7 @@
 
 mod border;
 mod claims;
+mod corners;
 mod deformation;
 mod ends;
 mod equations;
@@ -14,7 +15,9 @@ mod inelastic;
 mod kinematics;
 pub(super) mod law;
 mod ledger;
+mod line_search;
 mod measure;
+mod mechanism;
 mod model;
 mod pivot;
 mod reach;
@@ -79,6 +82,9 @@ voussoir_core::inventory::submit! {
             "Judice & Pires 1994, Computers & Operations Research 21, 587-596",
             "Ralph 1994, Math. Operations Research 19, 352-389",
             "Dirkse & Ferris 1995, Optim. Methods Software 5, 123-156",
+            "De Luca, Facchinei & Kanzow 1996, Math. Programming 75, 407-439",
+            "Christensen, Klarbring, Pang & Stromberg 1998, Int. J. Numer. Meth. Engng 42, 145-173",
+            "Grippo, Lampariello & Lucidi 1986, SIAM J. Numer. Anal. 23, 707-716",
         ],
         file: file!(),
         page: include_str!("newton_path.md"),

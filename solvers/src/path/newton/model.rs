@@ -105,6 +105,8 @@ pub(super) struct Model<'a> {
     pub loaded: Loaded<'a>,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
+    /// Whether Newton's method may resort to a line search.
+    pub searches: bool,
     /// Undeformed bodies whose material yields.
     blocks: Vec<Option<Inner>>,
     /// Second derivatives with small displacements, of the present drive.
@@ -190,6 +192,7 @@ impl<'a> Model<'a> {
             counters: Counters::new(),
             loaded,
             residuals: Vec::new(),
+            searches: true,
             blocks: super::inelastic::undeformed(problem)?,
             constant: None,
             factorised: super::system::Factorised::default(),

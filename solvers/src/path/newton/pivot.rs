@@ -214,6 +214,6 @@ impl Model<'_> {
 
     /// Newton's method from what pivoting found.
     fn polished(&mut self, start: &State, state: State, control: &Control) -> Result<(State, u64), Refusal> {
-        self.iterate(start, state, control, 8)
+        self.iterate(start, state, control, 8, None)
     }
 }

@@ -57,7 +57,7 @@ impl Tracer<'_, '_> {
         };
         if (state.factor - drive.start) * direction > nothing {
             let guess = self.model.in_proportion(&state, (factor - drive.start) / (state.factor - drive.start));
-            return match self.model.iterate(&self.state, guess, &Control::Factor(factor), 8) {
+            return match self.model.iterate(&self.state, guess, &Control::Factor(factor), 8, None) {
                 Ok((next, _)) if self.commit(next.clone()) => Outcome::Reached,
                 Ok(_) => Outcome::Ended,
                 Err(_) => self.follow(drive, factor),

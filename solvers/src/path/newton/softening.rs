@@ -5,7 +5,7 @@
 //! way back. What always grows is the gap of the points that soften: where the strategy's own step
 //! fails, one step is controlled by these gaps (de Borst 1987, Computers & Structures 25, 211-224).
 
-use super::model::{Control, Model, Rate, State};
+use super::model::{Rate, State};
 use super::response::Local;
 use super::trace::Tracer;
 
@@ -14,49 +14,6 @@ const ENERGY: f64 = 1e-4;
 
 /// Times that a step is made shorter for the sake of its energy.
 pub(super) const MOST_REFINEMENTS: u32 = 6;
-
-impl Model<'_> {
-    /// Share of an iteration that lowers the residual of laws of tractions from gaps: between the pieces
-    /// of such a law whole iterations may go to and fro. Halved up to four times, the best where none is good.
-    pub(super) fn damped(
-        &mut self,
-        start: &State,
-        state: &State,
-        control: &Control,
-        step: &[f64],
-        share: f64,
-        norm: f64,
-    ) -> f64 {
-        if self.responses.is_empty() {
-            return share;
-        }
-        let mut best = (share, f64::INFINITY);
-        for halvings in 0..5 {
-            let share = share * 0.5f64.powi(halvings);
-            let mut trial = state.clone();
-            self.apply(&mut trial, step, share);
-            if self.deform(&mut trial).is_err() {
-                continue;
-            }
-            let slopes = self.slopes(&trial);
-            trial.gap = slopes.gap.clone();
-            if self.respond(start, &mut trial).is_err() {
-                continue;
-            }
-            let mut residual = self.residual(start, &trial, &slopes);
-            let last = residual.len() - 1;
-            residual[last] = self.constraint(start, &trial, control).0;
-            let error = self.error(&residual, &trial);
-            if error < best.1 {
-                best = (share, error);
-            }
-            if error <= (1.0 - 0.3 * share) * norm || error <= 1e-12 {
-                break;
-            }
-        }
-        best.0
-    }
-}
 
 impl Tracer<'_, '_> {
     /// By how much a step may grow (below 1: must shrink) so that the work of its loads by the

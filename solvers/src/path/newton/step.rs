@@ -2,6 +2,7 @@
 
 use super::kinematics::Curvature;
 use super::law::Regime;
+use super::line_search::LineSearch;
 use super::model::{Control, Model, Rate, Refusal, State};
 
 /// Contact points that want to change above which, twice running where eight times fewer did before, an
@@ -32,47 +33,59 @@ impl Model<'_> {
         }
     }
 
-    /// Regimes that the present forces and gaps ask for.
-    fn wanted(&mut self, start: &State, state: &State) -> Vec<Regime> {
+    /// Regimes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
+    /// associated the nearest regime need not be the return.
+    pub(super) fn wanted(&mut self, start: &State, state: &State) -> (Vec<Regime>, bool) {
         self.count("law_evaluations", state.gap.len() as u64);
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(self.units.force, f64::max);
-        let mean = self.units.displacement / self.units.force;
         let gaps = state.gap.iter().flatten().map(|g| g.abs());
         let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * self.units.length));
         // Gaps are differences of motions: beyond rounding of those a gap means nothing.
         let rounding = 8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max);
-        (0..state.gap.len())
+        let mut holds = true;
+        let regimes = (0..state.gap.len())
             .map(|c| match self.law(c) {
                 None => Regime::Stuck,
                 Some(law) => {
-                    let rho = self.compliance[c].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean });
+                    let rho = self.stiffness(c);
                     let gap = self.step_gap(start, state, c);
                     let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
                     // A certificate allows 1e-8 of the greatest force.
                     let tolerance = (rounding * rho[0].max(rho[1])).clamp(1e-11 * largest, 3e-9 * largest);
-                    law.regime(state.regime[c], z, rho, self.problem.contacts[c].area, tolerance)
+                    let area = self.problem.contacts[c].area;
+                    let regime = law.regime(state.regime[c], z, rho, area, tolerance);
+                    holds &= regime != state.regime[c] || law.violation(regime, z, rho, area) <= tolerance;
+                    regime
                 }
             })
-            .collect()
+            .collect();
+        (regimes, holds)
     }
 
     /// Newton's method from a guess. Regimes change all at once as long as their number falls, else
     /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
-    /// Res. 21), so that regimes that flip for ever are seen. Where that fails, once more with one
-    /// change at a time from the beginning, with small displacements and a given factor by pivoting.
+    /// Res. 21), so that regimes that flip for ever are seen. Where that fails, by a line search, then
+    /// with one change at a time from the beginning; with small displacements and a given factor by
+    /// pivoting, with associated flow by the caller's (a line search finds nothing there that it does not).
     pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        let found = self.iterate(start, guess.clone(), control, 8);
+        let found = self.iterate(start, guess.clone(), control, 8, None);
         if found.is_ok() || (!self.responses.is_empty() && self.polygons.iter().all(|law| law.facets.is_empty())) {
             return found;
         }
         if self.finite() || !self.piecewise_linear() {
-            return self.iterate(start, guess, control, 0);
+            if self.searches
+                && let Ok(found) = self.line_searched(start, guess.clone(), control)
+            {
+                return Ok(found);
+            }
+            return self.iterate(start, guess, control, 0, None);
         }
         // Where flow is not associated pivoting may step over a limit point: from nothing only.
         match control {
             Control::Factor(factor) if self.monotone() || start.force.iter().flatten().all(|r| *r == 0.0) => {
                 self.pivoted(start, &State { factor: *factor, ..guess }, control)
             }
+            _ if self.searches && !self.monotone() => self.line_searched(start, guess, control).or(found),
             _ => found,
         }
     }
@@ -106,7 +119,11 @@ impl Model<'_> {
         guess: State,
         control: &Control,
         patience: u32,
+        mut search: Option<LineSearch>,
     ) -> Result<(State, u64), Refusal> {
+        if !self.responses.is_empty() {
+            search = Some(LineSearch::of_tractions());
+        }
         let mut state = guess;
         let factor = if let Control::Factor(target) = control { *target } else { state.factor };
         state.factor = factor;
@@ -129,9 +146,9 @@ impl Model<'_> {
         let (mut changed, mut restless) = (true, Vec::new());
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let (mut unsolved, mut astray) = (0, 0);
-        let mut last_norm = f64::INFINITY;
+        let (mut last_norm, mut whole) = (f64::INFINITY, true);
         // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
-        let most = match (self.responses.is_empty(), self.finite()) {
+        let most = match (self.responses.is_empty(), self.finite() && search.is_none()) {
             (false, _) => 25,
             (true, true) => 60 + (state.gap.len() as u64).min(200),
             (true, false) => 30,
@@ -146,7 +163,9 @@ impl Model<'_> {
             if !norm.is_finite() {
                 return Err(Refusal { why: "an iteration left the numbers".into(), restless });
             }
-            let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && norm > 0.3 * last_norm);
+            // Rounding is what a whole step does not lower.
+            let stays = whole && norm > 0.3 * last_norm;
+            let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && stays);
             if iteration > 0 && !changed && settled && self.law_error(&state) <= 1e-9 {
                 return Ok((state, iteration));
             }
@@ -175,16 +194,18 @@ impl Model<'_> {
             } else {
                 1.0
             };
-            let share = self.damped(start, &state, control, &step, share, norm);
-            self.apply(&mut state, &step, share);
-            self.deform(&mut state)?;
-            slopes = self.slopes(&state);
-            state.gap = slopes.gap.clone();
-            self.respond(start, &mut state).map_err(refused)?;
-            let wanted = self.wanted(start, &state);
+            (state, slopes, whole) = match &mut search {
+                Some(search) => self.searched(start, (&state, &slopes), control, (&step[..], share), search)?,
+                None => {
+                    let (state, slopes) = self.advanced(start, &state, &step, share)?;
+                    (state, slopes, true)
+                }
+            };
+            let (wanted, holds) = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
-            changed = !differ.is_empty();
-            astray = if differ.len() > ASTRAY && differ.len() / 8 > fewest { astray + 1 } else { 0 };
+            changed = !differ.is_empty() || !holds;
+            let far = differ.len() > ASTRAY && differ.len() / 8 > fewest;
+            astray = if far && search.is_none() { astray + 1 } else { 0 };
             if astray > 1 {
                 return Err(Refusal { why: "the regimes of contact points keep changing".into(), restless: differ });
             }
@@ -222,7 +243,7 @@ impl Model<'_> {
     pub fn regimes_ahead(&mut self, state: &State, ahead: &State) -> Vec<Regime> {
         let mut ahead = ahead.clone();
         ahead.gap = self.slopes(&ahead).gap;
-        self.wanted(state, &ahead)
+        self.wanted(state, &ahead).0
     }
 
     /// Rate with other regimes than the state's, per unit of the sum of the multipliers of the points
