@@ -7,7 +7,7 @@ use voussoir::core::limit::{Counters, Status};
 use voussoir::core::mechanism::MechanismKind;
 use voussoir::core::path::{
     Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem,
-    PathSettings, PathSolver, PathState,
+    PathSettings, PathSolver, PathState, Sliding,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Record;
@@ -59,6 +59,7 @@ fn two_bars(rise: f64) -> PathProblem {
         gap: 0.0,
         law: ContactLaw::Bonded,
         compliance,
+        sliding: Sliding::middle(0.0),
     };
     let load = Vec2::new(0.0, -1.0e3);
     let forces = vec![

@@ -262,7 +262,10 @@ impl Tracer<'_, '_> {
             };
             let size = next.factor.abs().max(unit * 1e-3);
             let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
-            let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
+            let still = 1e-10 * unit * self.model.motion_size(&next_rate);
+            // With finite displacements a load that stands still is a limit point: what slides on a plane
+            // does so under the same load for ever.
+            let falls = next_rate.factor * direction < if self.model.finite() { still } else { -still };
             if (fell || falls) && !strategy.passes_limit_points() && !self.model.responses.is_empty() {
                 self.model.count("cutbacks", 1);
                 length *= 0.3;

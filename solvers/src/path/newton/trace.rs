@@ -4,15 +4,11 @@ use super::kinematics::Slopes;
 use super::ledger::{Ledger, events};
 use super::model::{Loaded, Model, State};
 use std::sync::Arc;
-use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{
     Continuation, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
-
-/// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
-const LARGEST_SLIP: f64 = 0.05;
 
 /// How a drive ended.
 pub(super) enum Outcome {
@@ -233,34 +229,18 @@ impl<'a> Tracer<'a, '_> {
         }
     }
 
-    /// Slip that the fixed pairing of contact points does not bear.
+    /// A pressed point that has slipped further than its pairing holds.
     fn left_its_pairing(&self) -> Option<String> {
-        let problem = self.model.problem;
-        let mut heights: Vec<(usize, Vec2, Vec2)> = Vec::new();
-        for c in &problem.contacts {
-            match heights.last_mut() {
-                Some((joint, _, end)) if *joint == c.joint => *end = c.position,
-                _ => heights.push((c.joint, c.position, c.position)),
-            }
-        }
         let largest = self.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-        let mut joints = heights.iter().peekable();
-        for (index, c) in problem.contacts.iter().enumerate() {
-            while joints.peek().is_some_and(|j| j.0 != c.joint) {
-                joints.next();
-            }
-            let (_, from, to) = joints.peek()?;
-            let (slip, height) = (self.state.gap[index][1].abs(), (to - from).norm());
-            let pressed = self.state.force[index][0] > 1e-9 * largest;
-            if pressed && height > 0.0 && slip > LARGEST_SLIP * height {
-                return Some(format!(
-                    "joint {} has slipped by {:.1} % of its height at factor {}: contact points are paired for less",
-                    c.joint,
-                    100.0 * slip / height,
-                    self.state.factor
-                ));
-            }
-        }
-        None
+        let points = self.model.problem.contacts.iter().zip(&self.state.force).zip(&self.state.gap);
+        let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
+        let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
+        let why = if c.sliding.share == 0.5 {
+            "contact points between corners that were together are paired for less"
+        } else {
+            "its contact point leaves the face that it slides on"
+        };
+        let (joint, factor) = (c.joint, self.state.factor);
+        Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))
     }
 }
