@@ -20,6 +20,10 @@ impl Tracer<'_, '_> {
         let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
         let falls = rate.factor * direction <= 0.0;
+        if self.model.finite() && self.peak.is_some() {
+            self.end(Status::Collapse, format!("the branch behind the peak was not followed further: {why}"));
+            return;
+        }
         if !self.strategy.passes_limit_points()
             && (falls || self.softens_down(rate, direction) || self.turns_back(rate, direction))
         {
@@ -213,6 +217,17 @@ impl Tracer<'_, '_> {
                     || least.is_some_and(|least| (factor - least) * direction <= 0.0)
             }
         };
+        if !done && self.model.finite() {
+            let asked = stop_displacement.unwrap_or(match stop_factor {
+                Some(_) => self.model.units.length,
+                None => peak.state.displacement.abs(),
+            });
+            let place = [displacement, factor];
+            if let Some(why) = self.wandering.goes_on(place, &self.recorded.motion, asked) {
+                self.end(Status::Collapse, why);
+                return true;
+            }
+        }
         if done {
             self.end(if self.model.finite() { Status::Collapse } else { Status::LimitPoint }, String::new());
         }

@@ -330,8 +330,9 @@ impl Tracer<'_, '_> {
             let growth = accuracy.clamp(0.25, growth);
             length = growth * strategy.constraint(&increment, previous.as_ref()).value;
         }
+        let found = self.model.finite() && self.peak.is_some();
         self.end(
-            Status::Stalled,
+            if found { Status::Collapse } else { Status::Stalled },
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended

@@ -23,6 +23,7 @@ mod softening;
 mod step;
 mod system;
 mod trace;
+mod wandering;
 
 use super::continuation::arc_length::ArcLength;
 use serde::{Deserialize, Serialize};

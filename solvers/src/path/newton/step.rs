@@ -4,6 +4,9 @@ use super::kinematics::Curvature;
 use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 
+/// Iterations in a row, with finite displacements, in which the same single point changes its regime.
+const ALONE: u32 = 12;
+
 impl Model<'_> {
     pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
         self.add(&mut state.force, &mut state.motion, step, share);
@@ -122,6 +125,7 @@ impl Model<'_> {
             (false, false) => 400.0 * f64::EPSILON,
         };
         let (mut changed, mut restless) = (true, Vec::new());
+        let mut alone = 0;
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
         let mut last_norm = f64::INFINITY;
@@ -179,6 +183,11 @@ impl Model<'_> {
             let wanted = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
             changed = !differ.is_empty();
+            // One point that goes to and fro alone does so for ever.
+            alone = if differ.len() == 1 && differ == restless { alone + 1 } else { 0 };
+            if self.finite() && alone >= ALONE {
+                return Err(Refusal { why: "the regime of a contact point keeps changing".into(), restless });
+            }
             if differ.len() < fewest && (patience > 0 || differ.len() <= 1) {
                 (fewest, budget) = (differ.len(), patience);
                 state.regime = wanted;

@@ -3,6 +3,7 @@
 use super::kinematics::Slopes;
 use super::ledger::{Ledger, events};
 use super::model::{Loaded, Model, State};
+use super::wandering::Wandering;
 use std::sync::Arc;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
@@ -47,6 +48,8 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) proven: Option<f64>,
     /// Factor at which a branch with growing λ was taken last, and how often there.
     pub(super) rose: Option<(f64, u32)>,
+    /// The way behind the peak.
+    pub(super) wandering: Wandering,
 }
 
 /// Follows all drives.
@@ -82,6 +85,7 @@ pub(super) fn trace(
         doubt: None,
         proven: None,
         rose: None,
+        wandering: Wandering::default(),
     };
     tracer.run(problem);
     tracer.answer()
@@ -112,10 +116,16 @@ impl<'a> Tracer<'a, '_> {
             self.state.factor = drive.start;
             self.model.load(Loaded { earlier: earlier.clone(), growing: &drive.loading, start: drive.start });
             self.slopes = self.model.slopes(&self.state);
-            let outcome = match drive.end {
+            let mut outcome = match drive.end {
                 DriveEnd::Factor(factor) => self.reach(drive, factor),
                 DriveEnd::Collapse(most) => self.follow(drive, most),
             };
+            // Behind a peak a structure with finite displacements comes back to the load as another one:
+            // it has snapped through.
+            if self.model.finite() && self.peak.is_some() && matches!(outcome, Outcome::Reached) {
+                self.status = Status::Collapse;
+                outcome = Outcome::Ended;
+            }
             match outcome {
                 Outcome::Reached => earlier.push((self.state.factor - drive.start, &drive.loading)),
                 Outcome::Ended => {
