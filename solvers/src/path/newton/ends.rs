@@ -77,8 +77,8 @@ impl Tracer<'_, '_> {
         None
     }
 
-    /// Bisects the step from the present state for the point where λ stops growing: the state there and
-    /// the rate just behind it.
+    /// Bisects the step from the present state for the point where λ stops growing in the sense `direction`:
+    /// the state there and the rate just behind it.
     pub(super) fn locate_peak(
         &mut self,
         rate: &Rate,
@@ -110,6 +110,16 @@ impl Tracer<'_, '_> {
             }
         }
         (best.0, behind)
+    }
+
+    /// Where the load rises again behind a peak with finite displacements: the least load between, which a
+    /// structure under load control snaps through, if it is lower than any before.
+    pub(super) fn note_trough(&mut self, rate: &Rate, previous: Option<Increment>, length: f64, direction: f64) {
+        let lower = |factor: f64| self.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
+        if lower(self.state.factor) {
+            let (state, behind) = self.locate_peak(rate, previous, length, -direction);
+            self.trough = Some(self.peak_at(state, &behind));
+        }
     }
 
     /// A peak at a state between the last one and the next, with the rate just behind it.
@@ -223,7 +233,9 @@ impl Tracer<'_, '_> {
                 None => peak.state.displacement.abs(),
             });
             let place = [displacement, factor];
-            if let Some(why) = self.wandering.goes_on(place, &self.recorded.motion, asked) {
+            if let Some(why) =
+                self.wandering.leads_nowhere(place, &self.recorded.motion, asked, self.model.units.length)
+            {
                 self.end(Status::Collapse, why);
                 return true;
             }

@@ -295,6 +295,10 @@ impl Tracer<'_, '_> {
                 }
                 self.peak = Some(self.peak_at(state, &behind));
             }
+            let rises = next_rate.factor * direction > 1e-10 * unit * self.model.motion_size(&next_rate);
+            if self.model.finite() && self.peak.is_some() && before_peak_rate < 0.0 && rises && !reaches {
+                self.note_trough(&rate, previous, length, direction);
+            }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
             self.plateau(&next, &next_rate);
             before_peak_rate = next_rate.factor * direction;

@@ -4,8 +4,10 @@ use super::kinematics::Curvature;
 use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 
-/// Iterations in a row, with finite displacements, in which the same single point changes its regime.
-const ALONE: u32 = 12;
+/// Points that still change, and iterations in which they do not become fewer, with which a step of finite
+/// displacements is given up: few points that go to and fro do so for ever.
+const FEW: usize = 4;
+const WITHOUT_GAIN: u32 = 24;
 
 impl Model<'_> {
     pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
@@ -125,7 +127,7 @@ impl Model<'_> {
             (false, false) => 400.0 * f64::EPSILON,
         };
         let (mut changed, mut restless) = (true, Vec::new());
-        let mut alone = 0;
+        let (mut least, mut without_gain) = (usize::MAX, 0);
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let mut unsolved = 0;
         let mut last_norm = f64::INFINITY;
@@ -183,10 +185,10 @@ impl Model<'_> {
             let wanted = self.wanted(start, &state);
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
             changed = !differ.is_empty();
-            // One point that goes to and fro alone does so for ever.
-            alone = if differ.len() == 1 && differ == restless { alone + 1 } else { 0 };
-            if self.finite() && alone >= ALONE {
-                return Err(Refusal { why: "the regime of a contact point keeps changing".into(), restless });
+            without_gain = if differ.len() < least { 0 } else { without_gain + 1 };
+            least = least.min(differ.len());
+            if self.finite() && changed && least <= FEW && without_gain >= WITHOUT_GAIN {
+                return Err(Refusal { why: "the regimes of contact points keep changing".into(), restless: differ });
             }
             if differ.len() < fewest && (patience > 0 || differ.len() <= 1) {
                 (fewest, budget) = (differ.len(), patience);

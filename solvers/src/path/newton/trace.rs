@@ -48,6 +48,8 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) proven: Option<f64>,
     /// Factor at which a branch with growing λ was taken last, and how often there.
     pub(super) rose: Option<(f64, u32)>,
+    /// The least load behind the peak, where the path rises again.
+    pub(super) trough: Option<Peak>,
     /// The way behind the peak.
     pub(super) wandering: Wandering,
 }
@@ -85,6 +87,7 @@ pub(super) fn trace(
         doubt: None,
         proven: None,
         rose: None,
+        trough: None,
         wandering: Wandering::default(),
     };
     tracer.run(problem);
@@ -164,6 +167,13 @@ impl<'a> Tracer<'a, '_> {
             notes.push(format!(
                 "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
                 balance / size
+            ));
+        }
+        if let (Some(peak), Some(trough)) = (&self.peak, &self.trough) {
+            notes.push(format!(
+                "behind the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
+                trough.factor,
+                trough.state.displacement - peak.state.displacement
             ));
         }
         let (state, last, factor, motion) = match self.peak {
