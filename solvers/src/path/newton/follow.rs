@@ -187,7 +187,19 @@ impl Tracer<'_, '_> {
                     if (slip <= 1e-9 * share.max(initial / per_rate) || at_corner) && switched_at != steps {
                         // At the very event: another branch, on which the points at their limit yield.
                         switched_at = steps;
-                        if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
+                        let found = match self.onward(&rate, initial / per_rate) {
+                            Ok(found) => found,
+                            Err(why) => {
+                                if self.peak.is_none() {
+                                    let motion = self.scaled_motion(&self.state, &rate);
+                                    self.peak =
+                                        Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                                }
+                                self.end(Status::Collapse, why);
+                                return Outcome::Ended;
+                            }
+                        };
+                        if let Some((other, regimes)) = found {
                             let falls = other.factor * direction <= 0.0;
                             let state = self.state.clone();
                             let rises = if falls { self.rises(&state, direction) } else { None };

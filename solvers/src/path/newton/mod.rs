@@ -3,6 +3,7 @@
 
 mod border;
 mod claims;
+mod corner;
 mod deformation;
 mod ends;
 mod flow;

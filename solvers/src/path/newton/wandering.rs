@@ -10,6 +10,8 @@
 const TURN: f64 = 0.02;
 /// Difference of two turns that are the same one, as a share of the ranges of displacement and factor.
 const SAME: f64 = 0.01;
+/// Difference of two folds that are the same one, as a share of the same ranges.
+const FOLD: f64 = 0.005;
 /// Turns in a row that repeat earlier ones.
 const REPEATED: u32 = 2;
 /// Way of the fastest body behind the peak, by the displacement that was asked for and a fiftieth of the
@@ -32,9 +34,19 @@ pub(super) struct Wandering {
     /// Turns: displacement and factor, and the sense before.
     turns: Vec<([f64; 2], f64)>,
     repeated: u32,
+    /// Places from which no rate goes on in the sense of the factor.
+    folds: Vec<[f64; 2]>,
 }
 
 impl Wandering {
+    /// Takes a place (displacement, factor) from which no rate goes on: whether the path has been there before.
+    pub fn folds_again(&mut self, place: [f64; 2]) -> bool {
+        let sizes = self.ranges.map_or([0.0; 2], |ranges| ranges.map(|r| r[1] - r[0]));
+        let again = self.folds.iter().any(|fold| (0..2).all(|i| (fold[i] - place[i]).abs() <= FOLD * sizes[i]));
+        self.folds.push(place);
+        again
+    }
+
     /// Takes a state behind the peak: displacement of the load and factor, and the motion of all bodies. Why the
     /// path leads nowhere, if so; `asked`: displacement behind the peak that it should reach, `length` the scene's \[m\].
     pub fn leads_nowhere(&mut self, place: [f64; 2], motion: &[[f64; 3]], asked: f64, length: f64) -> Option<String> {
