@@ -21,6 +21,17 @@ const ORDINARY: usize = 200;
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
 
+/// Jump of λ in a step that is not one along a path with finite displacements, as a share of λ.
+const JUMP: f64 = 1e-4;
+
+/// How far a gain of λ is from those of a path whose rates at both ends of the step would give `before` and
+/// `after`: a strategy that cannot turn back may step over a snap-back.
+fn jump(before: f64, after: f64, gained: f64) -> f64 {
+    let [low, high] = [before.min(after), before.max(after)];
+    let slack = 0.5 * (high - low) + 0.5 * before.abs().max(after.abs());
+    (low - slack - gained).max(gained - high - slack)
+}
+
 impl Tracer<'_, '_> {
     /// By the strategy, up to a factor or the end of the path.
     pub(super) fn follow(&mut self, drive: &Drive, target: f64) -> Outcome {
@@ -73,7 +84,8 @@ impl Tracer<'_, '_> {
             if per_rate.is_nan() || per_rate <= 0.0 {
                 previous = None;
                 if measure(&self.model, &self.state, &rate, None) <= 0.0 {
-                    self.end(Status::Stalled, "what the continuation strategy controls stopped changing".into());
+                    let why = "what the continuation strategy controls stopped changing".into();
+                    self.no_step(&Refusal { why, restless: Vec::new() }, &rate, direction);
                     return Outcome::Ended;
                 }
                 continue;
@@ -267,6 +279,19 @@ impl Tracer<'_, '_> {
                 }
                 continue;
             };
+            let steps = matches!(control, Control::Strategy { .. }) && self.model.finite() && local.is_none();
+            let gained = next.factor - self.state.factor;
+            let off = jump(rate.factor / per_rate * length, next_rate.factor * length, gained);
+            if steps && off > JUMP * next.factor.abs().max(unit) {
+                self.model.count("cutbacks", 1);
+                length *= 0.3;
+                if length < 1e-10 * initial {
+                    let refusal = Refusal { why: "the state jumps to another branch".into(), restless: Vec::new() };
+                    self.no_step(&refusal, &rate, direction);
+                    return Outcome::Ended;
+                }
+                continue;
+            }
             let next_rate = match control {
                 Control::Spring { length, .. } => next_rate.scaled(length.signum()),
                 Control::Factor(_) => next_rate.scaled(direction),
