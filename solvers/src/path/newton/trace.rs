@@ -169,7 +169,9 @@ impl<'a> Tracer<'a, '_> {
                 balance / size
             ));
         }
-        if let (Some(peak), Some(trough)) = (&self.peak, &self.trough) {
+        if self.status != Status::NoEquilibrium
+            && let (Some(peak), Some(trough)) = (&self.peak, &self.trough)
+        {
             notes.push(format!(
                 "behind the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
                 trough.factor,
