@@ -8,6 +8,9 @@ use super::trace::{Peak, Tracer};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, Drive, Increment};
 
+/// Share of its fall by which the load must rise for the least one to be that of a snap-through.
+const RISES: f64 = 0.1;
+
 impl Tracer<'_, '_> {
     /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
     pub(super) fn no_step(&mut self, refusal: &Refusal, rate: &Rate, direction: f64) {
@@ -112,11 +115,11 @@ impl Tracer<'_, '_> {
         (best.0, behind)
     }
 
-    /// Where the load rises again behind a peak with finite displacements: the least load between, which a
-    /// structure under load control snaps through, if it is lower than any before.
+    /// Where the load rises again behind a peak with finite displacements: the least load between, if it is
+    /// lower than any before and the path has not risen by much since.
     pub(super) fn note_trough(&mut self, rate: &Rate, previous: Option<Increment>, length: f64, direction: f64) {
         let lower = |factor: f64| self.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
-        if lower(self.state.factor) {
+        if !self.risen && lower(self.state.factor) {
             let (state, behind) = self.locate_peak(rate, previous, length, -direction);
             self.trough = Some(self.peak_at(state, &behind));
         }
@@ -216,6 +219,9 @@ impl Tracer<'_, '_> {
             return false;
         }
         let behind = (displacement - peak.state.displacement).abs();
+        if let Some(trough) = &self.trough {
+            self.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
+        }
         let (stop_displacement, stop_factor) = (self.settings.stop_displacement, self.settings.stop_factor);
         let done = match (stop_displacement, stop_factor) {
             (None, None) => {

@@ -48,8 +48,9 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) proven: Option<f64>,
     /// Factor at which a branch with growing λ was taken last, and how often there.
     pub(super) rose: Option<(f64, u32)>,
-    /// The least load behind the peak, where the path rises again.
+    /// The least load behind the peak, before the path rises again by a tenth of what it fell, and whether it has.
     pub(super) trough: Option<Peak>,
+    pub(super) risen: bool,
     /// The way behind the peak.
     pub(super) wandering: Wandering,
 }
@@ -88,6 +89,7 @@ pub(super) fn trace(
         proven: None,
         rose: None,
         trough: None,
+        risen: false,
         wandering: Wandering::default(),
     };
     tracer.run(problem);
