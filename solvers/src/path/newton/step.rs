@@ -100,6 +100,13 @@ impl Model<'_> {
         residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
     }
 
+    /// Greatest residual of equilibrium, relative to the greatest force.
+    fn unbalanced(&self, residual: &[f64], state: &State) -> f64 {
+        let force = state.force.iter().flatten().map(|r| (r / self.units.force).abs()).fold(0.0, f64::max);
+        let rows = &residual[2 * state.gap.len()..residual.len() - 1];
+        rows.iter().map(|x| x.abs()).fold(0.0, f64::max) / force.max(1e-6)
+    }
+
     pub(super) fn iterate(
         &mut self,
         start: &State,
@@ -148,7 +155,9 @@ impl Model<'_> {
                 return Err(Refusal { why: "an iteration left the numbers".into(), restless });
             }
             let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && norm > 0.3 * last_norm);
-            if iteration > 0 && !changed && settled && self.law_error(&state) <= 1e-9 {
+            // Rounding of positions excuses gaps, not equilibrium.
+            let balanced = !self.finite() || self.unbalanced(&residual, &state) <= 1e-10;
+            if iteration > 0 && !changed && settled && balanced && self.law_error(&state) <= 1e-9 {
                 return Ok((state, iteration));
             }
             last_norm = norm;

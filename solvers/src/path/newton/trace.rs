@@ -11,6 +11,10 @@ use voussoir_core::path::{
     Continuation, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
 
+/// Greatest contact force behind a peak of finite displacements, by that at the peak, with which the blocks have
+/// come apart: what is left is rounding.
+const APART: f64 = 1e-6;
+
 /// How a drive ended.
 pub(super) enum Outcome {
     /// At its factor.
@@ -220,6 +224,14 @@ impl<'a> Tracer<'a, '_> {
 
     /// Takes a converged state as the next one. Whether to go on.
     pub(super) fn commit(&mut self, mut next: State) -> bool {
+        let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+        if self.model.finite()
+            && let Some(peak) = &self.peak
+            && greatest(&next.force) <= APART * greatest(&peak.state.force)
+        {
+            self.end(Status::Collapse, "behind the peak the blocks come apart: no forces are left between them".into());
+            return false;
+        }
         if !self.model.finite() {
             self.model.clean(&mut next, self.model.loaded.start);
         }
