@@ -335,6 +335,8 @@ fn a_block_that_slides_over_an_edge_tips_where_the_resultant_reaches_it() {
                 tipping = Some(slip);
             }
         }
+        let last = states.last().expect("states");
+        assert!(last.motion[1][2] < -0.05 && last.factor < 0.6 * answer.factor.expect("a load"), "it tips");
         short.push(0.9 - tipping.expect("a slip"));
     }
     assert!(short[1] > 0.0 && short[1] < 0.004, "{short:?}");

@@ -13,6 +13,12 @@ use super::model::Rate;
 use super::rising::Rising;
 use super::trace::Tracer;
 
+/// Whether the motions of two rates make an acute angle.
+fn forwards(rate: &Rate, other: &Rate) -> bool {
+    let pairs = rate.motion.iter().flatten().zip(other.motion.iter().flatten());
+    pairs.map(|(a, b)| a * b).sum::<f64>() > 0.0
+}
+
 impl Tracer<'_, '_> {
     /// The rate that leads on where `rate` does not, with its regimes, if one was found; an error says why
     /// none does.
@@ -28,7 +34,10 @@ impl Tracer<'_, '_> {
         }
         let state = self.state.clone();
         match self.model.rising(&state, rate.factor.signum()) {
-            Rising::Rate(other, regimes) if regimes != state.regime && self.agrees(&other, &regimes, share) => {
+            // Where the load falls anyway, unloading is a rate of the same sense: one of several, and none that is wanted.
+            Rising::Rate(other, regimes)
+                if regimes != state.regime && forwards(rate, &other) && self.agrees(&other, &regimes, share) =>
+            {
                 self.model.count("branches", 1);
                 Ok(Some((other, regimes)))
             }
