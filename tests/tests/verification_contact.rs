@@ -11,7 +11,7 @@ use voussoir::core::limit::Status;
 use voussoir::core::path::certificate::Watch;
 use voussoir::core::path::{
     Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
-    PathSolver, PathState, Unobserved,
+    PathSolver, PathState, Sliding, Unobserved,
 };
 use voussoir::solvers::path::continuation::arc_length::ArcLength;
 use voussoir::solvers::path::continuation::load_control::LoadControl;
@@ -267,6 +267,7 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         area: 1.0,
         gap: 0.0,
         law,
+        sliding: Sliding::middle(0.0),
         compliance,
     };
     let foot = |x| contact(x, ContactLaw::Law(0), [1e-3 / k, feet.len() as f64 / k]);

@@ -7,7 +7,7 @@ use voussoir::core::interface::Facet;
 use voussoir::core::limit::Status;
 use voussoir::core::path::{
     Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
-    PathSettings, PathSolver, PathState, certificate::Watch,
+    PathSettings, PathSolver, PathState, Sliding, certificate::Watch,
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
@@ -127,6 +127,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
             gap: 0.0,
             law: ContactLaw::Law(0),
             compliance: [0.0; 2],
+            sliding: Sliding::middle(0.0),
         }],
         facets: vec![std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect()],
         responses: Vec::new(),

@@ -7,7 +7,7 @@ use voussoir::core::limit::{Counters, Status};
 use voussoir::core::mechanism::MechanismKind;
 use voussoir::core::path::{
     Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem,
-    PathSettings, PathSolver, PathState,
+    PathSettings, PathSolver, PathState, Sliding,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Record;
@@ -59,6 +59,7 @@ fn two_bars(rise: f64) -> PathProblem {
         gap: 0.0,
         law: ContactLaw::Bonded,
         compliance,
+        sliding: Sliding::middle(0.0),
     };
     let load = Vec2::new(0.0, -1.0e3);
     let forces = vec![
@@ -185,6 +186,82 @@ fn a_three_hinged_arch_follows_its_closed_form_through_the_whole_loop() {
         assert!(worst < 1e-8, "rise {rise}: {worst:.1e} of the peak");
         assert!(least < -0.5 * factor && last.factor > 0.0, "the loop is whole: least {least}, last {}", last.factor);
     }
+}
+
+/// An arch of two thick blocks on supports that hold no tension, with friction that is not reached: it hinges
+/// at the intrados of the supports and at the extrados of the crown and snaps through. Near the peak the corners
+/// are pressed in so far that more points touch; where one touches in each joint and sticks, the trough
+/// included, states lie on the closed form of the three-hinged arch. (`unilateral`, stuck, would carry shear at
+/// open points too.)
+#[test]
+fn a_shallow_arch_of_thick_blocks_hangs_from_its_corners() {
+    let text = r#"name = "snap"
+[scene]
+scene = "arch"
+profile = { shape = "segmental", span = 4.0, rise = 0.1 }
+thickness = 0.4
+width = 1.0
+voussoirs = 2
+ends = "jointed"
+material = "stone"
+joint = "rough"
+[scene.mesh]
+elements = [1, 1]
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.rough]
+law = "coulomb"
+friction = 5.0
+normal_stiffness = 1e8
+shear_stiffness = 5e7
+[solver]
+solver = "newton_path"
+kinematics = "finite"
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{ kind = "point", span_fraction = 0.4, force = [0.0, -1000.0] }, { kind = "point", span_fraction = 0.6, force = [0.0, -1000.0] }]
+"#;
+    let (problem, answer, states) = followed(text, &settings(Some(0.62), None));
+    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+    let contacts = |joint: usize| problem.contacts.iter().filter(move |c| c.joint == joint);
+    let support = contacts(0).min_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("points");
+    let crown = contacts(1).max_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("points");
+    let left = support.plus.body;
+    let load = problem.drives[1].loading.forces.iter().find(|f| f.0 == left).expect("a load on the left block").2;
+    let bar = Bar {
+        crown: crown.position - support.position,
+        load: load - support.position,
+        centroid: problem.bodies[left].pole - support.position,
+        span: crown.position.x - support.position.x,
+        weight: 9.81 * problem.bodies[left].mass,
+        normal: support.normal.y.atan2(support.normal.x),
+        support: support.compliance,
+        hinge: crown.compliance[0],
+    };
+    let factor = answer.factor.expect("a peak");
+    let (mut compared, mut least, mut least_compared) = (0, 0.0f64, 0.0f64);
+    for state in states.iter().filter(|s| s.drive == 1) {
+        least = least.min(state.factor);
+        let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0]));
+        let pressed = |joint: usize| {
+            let own = problem.contacts.iter().zip(&state.force).filter(move |(c, _)| c.joint == joint);
+            own.filter(|(_, r)| r[0] > 1e-9 * largest).map(|(_, r)| *r).collect::<Vec<_>>()
+        };
+        let sticks = |r: &[f64; 2]| r[1].abs() < 4.99 * r[0];
+        if (0..3).all(|joint| matches!(&pressed(joint)[..], [r] if sticks(r))) {
+            let closed = bar.closed_load(state.motion[left][2]) / 1e3;
+            assert!((state.factor - closed).abs() < 1e-8 * factor, "{} {closed}", state.factor);
+            least_compared = least_compared.min(state.factor);
+            compared += 1;
+        }
+    }
+    assert!(compared > 50 && least == least_compared, "{compared} of {}, {least_compared} {least}", states.len());
+    assert!(least < -0.3 * factor, "trough {least}");
 }
 
 /// The reference bridge with elastic voussoirs; lengths in units of 1/`unit` m, forces in N.

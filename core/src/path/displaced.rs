@@ -3,9 +3,9 @@
 //!
 //! With finite displacements a body's point is at x = X + u + R(θ)(ξ + v): X the pole, ξ the point from
 //! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
-//! axes. A contact's n and t turn by the mean rotation of its two bodies, its gaps are those of x⁺ − x⁻ in
-//! them, and its force acts on both bodies midway between x⁺ and x⁻: that is the place for which its
-//! virtual work is r·δg. Bodies balance about their displaced poles.
+//! axes. A contact's n and t turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are those of x⁺ − x⁻ in them, and its force
+//! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
+//! ([`Sliding`](super::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
 
 use super::{Attachment, Contact, PathProblem, PathState};
 use crate::geometry::{Vec2, cross, turned};
@@ -58,8 +58,9 @@ impl<'a> Displaced<'a> {
 
     /// (n, t) of a contact point.
     fn axes(&self, contact: &Contact) -> [Vec2; 2] {
-        let mean = (self.state.motion[contact.minus.body][2] + self.state.motion[contact.plus.body][2]) / 2.0;
-        [contact.normal, contact.tangent].map(|e| if self.finite { rotated(e, mean) } else { e })
+        let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
+        let turn = low + contact.sliding.share * (high - low);
+        [contact.normal, contact.tangent].map(|e| if self.finite { rotated(e, turn) } else { e })
     }
 
     /// Gaps (n, t) of all contact points from motions, forces and loads \[m\].
@@ -97,9 +98,10 @@ impl<'a> Displaced<'a> {
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
             let [n, t] = self.axes(contact);
             let push = n * r[0] + t * r[1];
-            let middle = (self.side(contact, contact.plus) + self.side(contact, contact.minus)) / 2.0;
-            add(contact.plus.body, middle, contact.position, push);
-            add(contact.minus.body, middle, contact.position, -push);
+            let share = if self.finite { contact.sliding.share } else { 0.5 };
+            let at = self.side(contact, contact.plus) * (1.0 - share) + self.side(contact, contact.minus) * share;
+            add(contact.plus.body, at, contact.position, push);
+            add(contact.minus.body, at, contact.position, -push);
         }
         wrench
     }

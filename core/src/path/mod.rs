@@ -13,10 +13,12 @@ pub mod certificate;
 mod displaced;
 mod problem;
 mod response;
+mod sliding;
 
 pub use displaced::Displaced;
 pub use problem::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
 pub use response::{SoftensOver, coarse_joints};
+pub use sliding::Sliding;
 
 use crate::elastic::InelasticState;
 use crate::limit::{Counters, Status};

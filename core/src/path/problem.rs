@@ -1,5 +1,7 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, drives.
 
+use super::Sliding;
+use super::sliding::{face, sliding};
 use crate::assembly::{Assembly, Bond, Stage, Target, root};
 use crate::elastic::{Condenser, InelasticBody, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
 use crate::geometry::{Vec2, cross, turned};
@@ -73,6 +75,8 @@ pub struct Contact {
     pub law: ContactLaw,
     /// Compliance of the joint at this point, normal and tangential \[m/N\].
     pub compliance: [f64; 2],
+    /// How it slides with finite displacements.
+    pub sliding: Sliding,
 }
 
 /// Loads that grow together.
@@ -246,6 +250,8 @@ impl PathProblem {
             if !matching {
                 crowded.insert(index);
             }
+            let face = |side: usize| face(&assembly.bodies[side].vertices, joint.ends, 1e-9 * self.length);
+            let faces = (!any_elastic).then(|| sides.map(face));
             for (position, weight) in positions.into_iter().zip(weights) {
                 let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
                 let area = weight * height * assembly.width;
@@ -271,6 +277,7 @@ impl PathProblem {
                         Bond::Law(law) => ContactLaw::Law(law),
                     },
                     compliance: stiffness.map_or([0.0; 2], |k| k.map(|k| 1.0 / (k * area))),
+                    sliding: sliding(faces, height, position),
                 });
                 let last = self.contacts.len() - 1;
                 if self.response(last).is_some() {

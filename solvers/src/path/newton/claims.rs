@@ -102,7 +102,8 @@ mod tests {
     use voussoir_core::interface::Facet;
     use voussoir_core::limit::Counters;
     use voussoir_core::path::{
-        Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathSettings, PathSolver, Unobserved,
+        Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathSettings, PathSolver, Sliding,
+        Unobserved,
     };
 
     /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N
@@ -128,6 +129,7 @@ mod tests {
             gap: 0.0,
             law: ContactLaw::Law(0),
             compliance: [1e-6, 2e-6],
+            sliding: Sliding::middle(0.0),
         };
         let drive = |stage, gravity, loading, end| Drive { stage, gravity, loading, start: 0.0, end };
         let pole = Vec2::new(0.0, 0.5);

@@ -8,6 +8,9 @@ use super::trace::{Peak, Tracer};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, Drive, Increment};
 
+/// Share of its fall by which the load must rise for the least one to be that of a snap-through.
+const RISES: f64 = 0.1;
+
 impl Tracer<'_, '_> {
     /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
     pub(super) fn no_step(&mut self, refusal: &Refusal, rate: &Rate, direction: f64) {
@@ -20,6 +23,10 @@ impl Tracer<'_, '_> {
         let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
         let why = format!("no step from factor {} converges: {}{who}", self.state.factor, refusal.why);
         let falls = rate.factor * direction <= 0.0;
+        if self.model.finite() && self.peak.is_some() {
+            self.end(Status::Collapse, format!("the branch behind the peak was not followed further: {why}"));
+            return;
+        }
         if !self.strategy.passes_limit_points()
             && (falls || self.softens_down(rate, direction) || self.turns_back(rate, direction))
         {
@@ -73,8 +80,8 @@ impl Tracer<'_, '_> {
         None
     }
 
-    /// Bisects the step from the present state for the point where λ stops growing: the state there and
-    /// the rate just behind it.
+    /// Bisects the step from the present state for the point where λ stops growing in the sense `direction`:
+    /// the state there and the rate just behind it.
     pub(super) fn locate_peak(
         &mut self,
         rate: &Rate,
@@ -106,6 +113,16 @@ impl Tracer<'_, '_> {
             }
         }
         (best.0, behind)
+    }
+
+    /// Where the load rises again behind a peak with finite displacements: the least load between, if it is
+    /// lower than any before and the path has not risen by much since.
+    pub(super) fn note_trough(&mut self, rate: &Rate, previous: Option<Increment>, length: f64, direction: f64) {
+        let lower = |factor: f64| self.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
+        if !self.risen && lower(self.state.factor) {
+            let (state, behind) = self.locate_peak(rate, previous, length, -direction);
+            self.trough = Some(self.peak_at(state, &behind));
+        }
     }
 
     /// A peak at a state between the last one and the next, with the rate just behind it.
@@ -206,6 +223,9 @@ impl Tracer<'_, '_> {
             return false;
         }
         let behind = (displacement - peak.state.displacement).abs();
+        if let Some(trough) = &self.trough {
+            self.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
+        }
         let (stop_displacement, stop_factor) = (self.settings.stop_displacement, self.settings.stop_factor);
         let done = match (stop_displacement, stop_factor) {
             (None, None) => {
@@ -217,6 +237,19 @@ impl Tracer<'_, '_> {
                     || least.is_some_and(|least| (factor - least) * direction <= 0.0)
             }
         };
+        if !done && self.model.finite() {
+            let asked = stop_displacement.unwrap_or(match stop_factor {
+                Some(_) => self.model.units.length,
+                None => peak.state.displacement.abs(),
+            });
+            let place = [displacement, factor];
+            if let Some(why) =
+                self.wandering.leads_nowhere(place, &self.recorded.motion, asked, self.model.units.length)
+            {
+                self.end(Status::Collapse, why);
+                return true;
+            }
+        }
         if done {
             self.end(if self.model.finite() { Status::Collapse } else { Status::LimitPoint }, String::new());
         }

@@ -25,6 +25,17 @@ const SEARCHED: f64 = 1e-3;
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
 
+/// Jump of λ in a step that is not one along a path with finite displacements, as a share of λ.
+const JUMP: f64 = 1e-4;
+
+/// How far a gain of λ is from those of a path whose rates at both ends of the step would give `before` and
+/// `after`: a strategy that cannot turn back may step over a snap-back.
+fn jump(before: f64, after: f64, gained: f64) -> f64 {
+    let [low, high] = [before.min(after), before.max(after)];
+    let slack = 0.5 * (high - low) + 0.5 * before.abs().max(after.abs());
+    (low - slack - gained).max(gained - high - slack)
+}
+
 impl Tracer<'_, '_> {
     /// By the strategy, up to a factor or the end of the path.
     pub(super) fn follow(&mut self, drive: &Drive, target: f64) -> Outcome {
@@ -79,7 +90,8 @@ impl Tracer<'_, '_> {
             if per_rate.is_nan() || per_rate <= 0.0 {
                 previous = None;
                 if measure(&self.model, &self.state, &rate, None) <= 0.0 {
-                    self.end(Status::Stalled, "what the continuation strategy controls stopped changing".into());
+                    let why = "what the continuation strategy controls stopped changing".into();
+                    self.no_step(&Refusal { why, restless: Vec::new() }, &rate, direction);
                     return Outcome::Ended;
                 }
                 continue;
@@ -195,7 +207,19 @@ impl Tracer<'_, '_> {
                     if (slip <= 1e-9 * share.max(initial / per_rate) || at_corner) && switched_at != steps {
                         // At the very event: another branch, on which the points at their limit yield.
                         switched_at = steps;
-                        if let Some((other, regimes)) = self.yielding(&rate, initial / per_rate) {
+                        let found = match self.onward(&rate, initial / per_rate) {
+                            Ok(found) => found,
+                            Err(why) => {
+                                if self.peak.is_none() {
+                                    let motion = self.scaled_motion(&self.state, &rate);
+                                    self.peak =
+                                        Some(Peak { factor: self.state.factor, state: self.recorded.clone(), motion });
+                                }
+                                self.end(Status::Collapse, why);
+                                return Outcome::Ended;
+                            }
+                        };
+                        if let Some((other, regimes)) = found {
                             let falls = other.factor * direction <= 0.0;
                             let state = self.state.clone();
                             let rises = if falls { self.rises(&state, direction) } else { None };
@@ -271,6 +295,19 @@ impl Tracer<'_, '_> {
                 }
                 continue;
             };
+            let steps = matches!(control, Control::Strategy { .. }) && self.model.finite() && local.is_none();
+            let gained = next.factor - self.state.factor;
+            let off = jump(rate.factor / per_rate * length, next_rate.factor * length, gained);
+            if steps && off > JUMP * next.factor.abs().max(unit) {
+                self.model.count("cutbacks", 1);
+                length *= 0.3;
+                if length < 1e-10 * initial {
+                    let refusal = Refusal { why: "the state jumps to another branch".into(), restless: Vec::new() };
+                    self.no_step(&refusal, &rate, direction);
+                    return Outcome::Ended;
+                }
+                continue;
+            }
             let next_rate = match control {
                 Control::Spring { length, .. } => next_rate.scaled(length.signum()),
                 Control::Factor(_) => next_rate.scaled(direction),
@@ -278,7 +315,10 @@ impl Tracer<'_, '_> {
             };
             let size = next.factor.abs().max(unit * 1e-3);
             let fell = (next.factor - self.state.factor) * direction < -1e-10 * size;
-            let falls = next_rate.factor * direction < -1e-10 * unit * self.model.motion_size(&next_rate);
+            let still = 1e-10 * unit * self.model.motion_size(&next_rate);
+            // With finite displacements a load that stands still is a limit point: what slides on a plane
+            // does so under the same load for ever.
+            let falls = next_rate.factor * direction < if self.model.finite() { still } else { -still };
             if (fell || falls) && !strategy.passes_limit_points() && !self.model.responses.is_empty() {
                 self.model.count("cutbacks", 1);
                 length *= 0.3;
@@ -307,6 +347,10 @@ impl Tracer<'_, '_> {
                     continue;
                 }
                 self.peak = Some(self.peak_at(state, &behind));
+            }
+            let rises = next_rate.factor * direction > 1e-10 * unit * self.model.motion_size(&next_rate);
+            if self.model.finite() && self.peak.is_some() && before_peak_rate < 0.0 && rises && !reaches {
+                self.note_trough(&rate, previous, length, direction);
             }
             self.softening_peak(&next, fell || (falls && before_peak_rate > 0.0), direction);
             self.plateau(&next, &next_rate);
@@ -348,8 +392,9 @@ impl Tracer<'_, '_> {
             self.end(Status::LimitPoint, why);
             return Outcome::Ended;
         }
+        let found = self.model.finite() && self.peak.is_some();
         self.end(
-            Status::Stalled,
+            if found { Status::Collapse } else { Status::Stalled },
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended

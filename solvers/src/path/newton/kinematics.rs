@@ -1,7 +1,8 @@
 //! Gaps, equilibrium and their exact derivatives, from one potential.
 //!
-//! With x± = X_b + u_b + R(θ_b)(ξ + v_b) for the two sides of a contact point, θ_c the mean rotation
-//! of its bodies, e_i = R(θ_c) n, R(θ_c) t, the gaps are g_i = g_0 + e_i·(x⁺ − x⁻) and
+//! With x± = X_b + u_b + R(θ_b)(ξ + v_b) for the two sides of a contact point, θ_c = θ⁻ + β (θ⁺ − θ⁻)
+//! (β = ½, or 0 and 1 where the point is one body's and slides on the other's face:
+//! [`Sliding`](voussoir_core::path::Sliding)), e_i = R(θ_c) n, R(θ_c) t, the gaps are g_i = g_0 + e_i·(x⁺ − x⁻) and
 //!
 //! ```text
 //! Π(r, q) = Σ_c r·g_rigid(q) + ½ r·c r + Σ_b ½ fᵀ C f + Σ F·x_rigid(q)
@@ -130,15 +131,15 @@ impl<'a> Kinematics<'a> {
         Vec2::new(x, y) + swing
     }
 
-    /// (R⁺ξ⁺, R⁻ξ⁻, x⁺ − x⁻ of the rigid motions, e_n, e_t, θ⁺ − θ⁻) of a contact point.
-    fn frame(&self, contact: usize, motion: &[[f64; 3]]) -> (Vec2, Vec2, Vec2, [Vec2; 2], f64) {
+    /// (R⁺ξ⁺, R⁻ξ⁻, x⁺ − x⁻ of the rigid motions, e_n and e_t) of a contact point.
+    fn frame(&self, contact: usize, motion: &[[f64; 3]]) -> (Vec2, Vec2, Vec2, [Vec2; 2]) {
         let c = &self.problem.contacts[contact];
         let (minus, plus) = (c.minus.body, c.plus.body);
         let (low, high) = (motion[minus][2], motion[plus][2]);
         let arm = |body: usize, theta: f64| self.turn(theta) * (c.position - self.problem.bodies[body].pole);
-        let mean = self.turn((low + high) / 2.0);
+        let turn = self.turn(low + c.sliding.share * (high - low));
         let jump = self.rigid(plus, c.position, motion) - self.rigid(minus, c.position, motion);
-        (arm(plus, high), arm(minus, low), jump, [mean * c.normal, mean * c.tangent], high - low)
+        (arm(plus, high), arm(minus, low), jump, [turn * c.normal, turn * c.tangent])
     }
 
     /// First derivatives of Π at contact forces and motions; `blocks` are the bodies that yield.
@@ -151,7 +152,7 @@ impl<'a> Kinematics<'a> {
             stored: 0.0,
         };
         for (index, c) in problem.contacts.iter().enumerate() {
-            let (arm_plus, arm_minus, jump, e, _) = self.frame(index, motion);
+            let (arm_plus, arm_minus, jump, e) = self.frame(index, motion);
             let r = force[index];
             let mut gap = [c.gap, 0.0];
             for i in 0..2 {
@@ -160,12 +161,14 @@ impl<'a> Kinematics<'a> {
             }
             out.gap.push(gap);
             let push = e[0] * r[0] + e[1] * r[1];
-            let half = if self.finite { 0.5 * turned(push).dot(&jump) } else { 0.0 };
-            for (body, sign, arm) in [(c.plus.body, 1.0, arm_plus), (c.minus.body, -1.0, arm_minus)] {
+            let turning = if self.finite { turned(push).dot(&jump) } else { 0.0 };
+            let share = c.sliding.share;
+            let sides = [(c.plus.body, 1.0, arm_plus, share), (c.minus.body, -1.0, arm_minus, 1.0 - share)];
+            for (body, sign, arm, share) in sides {
                 let balance = &mut out.balance[body];
                 balance[0] += sign * push.x;
                 balance[1] += sign * push.y;
-                balance[2] += sign * push.dot(&turned(arm)) + half;
+                balance[2] += sign * push.dot(&turned(arm)) + share * turning;
             }
         }
         let acceleration = loads.acceleration();
@@ -205,31 +208,33 @@ impl<'a> Kinematics<'a> {
             entries.push((j, i, value));
         };
         for (index, c) in problem.contacts.iter().enumerate() {
-            let (arm_plus, arm_minus, jump, e, _) = self.frame(index, motion);
+            let (arm_plus, arm_minus, jump, e) = self.frame(index, motion);
             let (plus, minus) = (base + 3 * c.plus.body, base + 3 * c.minus.body);
+            let sides = [(plus, 1.0, arm_plus, c.sliding.share), (minus, -1.0, arm_minus, 1.0 - c.sliding.share)];
             for (i, e) in e.iter().enumerate() {
                 let row = 2 * index + i;
-                let half = if self.finite { 0.5 * turned(*e).dot(&jump) } else { 0.0 };
-                for (at, sign, arm) in [(plus, 1.0, arm_plus), (minus, -1.0, arm_minus)] {
+                let turning = if self.finite { turned(*e).dot(&jump) } else { 0.0 };
+                for (at, sign, arm, share) in sides {
                     both(&mut out.entries, row, at, sign * e.x);
                     both(&mut out.entries, row, at + 1, sign * e.y);
-                    both(&mut out.entries, row, at + 2, sign * e.dot(&turned(arm)) + half);
+                    both(&mut out.entries, row, at + 2, sign * e.dot(&turned(arm)) + share * turning);
                 }
                 out.entries.push((row, row, c.compliance[i]));
             }
             if self.finite {
                 let push = e[0] * force[index][0] + e[1] * force[index][1];
-                let side = turned(push) / 2.0;
-                for (at, sign) in [(plus, 1.0), (minus, -1.0)] {
-                    for theta in [plus + 2, minus + 2] {
-                        both(&mut out.entries, at, theta, sign * side.x);
-                        both(&mut out.entries, at + 1, theta, sign * side.y);
+                let across = turned(push);
+                for (at, sign, arm, share) in sides {
+                    for (theta, _, _, share) in sides {
+                        both(&mut out.entries, at, theta + 2, sign * share * across.x);
+                        both(&mut out.entries, at + 1, theta + 2, sign * share * across.y);
                     }
+                    let own = sign * (2.0 * share - 1.0) * push.dot(&arm) - share * share * push.dot(&jump);
+                    out.entries.push((at + 2, at + 2, own));
                 }
-                let quarter = -0.25 * push.dot(&jump);
-                out.entries.push((plus + 2, plus + 2, quarter));
-                out.entries.push((minus + 2, minus + 2, quarter));
-                both(&mut out.entries, plus + 2, minus + 2, 0.5 * push.dot(&(arm_plus - arm_minus)) + quarter);
+                let (high, low) = (c.sliding.share, 1.0 - c.sliding.share);
+                let mixed = push.dot(&(arm_plus * low - arm_minus * high)) - high * low * push.dot(&jump);
+                both(&mut out.entries, plus + 2, minus + 2, mixed);
             }
         }
         let growing = loads.growing();

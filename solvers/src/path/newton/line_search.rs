@@ -181,6 +181,7 @@ mod tests {
             area: 1.0,
             gap: 0.0,
             law: ContactLaw::Law(0),
+            sliding: voussoir_core::path::Sliding::middle(0.0),
             compliance: [1e-6, 2e-6],
         };
         let pole = Vec2::new(0.0, 0.5);

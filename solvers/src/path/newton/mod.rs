@@ -9,6 +9,7 @@ mod ends;
 mod equations;
 mod flow;
 mod flowing;
+mod folds;
 mod follow;
 mod frame;
 mod inelastic;
@@ -27,6 +28,7 @@ mod softening;
 mod step;
 mod system;
 mod trace;
+mod wandering;
 
 use super::continuation::arc_length::ArcLength;
 use serde::{Deserialize, Serialize};

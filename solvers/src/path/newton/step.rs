@@ -9,6 +9,10 @@ use super::model::{Control, Model, Rate, Refusal, State};
 /// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
 /// come back.
 const ASTRAY: usize = 200;
+/// Points that still change, and iterations in which they do not become fewer, with which a step of finite
+/// displacements is given up: few points that go to and fro do so for ever.
+const FEW: usize = 4;
+const WITHOUT_GAIN: u32 = 24;
 
 impl Model<'_> {
     pub(super) fn apply(&self, state: &mut State, step: &[f64], share: f64) {
@@ -113,6 +117,13 @@ impl Model<'_> {
         residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
     }
 
+    /// Greatest residual of equilibrium, relative to the greatest force.
+    fn unbalanced(&self, residual: &[f64], state: &State) -> f64 {
+        let force = state.force.iter().flatten().map(|r| (r / self.units.force).abs()).fold(0.0, f64::max);
+        let rows = &residual[2 * state.gap.len()..residual.len() - 1];
+        rows.iter().map(|x| x.abs()).fold(0.0, f64::max) / force.max(1e-6)
+    }
+
     pub(super) fn iterate(
         &mut self,
         start: &State,
@@ -144,6 +155,7 @@ impl Model<'_> {
             (false, false) => 400.0 * f64::EPSILON,
         };
         let (mut changed, mut restless) = (true, Vec::new());
+        let (mut least, mut without_gain) = (usize::MAX, 0);
         let (mut fewest, mut budget) = (usize::MAX, patience);
         let (mut unsolved, mut astray) = (0, 0);
         let (mut last_norm, mut whole) = (f64::INFINITY, true);
@@ -166,7 +178,9 @@ impl Model<'_> {
             // Rounding is what a whole step does not lower.
             let stays = whole && norm > 0.3 * last_norm;
             let settled = norm <= 1e-13 + rounding || (norm <= 1e-9 + 30.0 * rounding && stays);
-            if iteration > 0 && !changed && settled && self.law_error(&state) <= 1e-9 {
+            // Rounding of positions excuses gaps, not equilibrium.
+            let balanced = !self.finite() || self.unbalanced(&residual, &state) <= 1e-10;
+            if iteration > 0 && !changed && settled && balanced && self.law_error(&state) <= 1e-9 {
                 return Ok((state, iteration));
             }
             last_norm = norm;
@@ -205,8 +219,11 @@ impl Model<'_> {
             let differ: Vec<usize> = (0..wanted.len()).filter(|c| wanted[*c] != state.regime[*c]).collect();
             changed = !differ.is_empty() || !holds;
             let far = differ.len() > ASTRAY && differ.len() / 8 > fewest;
-            astray = if far && search.is_none() { astray + 1 } else { 0 };
-            if astray > 1 {
+            astray = if far { astray + 1 } else { 0 };
+            without_gain = if differ.len() < least { 0 } else { without_gain + 1 };
+            least = least.min(differ.len());
+            let to_and_fro = self.finite() && changed && least <= FEW && without_gain >= WITHOUT_GAIN;
+            if search.is_none() && (astray > 1 || to_and_fro) {
                 return Err(Refusal { why: "the regimes of contact points keep changing".into(), restless: differ });
             }
             if differ.len() < fewest && (patience > 0 || differ.len() <= 1) {

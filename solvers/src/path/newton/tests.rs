@@ -18,7 +18,7 @@ use voussoir_core::material::plane::PlanarUpdate;
 use voussoir_core::material::{Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises};
 use voussoir_core::path::{
     Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathBody, PathObserver, PathProblem,
-    PathSettings, PathSolver, PathState, Unobserved,
+    PathSettings, PathSolver, PathState, Sliding, Unobserved,
 };
 
 fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
@@ -68,6 +68,7 @@ fn chain() -> PathProblem {
                 gap: 0.01,
                 law: ContactLaw::Bonded,
                 compliance: [0.003, 0.007],
+                sliding: Sliding::middle(0.0),
             }
         })
         .collect();
@@ -94,11 +95,22 @@ fn some_state() -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
     (force, motion)
 }
 
+/// The chain with rigid bodies, whose points slide on one face, on the other, and in between.
+fn sliding_chain() -> PathProblem {
+    let mut problem = chain();
+    problem.bodies.iter_mut().for_each(|body| body.flexibility = None);
+    problem.drives[0].loading.forces[0].1 = None;
+    for (contact, share) in problem.contacts.iter_mut().zip([0.0, 1.0, 0.3]) {
+        (contact.minus.slot, contact.plus.slot) = (None, None);
+        contact.sliding.share = share;
+    }
+    problem
+}
+
 /// The matrix and the column of λ are the derivatives of gaps and balance, and symmetric.
 #[test]
 fn the_tangent_is_the_derivative() {
-    let problem = chain();
-    for finite in [false, true] {
+    for (problem, finite) in [(chain(), false), (chain(), true), (sliding_chain(), true)] {
         let kinematics = Kinematics::new(&problem, finite);
         let (force, mut motion) = some_state();
         let loading = &problem.drives[0].loading;
@@ -219,6 +231,7 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, Drive
         gap: 0.0,
         law: ContactLaw::Law(0),
         compliance: [0.0; 2],
+        sliding: Sliding::middle(0.0),
     };
     PathProblem {
         bodies: vec![block, ground],
@@ -391,6 +404,7 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         gap: 0.0,
         law: ContactLaw::Bonded,
         compliance: [compliance; 2],
+        sliding: Sliding::middle(0.0),
     };
     let contacts = vec![
         hinge(0, supports[0], 0, 1, compliance),
@@ -565,6 +579,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         gap: 0.0,
         law: ContactLaw::Bonded,
         compliance: [0.0; 2],
+        sliding: Sliding::middle(0.0),
     });
     let loading =
         Loading { forces: vec![(1, Some(3), Vec2::new(1.0, 1.0), Vec2::new(3e5, -4e5))], ..Loading::default() };

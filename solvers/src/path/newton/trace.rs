@@ -3,16 +3,17 @@
 use super::kinematics::Slopes;
 use super::ledger::{Ledger, events};
 use super::model::{Loaded, Model, State};
+use super::wandering::Wandering;
 use std::sync::Arc;
-use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{
     Continuation, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
 
-/// Slip that the pairing of contact points bears with finite displacements, as a share of the joint.
-const LARGEST_SLIP: f64 = 0.05;
+/// Greatest contact force behind a peak of finite displacements, by that at the peak, with which the blocks have
+/// come apart: what is left is rounding.
+const APART: f64 = 1e-6;
 
 /// How a drive ended.
 pub(super) enum Outcome {
@@ -51,6 +52,11 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) proven: Option<f64>,
     /// Factor at which a branch with growing λ was taken last, and how often there.
     pub(super) rose: Option<(f64, u32)>,
+    /// The least load behind the peak, before the path rises again by a tenth of what it fell, and whether it has.
+    pub(super) trough: Option<Peak>,
+    pub(super) risen: bool,
+    /// The way behind the peak.
+    pub(super) wandering: Wandering,
 }
 
 /// Follows all drives.
@@ -86,6 +92,9 @@ pub(super) fn trace(
         doubt: None,
         proven: None,
         rose: None,
+        trough: None,
+        risen: false,
+        wandering: Wandering::default(),
     };
     tracer.run(problem);
     tracer.answer()
@@ -116,10 +125,16 @@ impl<'a> Tracer<'a, '_> {
             self.state.factor = drive.start;
             self.model.load(Loaded { earlier: earlier.clone(), growing: &drive.loading, start: drive.start });
             self.slopes = self.model.slopes(&self.state);
-            let outcome = match drive.end {
+            let mut outcome = match drive.end {
                 DriveEnd::Factor(factor) => self.reach(drive, factor),
                 DriveEnd::Collapse(most) => self.follow(drive, most),
             };
+            // Behind a peak a structure with finite displacements comes back to the load as another one:
+            // it has snapped through.
+            if self.model.finite() && self.peak.is_some() && matches!(outcome, Outcome::Reached) {
+                self.status = Status::Collapse;
+                outcome = Outcome::Ended;
+            }
             match outcome {
                 Outcome::Reached => earlier.push((self.state.factor - drive.start, &drive.loading)),
                 Outcome::Ended => {
@@ -158,6 +173,15 @@ impl<'a> Tracer<'a, '_> {
             notes.push(format!(
                 "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
                 balance / size
+            ));
+        }
+        if self.status != Status::NoEquilibrium
+            && let (Some(peak), Some(trough)) = (&self.peak, &self.trough)
+        {
+            notes.push(format!(
+                "behind the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
+                trough.factor,
+                trough.state.displacement - peak.state.displacement
             ));
         }
         let (state, last, factor, motion) = match self.peak {
@@ -200,6 +224,14 @@ impl<'a> Tracer<'a, '_> {
 
     /// Takes a converged state as the next one. Whether to go on.
     pub(super) fn commit(&mut self, mut next: State) -> bool {
+        let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+        if self.model.finite()
+            && let Some(peak) = &self.peak
+            && greatest(&next.force) <= APART * greatest(&peak.state.force)
+        {
+            self.end(Status::Collapse, "behind the peak the blocks come apart: no forces are left between them".into());
+            return false;
+        }
         if !self.model.finite() {
             self.model.clean(&mut next, self.model.loaded.start);
         }
@@ -233,34 +265,18 @@ impl<'a> Tracer<'a, '_> {
         }
     }
 
-    /// Slip that the fixed pairing of contact points does not bear.
+    /// A pressed point that has slipped further than its pairing holds.
     fn left_its_pairing(&self) -> Option<String> {
-        let problem = self.model.problem;
-        let mut heights: Vec<(usize, Vec2, Vec2)> = Vec::new();
-        for c in &problem.contacts {
-            match heights.last_mut() {
-                Some((joint, _, end)) if *joint == c.joint => *end = c.position,
-                _ => heights.push((c.joint, c.position, c.position)),
-            }
-        }
         let largest = self.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-        let mut joints = heights.iter().peekable();
-        for (index, c) in problem.contacts.iter().enumerate() {
-            while joints.peek().is_some_and(|j| j.0 != c.joint) {
-                joints.next();
-            }
-            let (_, from, to) = joints.peek()?;
-            let (slip, height) = (self.state.gap[index][1].abs(), (to - from).norm());
-            let pressed = self.state.force[index][0] > 1e-9 * largest;
-            if pressed && height > 0.0 && slip > LARGEST_SLIP * height {
-                return Some(format!(
-                    "joint {} has slipped by {:.1} % of its height at factor {}: contact points are paired for less",
-                    c.joint,
-                    100.0 * slip / height,
-                    self.state.factor
-                ));
-            }
-        }
-        None
+        let points = self.model.problem.contacts.iter().zip(&self.state.force).zip(&self.state.gap);
+        let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
+        let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
+        let why = if c.sliding.share == 0.5 {
+            "contact points between corners that were together are paired for less"
+        } else {
+            "its contact point leaves the face that it slides on"
+        };
+        let (joint, factor) = (c.joint, self.state.factor);
+        Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))
     }
 }

@@ -156,21 +156,21 @@ fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let mut scaled = matrix;
     let (mut rows, mut columns) = (vec![1.0; n], vec![1.0; n]);
     for _ in 0..3 {
-        for i in 0..n {
+        for (i, all) in rows.iter_mut().enumerate() {
             let size = scaled.row(i).amax().sqrt();
             if size == 0.0 || !size.is_finite() {
                 return None;
             }
             scaled.row_mut(i).unscale_mut(size);
-            rows[i] *= size;
+            *all *= size;
         }
-        for j in 0..n {
+        for (j, all) in columns.iter_mut().enumerate() {
             let size = scaled.column(j).amax().sqrt();
             if size == 0.0 || !size.is_finite() {
                 return None;
             }
             scaled.column_mut(j).unscale_mut(size);
-            columns[j] *= size;
+            *all *= size;
         }
     }
     let right = DVector::from_fn(n, |i, _| right[i] / rows[i]);
