@@ -69,10 +69,28 @@ fn newton_steps_hardly_grow_with_the_ring() {
 /// point, on a factorisation that serves dozens, however many joints there are.
 #[test]
 fn an_event_costs_a_few_solutions() {
-    for voussoirs in [13, 130] {
-        let counters = traced(voussoirs, "event_path").counters;
+    for voussoirs in [13, 40] {
+        let study = Arch { voussoirs, ends: "jointed", width: 1.0, solver: "event_path", ..Arch::default() }.study();
+        let elastic = "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.3";
+        let mesh = "[scene.mesh]\nelements = [1, 4]\norder = 2\n[materials.stone]";
+        let study = study.replace("law = \"rigid\"", elastic).replace("[materials.stone]", mesh);
+        let counters = answered(&study).counters;
         let directions = counters["rate_problems"];
+        assert_eq!(counters["rate_problems_by_redundants"], 0);
         assert!(2 * counters["solves"] <= 7 * directions, "{voussoirs}: {counters:?}");
         assert!(counters["factorisations"] <= 1 + directions / 25, "{voussoirs}: {counters:?}");
+    }
+}
+
+/// Where statics leaves three redundants open, the whole system is asked at the beginning and at the end only, and
+/// an event looks at few joints: 7, 10 and 15 of 14, 41 and 131.
+#[test]
+fn an_event_of_a_rigid_ring_looks_at_few_joints() {
+    for (voussoirs, joints) in [(13, 8), (40, 12), (130, 18)] {
+        let counters = traced(voussoirs, "event_path").counters;
+        let events = counters["rate_problems"];
+        assert!(counters["rate_problems_by_redundants"] + 5 >= events, "{voussoirs}: {counters:?}");
+        assert!(counters["factorisations"] <= 8 && counters["solves"] <= 20, "{voussoirs}: {counters:?}");
+        assert!(counters["sections_looked_at"] <= joints * events, "{voussoirs}: {counters:?}");
     }
 }
