@@ -239,7 +239,7 @@ impl<'s> Run<'s> {
             }
             if changes.is_empty() {
                 waiting.retain(|w| w.0 < best);
-                waiting.sort_by(|a, b| a.0.total_cmp(&b.0));
+                waiting.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
                 for (earliest, e) in waiting {
                     if earliest >= best {
                         break;
