@@ -88,7 +88,7 @@ struct Run<'s> {
     joints: Vec<Joint>,
     equations: Equations,
     clock: Clock,
-    /// Greatest rates of force and gap seen.
+    /// Greatest rate of force seen, and of a gap now.
     sizes: [f64; 2],
     /// Motions at the beginning.
     motions: Vec<f64>,
@@ -220,19 +220,24 @@ impl<'s> Run<'s> {
             let mut waiting: Vec<(f64, usize)> = Vec::new();
             let mut best = bound;
             let mut own = solution.weak.iter();
-            for e in 0..self.joints.len() {
-                let joint = &self.joints[e];
-                let (twist, explicit) = match joint.twist_rate(&solution.redundants) {
-                    Some(twist) => (twist, false),
-                    None => (own.next()?.1, true),
-                };
-                let lever = self.sections.all[e].lever;
-                let off = twist - joint.seen;
-                let off = off[0].abs() + off[1].abs() + 1.5 * lever * off[2].abs();
-                let turned = |slip: &Vector3<f64>| joint.slips.is_some_and(|sense| sense * slip.dot(&twist) < 0.0);
-                let anew = explicit || joint.restless || joint.deadline == f64::NEG_INFINITY;
-                if anew || off > joint.allowed || self.sections.all[e].slip.as_ref().is_some_and(turned) {
-                    best = best.min(self.look(tracer, e, twist, &mut changes));
+            let mut twists = Vec::with_capacity(self.joints.len());
+            for joint in &self.joints {
+                twists.push(match joint.twist_rate(&solution.redundants) {
+                    Some(twist) => twist,
+                    None => own.next()?.1,
+                });
+            }
+            // |h| at the points of a section, at most.
+            let size =
+                |e: usize, v: &Vector3<f64>| v[0].abs() + v[1].abs() + 1.5 * self.sections.all[e].lever * v[2].abs();
+            self.sizes[1] = twists.iter().enumerate().map(|(e, twist)| size(e, twist)).fold(0.0, f64::max);
+            for (e, twist) in twists.iter().enumerate() {
+                let (joint, section) = (&self.joints[e], &self.sections.all[e]);
+                let turned = |slip: &Vector3<f64>| joint.slips.is_some_and(|sense| sense * slip.dot(twist) < 0.0);
+                let weak = joint.flexibility.is_none();
+                let left = size(e, &(twist - joint.seen)) > joint.allowed || section.slip.as_ref().is_some_and(turned);
+                if left || weak || joint.restless || joint.deadline == f64::NEG_INFINITY {
+                    best = best.min(self.look(tracer, e, *twist, &mut changes));
                 } else {
                     waiting.push((joint.deadline - self.clock.arc(), e));
                 }
@@ -244,8 +249,7 @@ impl<'s> Run<'s> {
                     if earliest >= best {
                         break;
                     }
-                    let twist = self.joints[e].twist_rate(&solution.redundants)?;
-                    best = best.min(self.look(tracer, e, twist, &mut changes));
+                    best = best.min(self.look(tracer, e, twists[e], &mut changes));
                 }
             }
             if changes.is_empty() {
@@ -289,9 +293,7 @@ impl<'s> Run<'s> {
             .enumerate()
             .map(|(k, place)| joint.rates_of(k, place, tracer.points[place.contact].piece, &twist))
             .collect();
-        for [force, gap] in &rates {
-            self.sizes = [self.sizes[0].max(force.amax()), self.sizes[1].max(gap.amax())];
-        }
+        self.sizes[0] = rates.iter().map(|[force, _]| force.amax()).fold(self.sizes[0], f64::max);
         // Rounding of rates is no change of them.
         let rounding = ROUNDING * self.sizes[1];
         let mut hits: Vec<Hit> = Vec::new();
