@@ -1,6 +1,6 @@
 //! A contact point between events: which facets have no slack, whether it is open, what it does.
 
-use super::rate::Piece;
+use super::rate::{Piece, corner, dilatancy};
 use super::system::{PointFacet, System};
 use voussoir_core::interface::FacetMode;
 
@@ -66,5 +66,22 @@ impl Point {
             (false, _) if self.active.is_empty() => Some(Piece::Stick),
             _ => None,
         }
+    }
+}
+
+/// o per unit of the gap of a point that flows or is free, where open points slip in a `sense`: −1 or 1.
+pub fn opening(piece: Piece, facets: &[PointFacet], sense: f64) -> [f64; 2] {
+    let by_corner = |i: usize, j: usize, which: usize| {
+        [[1.0, 0.0], [0.0, 1.0]].map(|gap| corner(facets[i].flow, facets[j].flow, gap)[which])
+    };
+    match piece {
+        Piece::Free => [1.0, -dilatancy(facets) * sense],
+        Piece::Facet(f) if facets[f].mode == FacetMode::Opening => {
+            let d = facets[f].flow;
+            d.map(|x| -x / (d[0] * d[0] + d[1] * d[1]))
+        }
+        Piece::Corner(i, j) if facets[i].mode == FacetMode::Opening => by_corner(i, j, 0),
+        Piece::Corner(i, j) if facets[j].mode == FacetMode::Opening => by_corner(i, j, 1),
+        _ => [0.0; 2],
     }
 }

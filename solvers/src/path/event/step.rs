@@ -1,8 +1,8 @@
 //! A step along a direction: how far it is to the next events, and what they change.
 
 use super::direction::{Direction, MECHANISM};
-use super::point::Point;
-use super::rate::{Piece, corner, dilatancy};
+use super::point::{Point, opening};
+use super::rate::Piece;
 use super::system::dot;
 use super::trace::Tracer;
 use voussoir_core::interface::FacetMode;
@@ -55,23 +55,7 @@ impl Tracer<'_> {
     /// Rate of the opening above the dilated surface.
     pub(super) fn opening_rate(&self, c: usize, gap: [f64; 2]) -> f64 {
         let Some(facets) = &self.system.facets[c] else { return 0.0 };
-        match self.points[c].piece {
-            Piece::Free => gap[0] - dilatancy(facets) * gap[1].abs(),
-            Piece::Facet(f) if facets[f].mode == FacetMode::Opening => {
-                -dot(gap, facets[f].flow) / dot(facets[f].flow, facets[f].flow)
-            }
-            Piece::Corner(i, j) => {
-                let solved = corner(facets[i].flow, facets[j].flow, gap);
-                if facets[i].mode == FacetMode::Opening {
-                    solved[0]
-                } else if facets[j].mode == FacetMode::Opening {
-                    solved[1]
-                } else {
-                    0.0
-                }
-            }
-            _ => 0.0,
-        }
+        dot(opening(self.points[c].piece, facets, if gap[1] < 0.0 { -1.0 } else { 1.0 }), gap)
     }
 
     /// Rate of the gap without its `opening` rate, which is reversible: a tensile strength that opens stores

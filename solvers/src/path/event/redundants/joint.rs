@@ -10,8 +10,8 @@
 
 use super::section::{Place, Section};
 use crate::path::event::base::across;
-use crate::path::event::point::Point;
-use crate::path::event::rate::{Piece, corner, dilatancy};
+use crate::path::event::point::{Point, opening};
+use crate::path::event::rate::Piece;
 use crate::path::event::system::PointFacet;
 use nalgebra::{Matrix2, Matrix3, Matrix3xX, Vector2, Vector3};
 use voussoir_core::interface::FacetMode;
@@ -64,25 +64,6 @@ pub struct Change {
     pub opening: f64,
     /// Energy that it dissipates.
     pub dissipated: f64,
-}
-
-/// o per unit of the gap of a point that flows or is free.
-fn opening(piece: Piece, facets: &[PointFacet], sense: f64) -> Vector2<f64> {
-    let by_corner = |i: usize, j: usize, which: usize| {
-        let (x, y) = ([1.0, 0.0], [0.0, 1.0]);
-        let at = |gap: [f64; 2]| corner(facets[i].flow, facets[j].flow, gap)[which];
-        Vector2::new(at(x), at(y))
-    };
-    match piece {
-        Piece::Free => Vector2::new(1.0, -dilatancy(facets) * sense),
-        Piece::Facet(f) if facets[f].mode == FacetMode::Opening => {
-            let d = Vector2::from(facets[f].flow);
-            -d / d.norm_squared()
-        }
-        Piece::Corner(i, j) if facets[i].mode == FacetMode::Opening => by_corner(i, j, 0),
-        Piece::Corner(i, j) if facets[j].mode == FacetMode::Opening => by_corner(i, j, 1),
-        _ => Vector2::zeros(),
-    }
 }
 
 /// S of a piece. `None` where the flow of a facet has no rate.
@@ -234,7 +215,7 @@ impl Joint {
             return change;
         }
         let by_gap = place.compliance * by_force + h;
-        let opens = opening(piece, facets, self.senses[k]);
+        let opens = Vector2::from(opening(piece, facets, self.senses[k]));
         change.opening = opens.dot(&(by_gap * moved));
         if piece == Piece::Free {
             return change;
@@ -270,7 +251,7 @@ impl Joint {
 
     /// By how much o changes at most with a change of ġ of 1.
     pub fn opening_sensitivity(&self, k: usize, facets: &[PointFacet], piece: Piece) -> f64 {
-        opening(piece, facets, self.senses[k]).norm()
+        Vector2::from(opening(piece, facets, self.senses[k])).norm()
     }
 
     /// Notes the sense of slip of an open point.
