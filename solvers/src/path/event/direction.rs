@@ -213,20 +213,7 @@ impl Tracer<'_> {
 
     /// Some points as the rate problem sees them.
     pub fn verges<'s>(system: &'s System, points: &[Point], at: &[usize]) -> Vec<Verge<'s>> {
-        at.iter()
-            .map(|&c| {
-                let point = &points[c];
-                Verge {
-                    facets: system.facets[c].as_deref().unwrap_or_default(),
-                    active: point.active.clone(),
-                    open: if point.open() { point.opening_facet } else { None },
-                    apex: point.apex && point.opening_facet.is_some_and(|f| point.active.contains(&f)),
-                    guess: point.piece,
-                    hit: point.hit,
-                    stiffness: point.stiffness,
-                }
-            })
-            .collect()
+        at.iter().map(|&c| points[c].verge(system.facets[c].as_deref().unwrap_or_default())).collect()
     }
 
     /// The rate problem over the points at the verge of a change. `None` where linear algebra fails.

@@ -1,6 +1,6 @@
 //! A contact point between events: which facets have no slack, whether it is open, what it does.
 
-use super::rate::{Piece, corner, dilatancy};
+use super::rate::{Piece, Verge, corner, dilatancy};
 use super::system::{PointFacet, System};
 use voussoir_core::interface::FacetMode;
 
@@ -56,6 +56,19 @@ impl Point {
     /// Whether it is open.
     pub fn open(&self) -> bool {
         self.opening > 0.0
+    }
+
+    /// As the rate problem sees it, with its facets.
+    pub fn verge<'s>(&self, facets: &'s [PointFacet]) -> Verge<'s> {
+        Verge {
+            facets,
+            active: self.active.clone(),
+            open: if self.open() { self.opening_facet } else { None },
+            apex: self.apex && self.opening_facet.is_some_and(|f| self.active.contains(&f)),
+            guess: self.piece,
+            hit: self.hit,
+            stiffness: self.stiffness,
+        }
     }
 
     /// The piece of a point that has no choice; `None` at the verge of a change.

@@ -286,11 +286,7 @@ impl Tracer<'_, '_> {
             let increment = self.model.increment(&self.state, &next);
             let next_rate = self.model.rate(&self.state, &next, &control);
             let Some(next_rate) = next_rate else {
-                self.model.count("cutbacks", 1);
-                length *= 0.3;
-                if length < 1e-10 * initial {
-                    let refusal = Refusal { why: "the state has no rate".into(), restless: Vec::new() };
-                    self.no_step(&refusal, &rate, direction);
+                if self.cut_back(&mut length, initial, "the state has no rate", &rate, direction) {
                     return Outcome::Ended;
                 }
                 continue;
@@ -299,11 +295,7 @@ impl Tracer<'_, '_> {
             let gained = next.factor - self.state.factor;
             let off = jump(rate.factor / per_rate * length, next_rate.factor * length, gained);
             if steps && off > JUMP * next.factor.abs().max(unit) {
-                self.model.count("cutbacks", 1);
-                length *= 0.3;
-                if length < 1e-10 * initial {
-                    let refusal = Refusal { why: "the state jumps to another branch".into(), restless: Vec::new() };
-                    self.no_step(&refusal, &rate, direction);
+                if self.cut_back(&mut length, initial, "the state jumps to another branch", &rate, direction) {
                     return Outcome::Ended;
                 }
                 continue;
@@ -320,11 +312,7 @@ impl Tracer<'_, '_> {
             // does so under the same load for ever.
             let falls = next_rate.factor * direction < if self.model.finite() { still } else { -still };
             if (fell || falls) && !strategy.passes_limit_points() && !self.model.responses.is_empty() {
-                self.model.count("cutbacks", 1);
-                length *= 0.3;
-                if length < 1e-10 * initial {
-                    let refusal = Refusal { why: "the load falls in the step".into(), restless: Vec::new() };
-                    self.no_step(&refusal, &next_rate, direction);
+                if self.cut_back(&mut length, initial, "the load falls in the step", &next_rate, direction) {
                     return Outcome::Ended;
                 }
                 continue;
@@ -398,6 +386,18 @@ impl Tracer<'_, '_> {
             format!("{MOST_STEPS} steps were not enough; the last state is at factor {}: larger steps (continuation, first_step) or event_path may pass", self.state.factor),
         );
         Outcome::Ended
+    }
+
+    /// Shortens a step that converged and is none along the path; whether it is too short for that, and the
+    /// path has ended.
+    fn cut_back(&mut self, length: &mut f64, initial: f64, why: &str, rate: &Rate, direction: f64) -> bool {
+        self.model.count("cutbacks", 1);
+        *length *= 0.3;
+        let ends = *length < 1e-10 * initial;
+        if ends {
+            self.no_step(&Refusal { why: why.into(), restless: Vec::new() }, rate, direction);
+        }
+        ends
     }
 
     /// Weight of the factor in a control by a spring: with it every step of associated flow is a

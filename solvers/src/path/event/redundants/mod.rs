@@ -264,7 +264,7 @@ impl<'s> Run<'s> {
             for (_, c, to) in changes {
                 self.before.push((c, tracer.points[c].piece));
                 tracer.points[c].piece = to;
-                self.joints[self.sections.of[c].0].dirty = true;
+                self.joints[self.sections.of[c]].dirty = true;
             }
         }
         None
@@ -307,7 +307,7 @@ impl<'s> Run<'s> {
             let point = &tracer.points[c];
             let [by_force, by_gap] = joint.sensitivity(k, place, point.piece);
             if point.settled().is_none() {
-                let verge = Tracer::verges(&tracer.system, &tracer.points, &[c]).swap_remove(0);
+                let verge = point.verge(facets);
                 let unknowns = verge.unknowns(point.piece, gap);
                 if let Some((size, to)) = verge.violation(point.piece, &unknowns, force, self.sizes)
                     && size > INEQUALITY
@@ -366,8 +366,8 @@ impl<'s> Run<'s> {
     }
 
     /// Brings the points of a section up to date, with a `step` of a twist rate that is an unknown of its own.
-    /// Returns what opened, which is left to the caller.
-    fn touch(&mut self, tracer: &mut Tracer, e: usize, step: Option<(Vector3<f64>, f64)>) -> Vec<(usize, f64)> {
+    /// Returns by how much each opens, which is left to the caller; nothing where nothing has moved.
+    fn touch(&mut self, tracer: &mut Tracer, e: usize, step: Option<(Vector3<f64>, f64)>) -> Vec<f64> {
         let unit = tracer.system.force_unit * tracer.system.displacement_unit;
         let state = (tracer.system.facets.as_slice(), tracer.points.as_slice());
         let section = &self.sections.all[e];
@@ -376,13 +376,14 @@ impl<'s> Run<'s> {
             tracer.dissipated += change.dissipated * unit;
             (0..2).for_each(|i| tracer.x[2 * place.contact + i] += change.force[i]);
         }
-        section.places.iter().zip(gained).map(|(place, change)| (place.contact, change.opening)).collect()
+        gained.into_iter().map(|change| change.opening).collect()
     }
 
     /// The same; openings grow.
     fn bring(&mut self, tracer: &mut Tracer, e: usize, step: Option<(Vector3<f64>, f64)>) {
-        for (c, opening) in self.touch(tracer, e, step) {
-            let point = &mut tracer.points[c];
+        let openings = self.touch(tracer, e, step);
+        for (place, opening) in self.sections.all[e].places.iter().zip(openings) {
+            let point = &mut tracer.points[place.contact];
             if point.open() {
                 point.opening = (point.opening + opening).max(0.0);
             }
@@ -411,7 +412,7 @@ impl<'s> Run<'s> {
             let weak = solution.weak.iter().find(|w| w.0 == e).map(|w| (w.1, step));
             let openings = self.touch(tracer, e, weak);
             for (k, place) in self.sections.all[e].places.iter().enumerate() {
-                let opening = openings.get(k).map_or(0.0, |o| o.1);
+                let opening = openings.get(k).copied().unwrap_or(0.0);
                 tracer.stepped(place.contact, self.joints[e].rates[k], opening, before, self.sizes[0]);
             }
             let joint = &mut self.joints[e];
@@ -419,7 +420,7 @@ impl<'s> Run<'s> {
             joint.deadline = f64::NEG_INFINITY;
         }
         for hit in hits {
-            let e = self.sections.of[hit.2].0;
+            let e = self.sections.of[hit.2];
             self.bring(tracer, e, None);
             self.joints[e].dirty = true;
         }

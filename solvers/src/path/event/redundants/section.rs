@@ -48,8 +48,8 @@ struct Branch {
 pub struct Sections {
     /// All sections.
     pub all: Vec<Section>,
-    /// Section and place in it of each contact point.
-    pub of: Vec<(usize, usize)>,
+    /// Section of each contact point.
+    pub of: Vec<usize>,
     /// Number of cycles: three redundants each.
     pub cycles: usize,
     /// Bodies from the ground outwards.
@@ -87,7 +87,7 @@ impl Sections {
             groups.entry(bodies).or_default().push(c);
         }
         let mut all = Vec::with_capacity(groups.len());
-        let mut of = vec![(0, 0); system.contacts];
+        let mut of = vec![0; system.contacts];
         for (bodies, contacts) in groups {
             let mut centre = [0.0; 2];
             for &c in &contacts {
@@ -96,8 +96,8 @@ impl Sections {
             }
             let centre = centre.map(|x| x / contacts.len() as f64 / system.length);
             let mut places = Vec::with_capacity(contacts.len());
-            for (k, &c) in contacts.iter().enumerate() {
-                of[c] = (all.len(), k);
+            for &c in &contacts {
+                of[c] = all.len();
                 places.push(Place::new(system, c, bodies, centre, &poles)?);
             }
             let lever =
