@@ -10,6 +10,7 @@ pub mod written;
 use voussoir::core::assembly::Assembly;
 use voussoir::core::geometry::Vec2;
 use voussoir::core::limit::Status;
+use voussoir::core::path::PathSettings;
 use voussoir::kinds::run::answer_case;
 use voussoir::results::CaseResult;
 use voussoir::study::{Case, Study, load};
@@ -38,6 +39,11 @@ pub fn collapse_factor(text: &str) -> f64 {
     assert_eq!(result.status, Status::Collapse, "{:?} {:?}", result.notes, result.certificate);
     assert!(result.certificate.passed, "{:?}", result.certificate);
     result.load_factor.expect("a collapse has a factor")
+}
+
+/// What a path with small displacements is asked for where nothing else is.
+pub fn small_displacements() -> PathSettings {
+    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
 }
 
 /// Asserts |a − b| ≤ tolerance × |b|.

@@ -10,16 +10,10 @@ use voussoir::solvers::path::continuation::{
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Seen;
-use voussoir_tests::{Arch, answered, assert_close, first_case};
+use voussoir_tests::{Arch, answered, assert_close, first_case, small_displacements};
 
 fn settings(strategy: impl Continuation + 'static) -> PathSettings {
-    PathSettings {
-        finite: false,
-        tolerance: 1e-9,
-        stop_displacement: None,
-        stop_factor: Some(-1.0),
-        continuation: Some(Arc::new(strategy)),
-    }
+    PathSettings { stop_factor: Some(-1.0), continuation: Some(Arc::new(strategy)), ..small_displacements() }
 }
 
 fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Vec<PathState>) {

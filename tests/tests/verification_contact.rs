@@ -18,21 +18,17 @@ use voussoir::solvers::path::continuation::load_control::LoadControl;
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Record;
-use voussoir_tests::{assert_close, first_case};
-
-fn settings() -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
-}
+use voussoir_tests::{assert_close, first_case, small_displacements};
 
 /// Both path solvers' answers; every state of the first is certified.
 fn both(problem: &PathProblem) -> [PathAnswer; 2] {
     let mut watch = Watch::new(false);
-    let event = EventPath {}.trace(problem, &settings(), &mut watch);
+    let event = EventPath {}.trace(problem, &small_displacements(), &mut watch);
     for (name, value) in &watch.worst {
         assert!(*value < 1e-8, "{name} {value:e} {:?}", event.notes);
     }
     let control = LoadControl { first_step: 0.1, largest_step: None };
-    let steps = PathSettings { continuation: Some(Arc::new(control)), ..settings() };
+    let steps = PathSettings { continuation: Some(Arc::new(control)), ..small_displacements() };
     [event, NewtonPath {}.trace(problem, &steps, &mut Unobserved)]
 }
 
@@ -147,7 +143,7 @@ fn roller_on_block_tends_to_hertz() {
         let [event, newton] = both(&problem);
         assert_eq!(event.status, Status::Stands, "{:?}", event.notes);
         assert_eq!(newton.status, Status::Stands, "{:?}", newton.notes);
-        let arc = NewtonPath {}.trace(&problem, &settings(), &mut Unobserved);
+        let arc = NewtonPath {}.trace(&problem, &small_displacements(), &mut Unobserved);
         assert_eq!(arc.status, Status::Stands, "{:?}", arc.notes);
         let apart = difference(&event.state, &newton.state).max(difference(&event.state, &arc.state));
         let [load, pressure, width] = measured(&problem, &event.state);
@@ -303,10 +299,10 @@ fn a_slider_beside_a_spring_keeps_its_hysteresis() {
     let problem = slider(friction, weight, [stiffness, spring], &[-1.0, 1.0], &history);
     let control = PathSettings {
         continuation: Some(Arc::new(LoadControl { first_step: 0.01, largest_step: None })),
-        ..settings()
+        ..small_displacements()
     };
     for (solver, settings, exact) in
-        [(&EventPath {} as &dyn PathSolver, settings(), true), (&NewtonPath {}, control, false)]
+        [(&EventPath {} as &dyn PathSolver, small_displacements(), true), (&NewtonPath {}, control, false)]
     {
         let mut record = Record::default();
         let answer = solver.trace(&problem, &settings, &mut record);
@@ -349,7 +345,7 @@ fn the_energy_error_of_steps_falls_with_their_square() {
             let problem = slider(0.5, 40.0, [1000.0, 250.0], &feet, &vec![22.0 / f64::from(parts); parts as usize]);
             let mut watch = Watch::new(false);
             let control = ArcLength { first_step: 100.0, ..ArcLength::default() };
-            let settings = PathSettings { continuation: Some(Arc::new(control)), ..settings() };
+            let settings = PathSettings { continuation: Some(Arc::new(control)), ..small_displacements() };
             let answer = NewtonPath {}.trace(&problem, &settings, &mut watch);
             assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
             assert!(answer.state.dissipated > 0.1 * answer.state.work, "feet slide");
@@ -395,10 +391,10 @@ fn a_three_hinge_arch_has_the_thrust_of_statics() {
         let weight = 10.0 * half.mass;
         let thrust = weight * (half.pole.x - springing) / crown;
         let mut watch = Watch::new(false);
-        let answer = EventPath {}.trace(&problem, &settings(), &mut watch);
+        let answer = EventPath {}.trace(&problem, &small_displacements(), &mut watch);
         assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
         assert!(watch.worst.values().all(|value| *value < 1e-8), "{:?}", watch.worst);
-        let stepped = NewtonPath {}.trace(&problem, &settings(), &mut Unobserved);
+        let stepped = NewtonPath {}.trace(&problem, &small_displacements(), &mut Unobserved);
         assert_eq!(stepped.status, Status::Stands, "{:?}", stepped.notes);
         assert!(difference(&answer.state, &stepped.state) < 1e-9);
         let at_crown =

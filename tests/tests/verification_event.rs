@@ -7,16 +7,12 @@ use voussoir::core::interface::Facet;
 use voussoir::core::limit::Status;
 use voussoir::core::path::{
     Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
-    PathSettings, PathSolver, PathState, Sliding, certificate::Watch,
+    PathSolver, PathState, Sliding, certificate::Watch,
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Record;
-use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
-
-fn settings() -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
-}
+use voussoir_tests::{Arch, answered, assert_close, first_case, friction, small_displacements};
 
 fn elastic(study: &str, mesh: &str) -> String {
     study
@@ -87,7 +83,7 @@ fn congruent_voussoirs_are_condensed_once() {
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
     assert_eq!(problem.counters["condensation_factorisations"], 0);
     assert!(problem.bodies.iter().all(|body| body.flexibility.is_none()));
-    assert!(EventPath {}.refuses(&problem, &settings()).unwrap().contains("rigid"));
+    assert!(EventPath {}.refuses(&problem, &small_displacements()).unwrap().contains("rigid"));
 }
 
 /// The two-degree-of-freedom example of Klarbring's kind: K = [[1, −1], [−1, 2]] in (t, n).
@@ -139,7 +135,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
 
 fn trace(problem: &PathProblem) -> (PathAnswer, Vec<PathState>) {
     let mut record = Record::default();
-    let answer = EventPath {}.trace(problem, &settings(), &mut record);
+    let answer = EventPath {}.trace(problem, &small_displacements(), &mut record);
     (answer, record.0)
 }
 
@@ -200,7 +196,7 @@ fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
         let in_turn = [([0.0, -1.0], DriveEnd::Factor(1.0)), ([1.2, 0.0], DriveEnd::Factor(1.0))];
         for problem in [problem, two_degrees(mu, &in_turn)] {
             for solver in [&EventPath {} as &dyn PathSolver, &NewtonPath {}] {
-                let answer = solver.trace(&problem, &settings(), &mut Record::default());
+                let answer = solver.trace(&problem, &small_displacements(), &mut Record::default());
                 assert_eq!(answer.status, Status::Stands, "{mu} {:?}", answer.notes);
                 let ([r_n, r_t], [u_n, u_t]) = (answer.state.force[0], answer.state.gap[0]);
                 let found = [u_t, r_t, r_n];
@@ -231,7 +227,7 @@ fn a_spring_slider_keeps_its_history() {
     let case = first_case(&text);
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
     let mut watch = Watch::new(false);
-    let answer = EventPath {}.trace(&problem, &settings(), &mut watch);
+    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut watch);
     // 4 kN of weight, friction 2 kN: ±1.5 kN never slide as a whole; forces at the joint's points do
     // not move, because weight and shear are uniform.
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
@@ -288,7 +284,7 @@ loads = [
     let case = first_case(text);
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
     let mut watch = Watch::new(false);
-    let answer = EventPath {}.trace(&problem, &settings(), &mut watch);
+    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut watch);
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
     let bottom = |x: f64| {
         let at = |c: &Contact| c.position.y.abs() < 1e-12 && (c.position.x - x).abs() < 1e-9;
@@ -376,7 +372,7 @@ loads = [{ kind = "body", acceleration = [-9.81, 0.0] }]
     );
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
     let mut record = Record::default();
-    let answer = EventPath {}.trace(&problem, &settings(), &mut record);
+    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut record);
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
     let opened = record.0.iter().filter(|s| s.force.iter().any(|f| f[0] < 0.0)).count();
     let at = |drive: usize| record.0.iter().rfind(|s| s.drive == drive).expect("a state");
@@ -431,7 +427,7 @@ loads = [{{ kind = "body", acceleration = {acceleration:?} }}]
     for (acceleration, factor, unique) in [([0.0, 10.0], 1.0, false), ([10.0, 0.0], 0.4, true)] {
         let case = first_case(&text(acceleration));
         let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
-        let answer = EventPath {}.trace(&problem, &settings(), &mut Watch::default());
+        let answer = EventPath {}.trace(&problem, &small_displacements(), &mut Watch::default());
         assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         assert_close(answer.factor.expect("a factor"), factor, 1e-12);
         assert_eq!(answer.unique, Some(unique), "{acceleration:?}");

@@ -1,13 +1,9 @@
 //! Newton path against limit analysis, closed forms and hand-made systems.
 
 use voussoir::core::limit::Status;
-use voussoir::core::path::{PathAnswer, PathProblem, PathSettings, PathSolver, Unobserved};
+use voussoir::core::path::{PathAnswer, PathProblem, PathSolver, Unobserved};
 use voussoir::solvers::path::newton::NewtonPath;
-use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
-
-fn settings() -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
-}
+use voussoir_tests::{Arch, answered, assert_close, first_case, friction, small_displacements};
 
 fn problem(text: &str) -> PathProblem {
     let case = first_case(text);
@@ -15,7 +11,7 @@ fn problem(text: &str) -> PathProblem {
 }
 
 fn traced(text: &str) -> PathAnswer {
-    NewtonPath {}.trace(&problem(text), &settings(), &mut Unobserved)
+    NewtonPath {}.trace(&problem(text), &small_displacements(), &mut Unobserved)
 }
 
 fn compliant(law: String) -> String {

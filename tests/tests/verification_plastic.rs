@@ -11,7 +11,7 @@ use voussoir::solvers::path::continuation::{
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
 use voussoir_tests::seen::Seen;
-use voussoir_tests::{Arch, answered, assert_close, first_case, friction};
+use voussoir_tests::{Arch, answered, assert_close, first_case, friction, small_displacements};
 
 /// The paper's stone with p_b = 10 MPa, E = 5 GPa, ν = 0.2; `hardening` in TOML.
 fn stone(hardening: &str) -> String {
@@ -127,7 +127,7 @@ fn stages(factors: &[f64]) -> String {
 const COLLAPSE: &str = "[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [PUSH]\n";
 
 fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation }
+    PathSettings { continuation, ..small_displacements() }
 }
 
 fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Seen) {

@@ -4,10 +4,10 @@
 use nalgebra::DMatrix;
 use std::sync::Arc as Shared;
 use voussoir::core::limit::Status;
-use voussoir::core::path::{PathAnswer, PathProblem, PathSettings, PathSolver};
+use voussoir::core::path::{PathAnswer, PathProblem, PathSolver};
 use voussoir::solvers::path::event::EventPath;
 use voussoir_tests::seen::Seen;
-use voussoir_tests::{Arch, first_case};
+use voussoir_tests::{Arch, answered, assert_close, first_case, small_displacements};
 
 /// Gives the first free block a flexibility of nothing.
 fn with_a_block_of_no_flexibility(mut problem: PathProblem) -> PathProblem {
@@ -27,10 +27,8 @@ fn with_a_block_of_no_flexibility(mut problem: PathProblem) -> PathProblem {
 }
 
 fn followed(problem: &PathProblem) -> (PathAnswer, Seen) {
-    let settings =
-        PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None };
     let mut seen = Seen::default();
-    let answer = EventPath {}.trace(problem, &settings, &mut seen);
+    let answer = EventPath {}.trace(problem, &small_displacements(), &mut seen);
     (answer, seen)
 }
 
@@ -39,8 +37,8 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Asserts that both give the same path, and that most of its events were had from the force method.
-/// Returns its status.
-fn same_path(study: &str) -> Status {
+/// Returns its status and last factor.
+fn same_path(study: &str) -> (Status, Option<f64>) {
     let case = first_case(study);
     let problem = || PathProblem::new(&case.assembly, &case.stages).unwrap();
     let (few, seen) = followed(&problem());
@@ -83,7 +81,7 @@ fn same_path(study: &str) -> Status {
         assert!((a - b).abs() <= 1e-9 * work, "{a:e} {b:e}\n{study}");
     }
     assert_eq!(other.states.last().map(|s| s.drive), seen.states.last().map(|s| s.drive));
-    few.status
+    (few.status, few.factor)
 }
 
 const BEDDED: &str = "normal_stiffness = 1e10\nshear_stiffness = 4e9";
@@ -99,14 +97,25 @@ const LAWS: [&str; 6] = [
 
 #[test]
 fn arches_of_all_laws() {
+    let mut collapses = 0;
     for law in LAWS {
         for (voussoirs, rise, span_fraction) in [(13, 2.99, 0.25), (12, 2.0, 0.5), (21, 4.2, 0.37)] {
             let joint = format!("{law}\n{BEDDED}");
             let arch = Arch { joint, voussoirs, rise, span_fraction, ends: "jointed", ..Arch::default() };
-            let status = same_path(&arch.study());
+            let (status, factor) = same_path(&arch.study());
+            if law.contains("associated") {
+                // By linear programming, which knows neither stiffness nor history.
+                let rigid = answered(&Arch { joint: law.into(), solver: "limit_chain", ..arch }.study());
+                assert!(rigid.certificate.passed && rigid.status == status, "{:?} {status:?}", rigid.status);
+                if let Some(limit) = rigid.load_factor {
+                    assert_close(factor.unwrap(), limit, 1e-9);
+                    collapses += 1;
+                }
+            }
             assert!(matches!(status, Status::Collapse | Status::LimitPoint | Status::Unbounded), "{status:?}");
         }
     }
+    assert_eq!(collapses, 2);
 }
 
 /// A load that comes, goes and comes back: slip stays.
