@@ -4,7 +4,7 @@
 //! **State.** None. **Validity.** Stresses inside a rigid block are not defined.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::card::{Capability, Card, Property, Sample};
 use voussoir_core::material::{BulkMaterial, Deformability};
 use voussoir_core::schema::{Parameter, PluginKind, Range};
 use voussoir_core::units::Quantity;
@@ -42,11 +42,14 @@ voussoir_core::inventory::submit! {
         tag: "rigid",
         summary: "blocks that do not deform",
         parameters: &[DENSITY],
-        provides: &[Capability::RigidLimit, Capability::Linear],
-        requires: &[],
+        provides: &[Capability::RIGID_LIMIT, Capability::LINEAR],
+        claims: &[],
+        samples: &[
+            Sample::new("density = 2200.0", 1e-3, &[]),
+        ],
         sources: &["Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),
         page: "# `rigid`\n\nBlocks that do not deform: ε = 0. Limit loads are those of rigid blocks.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -4,6 +4,7 @@
 //! ones, `invariance.rs` what must not matter, `mistakes.rs` the exact text of every error message.
 
 pub mod random;
+pub mod samples;
 pub mod seen;
 pub mod written;
 

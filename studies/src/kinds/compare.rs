@@ -6,7 +6,7 @@ use super::{KindEntry, Observer, StudyKind};
 use crate::config::report::suggest;
 use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
 use crate::study::{Outline, Study, VARIANT};
-use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::card::Card;
 use voussoir_core::issue::Issue;
 use voussoir_core::limit::Status;
 use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
@@ -40,12 +40,9 @@ voussoir_core::inventory::submit! {
         tag: "compare",
         summary: "several laws and solvers (variants) on one or several scenes: one table with ratios, one figure",
         parameters: KEYS,
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: include_str!("compare.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

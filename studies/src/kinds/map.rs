@@ -7,7 +7,7 @@ use super::{KindEntry, Observer, StudyKind};
 use crate::figures::format::key_with_unit;
 use crate::results::{CaseResult, Comparison, MapAxes};
 use crate::study::{Outline, Study};
-use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::card::Card;
 use voussoir_core::issue::Issue;
 use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
 
@@ -38,12 +38,9 @@ voussoir_core::inventory::submit! {
         tag: "map",
         summary: "several laws and solvers (variants) over two swept numbers: regions of mechanisms, contours of ratios",
         parameters: KEYS,
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: include_str!("map.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

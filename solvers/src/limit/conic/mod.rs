@@ -10,7 +10,7 @@ use polish::{balanced, polish};
 use serde::{Deserialize, Serialize};
 use system::{Loads, System};
 use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::card::{Capability, Card};
 use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
 use voussoir_core::schema::PluginKind;
 
@@ -39,12 +39,12 @@ voussoir_core::inventory::submit! {
         tag: "limit_conic",
         summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
         parameters: &[],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(30),
         sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
         file: file!(),
         page: include_str!("limit_conic.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

@@ -16,7 +16,7 @@ use dictionary::Feasibility;
 use products::Bound;
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::card::{Capability, Card};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir_core::product_proof::{LowerProof, LowerProofKind};
 use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
@@ -79,8 +79,9 @@ voussoir_core::inventory::submit! {
                 need: Need::Default("12000"),
             },
         ],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        provides: &[Capability::NON_ASSOCIATED],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(10),
         sources: &[
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
@@ -88,7 +89,7 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("limit_least.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Greatest, associated, combined, conic};
 use crate::limit::Engine;
 use serde::{Deserialize, Serialize};
 use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
+use voussoir_core::card::{Capability, Card};
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, OwnFlow, Status, Velocity,
 };
@@ -32,12 +32,11 @@ voussoir_core::inventory::submit! {
         tag: "limit_sequential",
         summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
         parameters: &[],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
         page: include_str!("limit_sequential.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

@@ -4,7 +4,7 @@
 use super::arc_length::sphere;
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::card::Card;
 use voussoir_core::path::{Constraint, Continuation, Increment};
 use voussoir_core::schema::{Parameter, PluginKind, Range};
 use voussoir_core::units::Quantity;
@@ -75,14 +75,12 @@ voussoir_core::inventory::submit! {
             FIRST_STEP,
             LARGEST_STEP,
         ],
-        provides: &[],
-        requires: &[],
         sources: &[
             "Gutierrez 2004, Commun. Numer. Meth. Engng 20, 19-29",
             "Verhoosel, Remmers & Gutierrez 2009, Int. J. Numer. Meth. Engng 77, 1290-1321",
         ],
         file: file!(),
         page: include_str!("dissipation.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -2,7 +2,7 @@
 #![doc = include_str!("exact_events.md")]
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Card, no_further_check};
+use voussoir_core::card::Card;
 use voussoir_core::path::{Constraint, Continuation, Increment};
 use voussoir_core::schema::PluginKind;
 
@@ -33,11 +33,9 @@ voussoir_core::inventory::submit! {
         tag: "exact_events",
         summary: "from event to event of a piecewise linear path, without steps",
         parameters: &[],
-        provides: &[],
-        requires: &[],
         sources: &["Cocchetti & Maier 2003, Int. J. Numer. Meth. Engng 58 (piecewise linear paths as rate complementarity problems)"],
         file: file!(),
         page: include_str!("exact_events.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
