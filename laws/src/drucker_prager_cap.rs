@@ -298,8 +298,8 @@ voussoir_core::inventory::submit! {
         provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
         claims: &[Property::DISSIPATIVE, Property::ISOTROPIC],
         samples: &[
-            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 4e6\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7], [0.005, 2e7], [0.02, 3e7]]\ninitial_compaction = 0.001", 4e-3, &["elastic", "cap", "shear"]),
-            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 4e6\ncap_eccentricity = 0.3\ntransition = 0.05\nuniaxial_strength = 8e6\ncrushing_fracture_energy = 5000.0", 4e-3, &["elastic", "cap", "shear"]),
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7], [0.005, 2e7], [0.02, 3e7]]\ninitial_compaction = 0.001", 4e-3, &["elastic", "cap", "shear"]),
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nuniaxial_strength = 8e6\ncrushing_fracture_energy = 5000.0", 4e-3, &["elastic", "cap", "shear"]),
         ],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",

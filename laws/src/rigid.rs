@@ -4,7 +4,7 @@
 //! **State.** None. **Validity.** Stresses inside a rigid block are not defined.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, Property, Sample};
+use voussoir_core::card::{Capability, Card, Sample};
 use voussoir_core::material::{BulkMaterial, Deformability};
 use voussoir_core::schema::{Parameter, PluginKind, Range};
 use voussoir_core::units::Quantity;
@@ -43,7 +43,6 @@ voussoir_core::inventory::submit! {
         summary: "blocks that do not deform",
         parameters: &[DENSITY],
         provides: &[Capability::RIGID_LIMIT, Capability::LINEAR],
-        claims: &[],
         samples: &[
             Sample::new("density = 2200.0", 1e-3, &[]),
         ],
