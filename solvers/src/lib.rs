@@ -4,6 +4,5 @@
 #![forbid(unsafe_code)]
 
 pub mod limit;
-pub use voussoir_core::lu;
 pub mod path;
 pub mod point;

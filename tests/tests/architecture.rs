@@ -1,10 +1,8 @@
 //! The arrows between crates, the registry, and the conformance of every card.
 
 use std::path::Path;
-use voussoir::core::card::{audit, cards, cards_of};
-use voussoir::core::interface::{Formulation, InterfaceLaw};
-use voussoir::core::material::BulkMaterial;
-use voussoir::core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir::core::law::{BulkMaterial, Formulation, InterfaceLaw};
+use voussoir::core::plugin::{Need, Parameter, PluginKind, Shape, audit, cards, cards_of};
 
 fn manifest(folder: &str) -> toml::Table {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder).join("Cargo.toml");
@@ -80,7 +78,7 @@ fn documented(tag: &str, parameter: &Parameter) {
 }
 
 /// A configuration of a law or material with a plausible number for every key that must be given.
-fn sample(card: &voussoir::core::card::Card) -> serde_json::Value {
+fn sample(card: &voussoir::core::plugin::Card) -> serde_json::Value {
     let mut table = serde_json::Map::new();
     table.insert("law".into(), card.tag.into());
     for parameter in card.parameters {
