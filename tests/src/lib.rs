@@ -1,7 +1,9 @@
 //! What tests share: reading a study from text, answering it, and scenes in several disguises.
 //!
-//! `tests/tests/verification_*.rs` holds other people's answers, `regression_*.rs` our own last
-//! ones, `invariance.rs` what must not matter, `mistakes.rs` the exact text of every error message.
+//! One binary a folder of `tests/tests/`: `verification` holds other people's answers, `regression` our own last
+//! ones, `invariance` what must not matter, `stress` random scenes, `conformance` every plug-in, `files` studies and
+//! results read back, `messages` the exact text of every error, `architecture` the house itself. One file of one:
+//! `cargo test --release -p voussoir-tests --test verification arch::`.
 
 pub mod random;
 pub mod seen;

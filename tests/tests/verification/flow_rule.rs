@@ -166,7 +166,7 @@ fn no_friction_is_a_free_tangent() {
 /// the proof ends a little further below it, and closes.
 #[test]
 fn a_flat_arch_closes() {
-    let study = study(include_str!("../../studies/cases/flow_rule_ten_scenes.toml"));
+    let study = study(include_str!("../../../studies/cases/flow_rule_ten_scenes.toml"));
     for name in ["flat arch on piers, friction 0.5", "arch on inclined springings, friction 0.3"] {
         let mut cases = study.cases.iter().filter(|case| case.variant.as_deref() == Some("least"));
         let case = cases.find(|case| case.scene.as_deref() == Some(name)).expect("a scene of the study");
@@ -180,7 +180,7 @@ fn a_flat_arch_closes() {
 /// nothing lies below it.
 #[test]
 fn two_rings_feel_the_flow_rule() {
-    let study = study(include_str!("../../studies/cases/flow_rule_rings.toml"));
+    let study = study(include_str!("../../../studies/cases/flow_rule_rings.toml"));
     let mut ratios = Vec::new();
     for case in study.cases.iter().filter(|case| case.variant.as_deref() == Some("least")) {
         let result = answer_case(case);

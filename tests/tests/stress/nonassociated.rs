@@ -9,7 +9,7 @@ use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::{answered, assert_close};
 
-const WALLS: &str = include_str!("../fixtures/small_walls.jsonl");
+const WALLS: &str = include_str!("../../fixtures/small_walls.jsonl");
 
 fn walls() -> Vec<Value> {
     WALLS.lines().map(|line| serde_json::from_str(line).expect("a wall")).collect()

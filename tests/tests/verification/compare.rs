@@ -27,7 +27,7 @@ fn results(study: &Study) -> StudyResults {
 fn ten_scenes() -> &'static (Study, StudyResults) {
     static ANSWERED: OnceLock<(Study, StudyResults)> = OnceLock::new();
     ANSWERED.get_or_init(|| {
-        let study = study(include_str!("../../studies/cases/flow_rule_ten_scenes.toml"));
+        let study = study(include_str!("../../../studies/cases/flow_rule_ten_scenes.toml"));
         let results = results(&study);
         (study, results)
     })

@@ -23,7 +23,7 @@ const AT: f64 = 0.09;
 
 /// `studies/cases/softening_arch.toml` with p_b \[Pa\], elements a side, their order, and G_c \[J/m²\] where it softens.
 fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<Row, String> {
-    let text = include_str!("../../studies/cases/softening_arch.toml");
+    let text = include_str!("../../../studies/cases/softening_arch.toml");
     let head = &text[..text.find("[[variants]]").expect("variants")];
     let softens = "crushing_fracture_energy = \"50 kJ/m2\"";
     let case = study(
