@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use surface::Surface;
 use update::{CapUpdate, Strength};
-use voussoir_core::card::{Capability, Card, Property, Sample, check_as};
-use voussoir_core::material::{BulkMaterial, Deformability, Isotropic, StressUpdate};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressUpdate};
+use voussoir_core::plugin::{
+    Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape, check_as,
+};
 
 /// The modified Drucker–Prager model with a cap.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -3,9 +3,8 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, Property, Sample};
-use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Property, Sample, Shape};
 
 /// What a closed joint does along itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,7 +61,7 @@ voussoir_core::inventory::submit! {
         provides: &[Capability::FACETS],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
-            Sample::new("tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
+            Sample::new("tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["sliding"]),
             Sample::new("tangential = \"stuck\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic"]),
         ],
         sources: &["Signorini 1933", "Heyman 1966, Int. J. Solids Struct. 2"],

@@ -1,8 +1,7 @@
 //! Laws with the sample numbers of their cards.
 
 use serde_json::Value;
-use voussoir::core::card::{Card, Sample, cards_of};
-use voussoir::core::schema::PluginKind;
+use voussoir::core::plugin::{Card, PluginKind, Sample, cards_of};
 
 /// Every sample of every law of a kind, with its table as a study file has it.
 pub fn samples(kind: PluginKind) -> Vec<(&'static Card, &'static Sample, Value)> {

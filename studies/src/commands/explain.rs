@@ -2,8 +2,7 @@
 
 use super::{FINE, NO_ACCESS, WRONG_INPUT, files, say};
 use std::path::Path;
-use voussoir::core::card::{Card, cards, cards_of, describe, nearest};
-use voussoir::core::schema::{Need, PluginKind, Shape};
+use voussoir::core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, describe, nearest};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {

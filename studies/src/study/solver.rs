@@ -4,9 +4,10 @@ use super::case::Builder;
 use super::{Kinematics, SolverChoice};
 use crate::config::overlay::join;
 use serde_json::{Map, Value as Json};
-use voussoir_core::assembly::{Assembly, Bond};
-use voussoir_core::card::{Capability, Card, Requirement, candidate, candidates, card, cards_of, describe};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::{Assembly, Bond};
+use voussoir_core::plugin::{
+    Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
+};
 
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
     candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()

@@ -15,7 +15,7 @@ pub mod vtu;
 
 use crate::results::StudyResults;
 use crate::study::Kinematics;
-use voussoir_core::assembly::{Assembly, Stage};
+use voussoir_core::model::{Assembly, Stage};
 
 /// What writers are given: the results and what they were computed from.
 #[derive(Debug, Clone, Copy)]
@@ -70,14 +70,14 @@ pub fn writers() -> Vec<&'static WriterEntry> {
 macro_rules! register {
     ($tag:literal, $writer:expr, $summary:literal, $page:literal) => {
         voussoir_core::inventory::submit! {
-            voussoir_core::card::Card {
-                kind: voussoir_core::schema::PluginKind::Writer,
+            voussoir_core::plugin::Card {
+                kind: voussoir_core::plugin::PluginKind::Writer,
                 tag: $tag,
                 summary: $summary,
                 parameters: &[],
                 file: file!(),
                 page: $page,
-                ..voussoir_core::card::Card::BLANK
+                ..voussoir_core::plugin::Card::BLANK
             }
         }
         voussoir_core::inventory::submit! {

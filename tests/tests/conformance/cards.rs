@@ -1,8 +1,7 @@
 //! The registry, and what every card must say.
 
 use std::path::Path;
-use voussoir::core::card::{audit, cards};
-use voussoir::core::schema::{Need, Parameter, PluginKind};
+use voussoir::core::plugin::{Need, Parameter, PluginKind, audit, cards};
 
 /// Every kind of plug-in is there, no tag twice, every card complete, file = tag.
 #[test]

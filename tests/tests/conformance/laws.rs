@@ -1,9 +1,7 @@
 //! Every law, with the samples of its card: serde, facets, claims. A new law edits nothing here.
 
-use voussoir::core::card::{Capability, Property};
-use voussoir::core::interface::InterfaceLaw;
-use voussoir::core::material::BulkMaterial;
-use voussoir::core::schema::PluginKind;
+use voussoir::core::law::{BulkMaterial, InterfaceLaw};
+use voussoir::core::plugin::{Capability, PluginKind, Property};
 use voussoir_tests::samples::samples;
 
 /// Every interface law: a pure function with admissible origin, dissipative flow, that survives

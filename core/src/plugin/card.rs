@@ -4,7 +4,7 @@
 //! configuration, `inventory::submit!` hands in its [`Card`]. Lists, help pages, the JSON Schema,
 //! the check of study files and the conformance tests read cards only.
 
-use crate::schema::{Parameter, PluginKind};
+use super::schema::{Parameter, PluginKind};
 
 /// Something that a plug-in offers and a solver may ask for; compared when a study is loaded. The list
 /// is open: a law or solver with something new declares a constant of its own.
