@@ -3,9 +3,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use voussoir::core::law::{
-    BulkMaterial, Formulation, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, StressPoint, TractionPoint,
-};
+use voussoir::core::law::{BulkMaterial, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, StressPoint, TractionPoint};
 use voussoir_benches::point::{cohesive, paper_stone, states, strains};
 
 fn stress_updates(c: &mut Criterion) {
@@ -47,7 +45,7 @@ fn in_a_plane(c: &mut Criterion) {
 }
 
 fn joints(c: &mut Criterion) {
-    let Formulation::Response(response) = cohesive().formulation() else { return };
+    let Some(response) = cohesive().response() else { return };
     let mut group = c.benchmark_group("cohesive, batches of 256");
     group.throughput(Throughput::Elements(256));
     for (name, gap) in [("elastic", [-1e-6, 1e-6]), ("softening", [1e-5, 1e-4]), ("sliding", [-1e-5, 1e-3])] {

@@ -2,13 +2,11 @@
 #![doc = include_str!("drucker_prager_softening.md")]
 
 use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
-use crate::meridian::{Returned, Trial, state_names};
+use crate::meridian::{APEX, Returned, SHEAR, Trial, state_names};
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::law::{
-    BulkMaterial, Deformability, Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt,
-};
+use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
 
 /// Associated Drucker–Prager with linear softening.
@@ -180,7 +178,7 @@ impl StressUpdate for SofteningUpdate {
                 ratio: (q / trial.mises).max(0.0),
                 compaction: -3.0 * a * step,
                 jacobian,
-                region: Region::Shear,
+                branch: SHEAR,
             };
             (back, step)
         } else {
@@ -192,7 +190,7 @@ impl StressUpdate for SofteningUpdate {
                 ratio: 0.0,
                 compaction: -3.0 * a * step,
                 jacobian: [[slope / (9.0 * bulk * a * a + slope), 0.0], [0.0, 0.0]],
-                region: Region::Apex,
+                branch: APEX,
             };
             (back, step)
         };

@@ -151,7 +151,7 @@ impl PointLaw {
             PointLaw::Space(law, length) => {
                 let point = law.update_point(strain, *length, old, new)?;
                 (out.stress, out.tangent) = (point.stress, point.tangent);
-                (out.region, out.dissipated) = (point.region.name(), point.dissipation);
+                (out.region, out.dissipated) = (point.branch.name, point.dissipation);
             }
             PointLaw::Plane(law, length) => {
                 let point = law.update_point(&[strain[0], strain[1], strain[2]], *length, old, new)?;
@@ -160,7 +160,7 @@ impl PointLaw {
                     row[..3].copy_from_slice(given);
                 }
                 out.across = [point.strain_across, point.stress_across];
-                (out.region, out.dissipated) = (point.region.name(), point.dissipation);
+                (out.region, out.dissipated) = (point.branch.name, point.dissipation);
             }
             PointLaw::Joint(law) => {
                 let point = law.respond_point([strain[0], strain[1]], old, new)?;
@@ -168,7 +168,7 @@ impl PointLaw {
                 for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
                     row[..2].copy_from_slice(given);
                 }
-                (out.region, out.dissipated) = (point.branch.name(), point.dissipated);
+                (out.region, out.dissipated) = (point.branch.name, point.dissipated);
             }
         }
         Ok(out)

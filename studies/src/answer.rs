@@ -81,8 +81,7 @@ pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)>
             if !assembly.deforms() && !question.settings.finite && !settles {
                 return None;
             }
-            let facets =
-                assembly.joints.iter().all(|j| assembly.law(j).is_none_or(|l| l.formulation().facets().is_some()));
+            let facets = assembly.joints.iter().all(|j| assembly.law(j).is_none_or(|l| l.facets().is_some()));
             let exact = question.settings.continuation.as_ref().is_none_or(|c| c.exact_events());
             let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
             if !question.settings.finite && facets && exact && linear {

@@ -117,7 +117,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
     let non_associated = assembly.joints.iter().any(|joint| match joint.bond {
         Bond::Bonded => false,
         Bond::Law(law) => {
-            let facets = assembly.catalogue.laws[law].1.formulation().facets();
+            let facets = assembly.catalogue.laws[law].1.facets();
             facets.is_some_and(|facets| !is_associated(&facets))
         }
     });

@@ -5,7 +5,9 @@
 //! A material is parameters plus a pure function; state belongs to whoever solves. Plane strain and
 //! plane stress are made from the law in space by [`PlanarUpdate`](super::PlanarUpdate).
 
-use std::fmt::{self, Debug};
+use super::branch::UpdateBranch;
+use super::update::{BatchFailure, UpdateFailure};
+use std::fmt::Debug;
 use std::sync::Arc;
 
 /// How a material deforms.
@@ -49,36 +51,6 @@ pub trait BulkMaterial: Debug + Send + Sync {
 /// Stress or strain at a point: xx, yy, zz, xy, yz, zx.
 pub type Voigt = [f64; 6];
 
-/// Where a stress lies at the end of an update, which names the equations that were solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Region {
-    /// Inside the elastic domain, or back in it.
-    Elastic,
-    /// On a surface that fails in shear.
-    Shear,
-    /// On the surface between shear failure and cap.
-    Transition,
-    /// On a cap: compaction, crushing.
-    Cap,
-    /// At the tip of a cone in tension.
-    Apex,
-}
-
-impl Region {
-    /// Its name in result files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Region::Elastic => "elastic",
-            Region::Shear => "shear",
-            Region::Transition => "transition",
-            Region::Cap => "cap",
-            Region::Apex => "apex",
-        }
-    }
-}
-
 /// What an update gives for one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressPoint {
@@ -86,8 +58,8 @@ pub struct StressPoint {
     pub stress: Voigt,
     /// ∂σ/∂ε of the update itself \[Pa\], row by row; not symmetric where flow is not associated.
     pub tangent: [Voigt; 6],
-    /// Where σ lies.
-    pub region: Region,
+    /// Where σ lies: the equations that were solved.
+    pub branch: UpdateBranch,
     /// Plastic work of the step per volume, σ · Δε^p with σ at its end \[J/m³\].
     pub dissipation: f64,
 }
@@ -95,48 +67,7 @@ pub struct StressPoint {
 impl StressPoint {
     /// No stress and no stiffness: something to be overwritten.
     pub const ZERO: StressPoint =
-        StressPoint { stress: [0.0; 6], tangent: [[0.0; 6]; 6], region: Region::Elastic, dissipation: 0.0 };
-}
-
-/// Why an update has no result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum UpdateFailure {
-    /// The strain or the state holds a number that is not finite.
-    NotFinite,
-    /// The iteration did not meet its tolerance.
-    NoConvergence,
-    /// The point's characteristic length is too large for the fracture energy: the softening branch
-    /// would snap back inside the point.
-    LengthTooLarge,
-    /// A slice is not as long as the number of points and the law's state size demand.
-    WrongSize,
-}
-
-impl fmt::Display for UpdateFailure {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            UpdateFailure::NotFinite => "the strain or the state is not finite",
-            UpdateFailure::NoConvergence => "the stress update did not meet its tolerance",
-            UpdateFailure::LengthTooLarge => "the characteristic length is too large for the fracture energy",
-            UpdateFailure::WrongSize => "the arrays do not fit the number of points",
-        })
-    }
-}
-
-/// The first point of a batch whose update failed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BatchFailure {
-    /// Index of the point in the batch.
-    pub point: usize,
-    /// Why.
-    pub failure: UpdateFailure,
-}
-
-impl fmt::Display for BatchFailure {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "point {}: {}", self.point, self.failure)
-    }
+        StressPoint { stress: [0.0; 6], tangent: [[0.0; 6]; 6], branch: UpdateBranch::ELASTIC, dissipation: 0.0 };
 }
 
 /// Stress from strain: a pure function of the total strain and the state at the start of the step.

@@ -12,7 +12,9 @@
 //! isotropic law stay zero. ε_zz at the end of a step is the last number of the state: the next step
 //! starts there.
 
-use super::material::{BatchFailure, Region, StressPoint, StressUpdate, UpdateFailure, Voigt};
+use super::branch::UpdateBranch;
+use super::material::{StressPoint, StressUpdate, Voigt};
+use super::update::{BatchFailure, UpdateFailure};
 use std::sync::Arc;
 
 /// Stress state of deformable bodies.
@@ -46,7 +48,7 @@ pub struct PlanarPoint {
     /// ∂σ_zz/∂(ε_xx, ε_yy, γ_xy) \[Pa\]; 0 in plane stress.
     pub tangent_across: [f64; 3],
     /// Where the stress lies.
-    pub region: Region,
+    pub branch: UpdateBranch,
     /// Plastic work of the step per volume \[J/m³\].
     pub dissipation: f64,
 }
@@ -59,7 +61,7 @@ impl PlanarPoint {
         strain_across: 0.0,
         tangent: [[0.0; 3]; 3],
         tangent_across: [0.0; 3],
-        region: Region::Elastic,
+        branch: UpdateBranch::ELASTIC,
         dissipation: 0.0,
     };
 }
@@ -239,7 +241,7 @@ fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> Pla
         strain_across,
         tangent,
         tangent_across: if condense.is_some() { [0.0; 3] } else { IN_PLANE.map(|j| c[ACROSS][j]) },
-        region: point.region,
+        branch: point.branch,
         dissipation: point.dissipation,
     }
 }

@@ -3,7 +3,7 @@
 use super::sliding::{Sliding, face, sliding};
 use super::state::PathState;
 use crate::elastic::{Condenser, InelasticBody, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
-use crate::law::{Deformability, Facet, Formulation, InterfaceResponse, PlanarUpdate};
+use crate::law::{Deformability, Facet, InterfaceResponse, PlanarUpdate};
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, cross, turned};
 use crate::model::{Assembly, Bond, Stage, Target, root};
@@ -201,12 +201,9 @@ impl PathProblem {
             body_of,
         };
         for (_, law) in &assembly.catalogue.laws {
-            let (facets, response) = match law.formulation() {
-                Formulation::Facets(facets) => (facets, None),
-                Formulation::Response(response) => (Vec::new(), Some(response)),
-            };
-            problem.facets.push(facets);
-            problem.responses.push(response);
+            let facets = law.facets();
+            problem.responses.push(if facets.is_some() { None } else { law.response() });
+            problem.facets.push(facets.unwrap_or_default());
         }
         problem.contact_points(assembly, &elastic)?;
         problem.load_steps(stages, &elastic)?;

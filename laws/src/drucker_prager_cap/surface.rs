@@ -25,8 +25,13 @@
 //! guards the rest. (The rational form is Moré's for the secular equation of trust regions: Moré &
 //! Sorensen 1983.)
 
-use crate::meridian::Returned;
-use voussoir_core::law::{Isotropic, Region, UpdateFailure};
+use crate::meridian::{APEX, Returned, SHEAR};
+use voussoir_core::law::{Effect, Isotropic, UpdateBranch, UpdateFailure};
+
+/// On the surface between shear failure and cap.
+const TRANSITION: UpdateBranch = UpdateBranch::new("transition", Effect::Yielding);
+/// On the cap: compaction, crushing.
+const CAP: UpdateBranch = UpdateBranch::new("cap", Effect::Yielding);
 
 const ITERATIONS: usize = 200;
 
@@ -117,7 +122,7 @@ struct Gauge {
     factor: f64,
     /// ∂t/∂x, ∂t/∂q, ∂t/∂D.
     gradient: [f64; 3],
-    region: Region,
+    branch: UpdateBranch,
 }
 
 /// x, q and D at some η with what Newton needs.
@@ -180,7 +185,7 @@ impl Surface {
 
     fn gauge(&self, side: Side, x: f64, q: f64, size: f64) -> Gauge {
         if x == 0.0 && q == 0.0 {
-            return Gauge { factor: f64::INFINITY, gradient: [0.0; 3], region: Region::Elastic };
+            return Gauge { factor: f64::INFINITY, gradient: [0.0; 3], branch: UpdateBranch::ELASTIC };
         }
         match side {
             Side::Cap => {
@@ -189,7 +194,7 @@ impl Surface {
                 let factor = size / length;
                 let by_x = -factor * (along / length) / length / self.eccentricity;
                 let by_q = -factor * (across / length) / length / self.roundness;
-                Gauge { factor, gradient: [by_x, by_q, 1.0 / length], region: Region::Cap }
+                Gauge { factor, gradient: [by_x, by_q, 1.0 / length], branch: CAP }
             }
             Side::Shear if self.in_transition(x, q) => {
                 // The larger root of (t x)² + (t q − κ D)² = (α D)²; x, q relative to the ray's length.
@@ -205,7 +210,7 @@ impl Surface {
                 let by_x = -factor * u / (slope * size);
                 let by_q = -factor * v / (slope * size);
                 let by_size = (m * v + r * r) / (slope * size);
-                Gauge { factor, gradient: [by_x, by_q, by_size], region: Region::Transition }
+                Gauge { factor, gradient: [by_x, by_q, by_size], branch: TRANSITION }
             }
             Side::Shear => {
                 let length = q + self.friction * x;
@@ -213,7 +218,7 @@ impl Surface {
                 Gauge {
                     factor,
                     gradient: [-factor * self.friction / length, -factor / length, 1.0 / length],
-                    region: Region::Shear,
+                    branch: SHEAR,
                 }
             }
         }
@@ -325,7 +330,7 @@ impl Surface {
                 [1.0 - sign * bulk * w_by_p, -sign * bulk * w_by_q],
                 [q_rate * eta_by_p, way.ratio + q_rate * eta_by_q],
             ],
-            region: if tip { Region::Apex } else { way.gauge.region },
+            branch: if tip { APEX } else { way.gauge.branch },
         }
     }
 }

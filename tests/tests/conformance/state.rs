@@ -6,8 +6,8 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use voussoir::core::law::{
-    BulkMaterial, FacetResponse, Formulation, InterfaceLaw, InterfaceResponse, PlanarPoint, PlanarUpdate, Plane,
-    StressPoint, StressUpdate, TractionPoint,
+    BulkMaterial, FacetMode, InterfaceLaw, InterfaceResponse, PlanarPoint, PlanarUpdate, Plane, StressPoint,
+    StressUpdate, TractionPoint,
 };
 use voussoir::core::plugin::{Capability, Card, PluginKind, Property, Sample};
 use voussoir_tests::samples::samples;
@@ -49,13 +49,8 @@ fn joints() -> Vec<Subject<Arc<dyn InterfaceResponse>>> {
     for (card, sample, table) in samples(PluginKind::InterfaceLaw) {
         let law: Box<dyn InterfaceLaw> = serde_json::from_value(table).unwrap();
         let again: Box<dyn InterfaceLaw> = serde_json::from_value(serde_json::to_value(&law).unwrap()).unwrap();
-        let [law, again] = [law, again].map(|law| -> Arc<dyn InterfaceResponse> {
-            match law.formulation() {
-                Formulation::Response(response) => response,
-                Formulation::Facets(facets) => Arc::new(FacetResponse::new(facets, law.stiffness().unwrap())),
-                other => panic!("{other:?}"),
-            }
-        });
+        assert_eq!(law.response().is_some(), card.offers(Capability::RESPONSE), "{}", card.tag);
+        let Some((law, again)) = law.response().zip(again.response()) else { continue };
         let (mut old, mut new) = (vec![0.0; law.state_size()], vec![0.0; law.state_size()]);
         law.initial_state(&mut old);
         let point = law.respond_point([-1e-3 * sample.size, 0.0], &old, &mut new).unwrap();
@@ -122,7 +117,7 @@ fn every_material_with_state_conforms() {
                 let mut at = |factor: f64| {
                     let moved: [f64; 6] = std::array::from_fn(|i| strain[i] + factor * h * direction[i]);
                     let point = law.update_point(&moved, length, &old, &mut other).unwrap();
-                    same &= point.region == here.region;
+                    same &= point.branch == here.branch;
                     point.stress
                 };
                 let (a, b, c, d) = (at(1.0), at(-1.0), at(0.5), at(-0.5));
@@ -131,8 +126,8 @@ fn every_material_with_state_conforms() {
                 if same && spread < 3e-6 {
                     let error =
                         worst(&|i| (0..6).map(|j| here.tangent[i][j] * direction[j]).sum::<f64>() - (c[i] - d[i]) / h);
-                    assert!(error < 3e-6, "{tag}: tangent off by {error:e} in {:?}", here.region);
-                    *compared.0.entry(here.region.name()).or_default() += 1;
+                    assert!(error < 3e-6, "{tag}: tangent off by {error:e} in {:?}", here.branch);
+                    *compared.0.entry(here.branch.name).or_default() += 1;
                 }
                 old = new;
             }
@@ -183,13 +178,67 @@ fn every_joint_with_state_conforms() {
                             - (c.traction[i] - d.traction[i]) / h
                     });
                     assert!(error < 4e-6, "{tag}: tangent off by {error:e} in {:?}", here.branch);
-                    *compared.0.entry(here.branch.name()).or_default() += 1;
+                    *compared.0.entry(here.branch.name).or_default() += 1;
                 }
                 old = new;
             }
         }
         compared.enough(card, sample);
     }
+}
+
+/// Whether v = Σ γ r with γ ≥ 0 over at most two of the rays.
+fn in_cone(v: [f64; 2], rays: &[[f64; 2]], tolerance: f64) -> bool {
+    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+    let length = |a: [f64; 2]| a[0].hypot(a[1]);
+    let alone = |r: &[f64; 2]| cross(v, *r).abs() <= tolerance * length(*r) && v[0] * r[0] + v[1] * r[1] >= 0.0;
+    let pair = |r: &[f64; 2], s: &[f64; 2]| {
+        let d = cross(*r, *s);
+        d != 0.0 && cross(v, *s) / d >= 0.0 && cross(*r, v) / d >= 0.0
+    };
+    length(v) <= tolerance || rays.iter().any(|r| alone(r) || rays.iter().any(|s| pair(r, s)))
+}
+
+/// Where a law has both forms they say the same: tractions lie within the facets, and the gap that stiffness does
+/// not explain grows along the flow of facets that are reached. A facet without tensile strength opens and closes.
+#[test]
+fn facets_and_tractions_from_gaps_agree() {
+    let (mut rng, mut flows) = (rng(), 0);
+    for (card, sample, table) in samples(PluginKind::InterfaceLaw) {
+        let law: Box<dyn InterfaceLaw> = serde_json::from_value(table).unwrap();
+        let (Some(facets), Some(response), Some(k)) = (law.facets(), law.response(), law.stiffness()) else { continue };
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let tolerance = 1e-9 * sample.size;
+        for _ in 0..200 {
+            let (mut old, mut new) = (vec![0.0; response.state_size()], vec![0.0; response.state_size()]);
+            response.initial_state(&mut old);
+            let (mut gap, mut before) = ([0.0; 2], [0.0; 2]);
+            for _ in 0..25 {
+                let step = sample.size * 10f64.powf(uniform(&mut rng, -1.5, 0.5));
+                gap.iter_mut().for_each(|g| *g += step * uniform(&mut rng, -1.0, 1.0));
+                let t = response.respond_point(gap, &old, &mut new).unwrap().traction;
+                let excess = |a: [f64; 2], b: f64| (dot(a, t) - b) / k[0].max(k[1]);
+                assert!(
+                    facets.iter().all(|f| excess(f.normal, f.bound) <= tolerance),
+                    "{}: {t:?} at {gap:?}",
+                    card.tag
+                );
+                let after = [gap[0] + t[0] / k[0], gap[1] + t[1] / k[1]];
+                let mut rays = Vec::new();
+                for facet in &facets {
+                    let ray = facet.flow.map(|d| -d);
+                    let reversible = facet.mode == FacetMode::Opening && facet.bound == 0.0;
+                    rays.extend(reversible.then_some(facet.flow));
+                    rays.extend((reversible || excess(facet.normal, facet.bound) >= -tolerance).then_some(ray));
+                }
+                let flow = [after[0] - before[0], after[1] - before[1]];
+                assert!(in_cone(flow, &rays, tolerance), "{}: flow {flow:?} at {t:?}, not of {rays:?}", card.tag);
+                flows += usize::from(flow[0].hypot(flow[1]) > tolerance);
+                (before, old) = (after, new.clone());
+            }
+        }
+    }
+    assert!(flows >= 10_000, "only {flows} steps flowed");
 }
 
 /// Work = change of stored energy + dissipation, with an error that falls in proportion to the step.

@@ -132,7 +132,7 @@ fn first_yield(update: &dyn StressUpdate, direction: [f64; 3], stress_per_strain
         let middle = 0.5 * (low + high);
         let strain = [-middle * direction[0], -middle * direction[1], -middle * direction[2], 0.0, 0.0, 0.0];
         let point = update.update_point(&strain, 1.0, &old, &mut new).unwrap();
-        if point.region.name() == "elastic" { low = middle } else { high = middle }
+        if point.branch.name == "elastic" { low = middle } else { high = middle }
     }
     -low * stress_per_strain
 }
@@ -170,7 +170,7 @@ fn hydrostatic_compaction_along_the_table() {
                 .windows(2)
                 .find(|w| w[0][0] <= compaction && compaction <= w[1][0])
                 .map_or(12.0 * MPA, |w| w[0][1] + (compaction - w[0][0]) * (w[1][1] - w[0][1]) / (w[1][0] - w[0][0]));
-            if point.region.name() == "cap" {
+            if point.branch.name == "cap" {
                 near(p, wanted, 1e-9);
             }
         }

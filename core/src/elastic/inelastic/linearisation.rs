@@ -4,7 +4,7 @@
 use super::super::element::{Hooke, stiffness_of_strains};
 use super::super::shape::{SPRINGS, at_places, placed};
 use super::{InelasticBody, InelasticState, IsotropicElastic};
-use crate::law::{PlanarPoint, Region};
+use crate::law::{Effect, PlanarPoint};
 use crate::linear::{Entries, SparseLu};
 use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
@@ -91,14 +91,14 @@ impl InelasticBody {
                 let elastic = [strain[0], strain[1], point.strain_across, strain[2]];
                 let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
                 stored += 0.5 * weight * volume * (0..4).map(|i| stress[i] * (elastic[i] - plastic[i])).sum::<f64>();
-                if point.region != Region::Elastic {
+                if !point.branch.is_elastic() {
                     let before = start.plastic_strain[index];
                     let step = [0, 1, 2, 3].map(|i| plastic[i] - before[i]);
                     let [x, y, z, xy] = step;
                     let equivalent = (2.0 / 3.0 * (x * x + y * y + z * z + 0.5 * xy * xy)).sqrt();
                     end.plastic_strain[index] = plastic;
                     end.equivalent[index] += equivalent;
-                    if point.region != Region::Apex && stress[0] + stress[1] + stress[2] < 0.0 {
+                    if point.branch.effect != Effect::Tearing && stress[0] + stress[1] + stress[2] < 0.0 {
                         end.crushed[index] += equivalent;
                     }
                     end.dissipated += weight * volume * point.dissipation;
@@ -162,13 +162,13 @@ impl InelasticBody {
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
             let here = &points[first..first + operators.len()];
             first += operators.len();
-            let k = if here.iter().all(|point| point.region == Region::Elastic) {
+            let k = if here.iter().all(|point| point.branch.is_elastic()) {
                 stiffness_of_strains(operators, hooke)
             } else {
                 let mut k = DMatrix::zeros(2 * nodes.len(), 2 * nodes.len());
                 for ((b, weight), point) in operators.iter().zip(here) {
                     let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / e);
-                    if point.region != Region::Elastic {
+                    if !point.branch.is_elastic() {
                         d += hooke.stiffness() * share;
                     }
                     k += b.transpose() * (d * *weight) * b;

@@ -12,7 +12,7 @@
 
 use super::model::{Control, Model, Rate, State};
 use std::sync::Arc;
-use voussoir_core::law::{InterfaceResponse, TractionPoint, UpdateBranch};
+use voussoir_core::law::{Effect, InterfaceResponse, TractionPoint};
 use voussoir_core::path::{ContactEvent, ContactLaw, PathProblem};
 
 /// Contact points of one law, and where their states stand.
@@ -97,7 +97,7 @@ impl Responses {
             let mut points = vec![TractionPoint::ZERO; gap.len()];
             group.law.respond(&gap, &old, &mut new, &mut points).map_err(|failed| {
                 let contact = group.points[failed.point];
-                format!("the law of contact point {contact} gives no traction: {:?}", failed.failure)
+                format!("the law of contact point {contact} gives no traction: {}", failed.failure)
             })?;
             for (index, (contact, at)) in group.points.iter().zip(&group.places).enumerate() {
                 all[*contact] = points[index];
@@ -118,10 +118,10 @@ enum ContactStatus {
 }
 
 fn doing(point: &TractionPoint, gap: [f64; 2], slip: f64) -> ContactStatus {
-    match point.branch {
+    match point.branch.effect {
         _ if gap[0] > 0.0 && point.traction == [0.0; 2] && point.tangent == [[0.0; 2]; 2] => ContactStatus::Open,
-        UpdateBranch::Softening | UpdateBranch::SofteningSliding => ContactStatus::Softens,
-        UpdateBranch::Sliding => ContactStatus::Slides(slip > 0.0),
+        Effect::Softening => ContactStatus::Softens,
+        Effect::Sliding => ContactStatus::Slides(slip > 0.0),
         _ => ContactStatus::Holds,
     }
 }

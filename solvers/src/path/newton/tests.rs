@@ -11,7 +11,8 @@ use nalgebra::{DMatrix, Rotation2};
 use std::sync::Arc;
 use voussoir_core::elastic::{Condenser, IsotropicElastic, MeshDensity};
 use voussoir_core::law::{
-    Facet, Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises,
+    Effect, Facet, Isotropic, PlanarUpdate, Plane, StressPoint, StressUpdate, UpdateBranch, UpdateFailure, Voigt,
+    von_mises,
 };
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
@@ -545,7 +546,7 @@ impl StressUpdate for Mises {
         let mut point = StressPoint { tangent: self.elastic.tangent(), ..StressPoint::ZERO };
         point.stress = std::array::from_fn(|i| deviator[i] * (1.0 - share) - if i < 3 { pressure } else { 0.0 });
         if step > 0.0 {
-            point.region = Region::Shear;
+            point.branch = UpdateBranch::new("shear", Effect::Yielding);
             new[6] += step;
             (0..6).for_each(|i| new[i] += deviator[i] / trial * step * if i < 3 { 1.5 } else { 3.0 });
             point.dissipation = (trial - 3.0 * g * step) * step;

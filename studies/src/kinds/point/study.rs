@@ -7,8 +7,7 @@ use crate::config::overlay::join;
 use crate::config::report::{Mistake, sort, suggest};
 use crate::study::{OUTPUT, apply};
 use serde_json::{Map, Value as Json};
-use std::sync::Arc;
-use voussoir_core::law::{BulkMaterial, Formulation, InterfaceLaw, PlanarUpdate, Plane};
+use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate, Plane};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 use voussoir_solvers::point::{Control, PointLaw};
 
@@ -297,26 +296,13 @@ fn read_law(builder: &mut Builder<'_>, resolved: &Json, point: &Json) -> Option<
             if point["plane"].is_string() {
                 builder.wrong("point.plane", "is for materials; a joint is driven in its own plane", "remove it");
             }
-            match law.formulation() {
-                Formulation::Response(response) => Some((tag, PointLaw::Joint(response))),
-                Formulation::Facets(facets) => match law.stiffness() {
-                    Some(stiffness) if stiffness.iter().all(|k| k.is_finite()) => {
-                        let response = voussoir_core::law::FacetResponse::new(facets, stiffness);
-                        Some((tag, PointLaw::Joint(Arc::new(response))))
-                    }
-                    _ => {
-                        let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
-                        let help = "give the joint normal_stiffness and shear_stiffness";
-                        builder.wrong("point.joint", message, help);
-                        None
-                    }
-                },
-                _ => {
-                    let message = format!("interface law \"{tag}\" gives no tractions from gaps");
-                    builder.wrong("point.joint", message, "drive a law of facets or of tractions from gaps");
-                    None
-                }
-            }
+            let Some(response) = law.response() else {
+                let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
+                let help = "give the joint normal_stiffness and shear_stiffness";
+                builder.wrong("point.joint", message, help);
+                return None;
+            };
+            Some((tag, PointLaw::Joint(response)))
         }
         _ => {
             builder.wrong("point", "needs either material or joint", "name what is driven");
