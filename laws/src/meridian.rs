@@ -61,6 +61,11 @@ pub struct Returned {
     pub branch: UpdateBranch,
 }
 
+/// q²/(6 G) + p²/(2 K).
+fn stored(elastic: &Isotropic, pressure: f64, mises: f64) -> f64 {
+    mises * mises / (6.0 * elastic.shear) + pressure * pressure / (2.0 * elastic.bulk)
+}
+
 impl Trial {
     /// From the strain and the plastic strain that begins the state.
     pub fn new(elastic: &Isotropic, strain: &Voigt, state: &[f64]) -> Result<Self, UpdateFailure> {
@@ -83,7 +88,13 @@ impl Trial {
     pub fn elastic(&self, elastic: &Isotropic) -> StressPoint {
         let mut stress = self.deviator;
         stress[..3].iter_mut().for_each(|entry| *entry -= self.pressure);
-        StressPoint { stress, tangent: elastic.tangent(), branch: UpdateBranch::ELASTIC, dissipation: 0.0 }
+        StressPoint {
+            stress,
+            tangent: elastic.tangent(),
+            branch: UpdateBranch::ELASTIC,
+            stored: stored(elastic, self.pressure, self.mises),
+            dissipated: 0.0,
+        }
     }
 
     /// The answer with this return; adds the step's plastic strain to the state.
@@ -106,7 +117,12 @@ impl Trial {
             stress[i] -= unit * back.pressure;
         }
         let q = y * self.mises;
-        let dissipation = q * (self.mises - q) / (3.0 * shear) + back.pressure * back.compaction;
-        StressPoint { stress, tangent, branch: back.branch, dissipation }
+        StressPoint {
+            stress,
+            tangent,
+            branch: back.branch,
+            stored: stored(elastic, back.pressure, q),
+            dissipated: q * (self.mises - q) / (3.0 * shear) + back.pressure * back.compaction,
+        }
     }
 }

@@ -4,8 +4,7 @@
 use crate::path::of_body;
 use crate::results::CaseResult;
 use crate::study::Kinematics;
-use voussoir_core::elastic::{Condenser, IsotropicElastic};
-use voussoir_core::law::Deformability;
+use voussoir_core::elastic::Condenser;
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage};
@@ -115,31 +114,20 @@ pub fn deformed_blocks(
             continue;
         }
         let material = &assembly.catalogue.materials[shape.material].1;
-        let (young_modulus, poisson_ratio) = match material.deformability() {
-            Deformability::LinearElastic { young_modulus, poisson_ratio }
-            | Deformability::Inelastic { young_modulus, poisson_ratio } => (young_modulus, poisson_ratio),
-            _ => return Err(format!("the material of \"{}\" does not deform", shape.name)),
+        let Some(elasticity) = material.elasticity() else {
+            return Err(format!("the material of \"{}\" does not deform", shape.name));
         };
-        let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
         let (points, own) = (&problem.bodies[body].points, &forces[body]);
         let weight = turn(-theta, gravity);
-        let mut recovered = condenser.recover(&shape.vertices, elastic, &assembly.mesh, points, own, weight)?;
-        let (mut plastic_strain, mut yielded_across) = (Vec::new(), None);
+        let body_force = weight * material.density();
+        let mut recovered = condenser.recover(&shape.vertices, &elasticity, &assembly.mesh, points, own, body_force)?;
+        let mut plastic_strain = Vec::new();
         if let (Some(inelastic), Some(own)) = (&problem.bodies[body].inelastic, state.inelastic(body)) {
             let imbalance = recovered.imbalance;
-            let (found, zz) = inelastic.recover(&own.displacement, &own.state)?;
+            let found = inelastic.recover(&own.displacement, &own.state)?;
             recovered = voussoir_core::elastic::Recovered { imbalance, ..found };
-            yielded_across = Some(zz);
             plastic_strain = inelastic.by_element(&own.state.equivalent);
         }
-        let across = match assembly.plane {
-            voussoir_core::law::Plane::Strain => poisson_ratio,
-            voussoir_core::law::Plane::Stress => 0.0,
-        };
-        let full = |stress: &[[f64; 3]], own: Option<&Vec<f64>>| -> Vec<[f64; 4]> {
-            let zz = |i: usize, [xx, yy, _]: [f64; 3]| own.map_or(across * (xx + yy), |own| own[i]);
-            stress.iter().enumerate().map(|(i, s)| [s[0], s[1], zz(i, *s), s[2]]).collect()
-        };
         let [fx, fy, moment] = recovered.imbalance;
         let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * problem.bodies[body].mass;
         blocks.push(DeformedBlock {
@@ -150,8 +138,8 @@ pub fn deformed_blocks(
                 .zip(&recovered.displacement)
                 .map(|(node, u)| rigid(*node) + turn(theta, *u))
                 .collect(),
-            stress: full(&recovered.stress, yielded_across.as_ref().map(|zz| &zz[0])),
-            cell_stress: full(&recovered.element_stress, yielded_across.as_ref().map(|zz| &zz[1])),
+            stress: recovered.stress,
+            cell_stress: recovered.element_stress,
             nodes: recovered.nodes,
             cells: recovered.elements,
             order: recovered.order,

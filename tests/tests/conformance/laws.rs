@@ -43,7 +43,7 @@ fn every_material_conforms() {
         let again: Box<dyn BulkMaterial> =
             serde_json::from_value(serde_json::to_value(&material).expect("serialises")).expect("and back");
         assert_eq!(material.density(), again.density());
-        assert_eq!(material.deformability(), again.deformability());
+        assert_eq!(material.elasticity(), again.elasticity());
         let mut unknown = table.clone();
         unknown["no_such_key"] = 1.0.into();
         assert!(serde_json::from_value::<Box<dyn BulkMaterial>>(unknown).is_err(), "{}", card.tag);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use voussoir::core::law::{
     BulkMaterial, FacetMode, InterfaceLaw, InterfaceResponse, PlanarPoint, PlanarUpdate, Plane, StressPoint,
-    StressUpdate, TractionPoint,
+    StressUpdate, TractionPoint, UpdateContext,
 };
 use voussoir::core::plugin::{Capability, Card, PluginKind, Property, Sample};
 use voussoir_tests::samples::samples;
@@ -37,7 +37,7 @@ fn materials() -> Vec<Subject<Arc<dyn StressUpdate>>> {
         assert_eq!(material.stress_update().is_some(), card.offers(Capability::STRESS_UPDATE), "{}", card.tag);
         let Some((law, again)) = material.stress_update().zip(again.stress_update()) else { continue };
         let (old, mut new) = (untouched(&*law), untouched(&*law));
-        let point = law.update_point(&[0.0; 6], length(&*law), &old, &mut new).unwrap();
+        let point = law.update_point(&[0.0; 6], &UpdateContext::of_length(length(&*law)), &old, &mut new).unwrap();
         let stiffness = point.tangent.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
         all.push(Subject { card, sample, law, again, stiffness });
     }
@@ -99,15 +99,21 @@ fn every_material_with_state_conforms() {
                 let step = sample.size * 10f64.powf(uniform(&mut rng, -1.5, 0.5));
                 strain.iter_mut().for_each(|e| *e += step * uniform(&mut rng, -1.0, 1.0));
                 let (mut new, mut other) = (vec![0.0; size], vec![9.0; size]);
-                let here = law.update_point(&strain, length, &old, &mut new).unwrap_or_else(|f| panic!("{tag}: {f}"));
-                assert_eq!(here, again.update_point(&strain, length, &old, &mut other).unwrap(), "{tag} is not pure");
+                let here = law
+                    .update_point(&strain, &UpdateContext::of_length(length), &old, &mut new)
+                    .unwrap_or_else(|f| panic!("{tag}: {f}"));
+                assert_eq!(
+                    here,
+                    again.update_point(&strain, &UpdateContext::of_length(length), &old, &mut other).unwrap(),
+                    "{tag} is not pure"
+                );
                 assert_eq!(new, other, "{tag} is not pure");
                 let mut batch = [StressPoint::ZERO];
-                law.update(&[strain], &[length], &old, &mut other, &mut batch).unwrap();
+                law.update(&[strain], &[UpdateContext::of_length(length)], &old, &mut other, &mut batch).unwrap();
                 assert_eq!((batch[0], &new), (here, &other), "{tag}");
                 let work = stiffness * sample.size * sample.size;
-                let creates = here.dissipation < -3e-14 * work && card.claims(Property::DISSIPATIVE);
-                assert!(!creates, "{tag}: dissipation {:e}", here.dissipation);
+                let creates = here.dissipated < -3e-14 * work && card.claims(Property::DISSIPATIVE);
+                assert!(!creates, "{tag}: dissipation {:e}", here.dissipated);
                 let skew = (0..36).map(|k| (here.tangent[k / 6][k % 6] - here.tangent[k % 6][k / 6]).abs());
                 let skew = skew.fold(0.0, f64::max);
                 assert!(skew <= 1e-12 * stiffness || !card.claims(Property::SYMMETRIC_TANGENT), "{tag}: {skew:e}");
@@ -116,7 +122,7 @@ fn every_material_with_state_conforms() {
                 let mut same = true;
                 let mut at = |factor: f64| {
                     let moved: [f64; 6] = std::array::from_fn(|i| strain[i] + factor * h * direction[i]);
-                    let point = law.update_point(&moved, length, &old, &mut other).unwrap();
+                    let point = law.update_point(&moved, &UpdateContext::of_length(length), &old, &mut other).unwrap();
                     same &= point.branch == here.branch;
                     point.stress
                 };
@@ -273,6 +279,77 @@ fn the_energy_of_a_joint_balances() {
     }
 }
 
+/// The same for materials, through strains that yield and come back.
+#[test]
+fn the_energy_of_a_material_balances() {
+    for Subject { card, sample, law, stiffness, .. } in materials() {
+        let unit = sample.size;
+        let path = |s: f64| -> [f64; 6] {
+            std::array::from_fn(|i| {
+                unit * (1.2 * (f64::from(i as u8 + 3) * s).sin() - if i < 3 { 0.8 * s } else { 0.0 })
+            })
+        };
+        let context = UpdateContext::of_length(length(&*law));
+        let mut errors = Vec::new();
+        for steps in [1000, 2000, 4000] {
+            let (mut old, mut new) = (untouched(&*law), untouched(&*law));
+            let mut before = law.update_point(&[0.0; 6], &context, &old, &mut new).unwrap();
+            let (mut work, mut dissipated, mut strain) = (0.0, 0.0, [0.0; 6]);
+            for step in 1..=steps {
+                let to = path(f64::from(step) / f64::from(steps));
+                let point = law.update_point(&to, &context, &old, &mut new).unwrap();
+                old.copy_from_slice(&new);
+                for i in 0..6 {
+                    work += 0.5 * (before.stress[i] + point.stress[i]) * (to[i] - strain[i]);
+                }
+                dissipated += point.dissipated;
+                (before, strain) = (point, to);
+            }
+            errors.push((work - before.stored - dissipated).abs() / (stiffness * unit * unit));
+        }
+        println!("{}: {errors:?}", card.tag);
+        assert!(errors[2] <= 0.6 * errors[0] + 1e-9 && errors[2] < 8e-3, "{}: {errors:?}", card.tag);
+    }
+}
+
+/// Strains turned together with the block give turned stresses; with the block left where it is only where the
+/// material has no axes.
+#[test]
+fn stresses_turn_with_the_block() {
+    let mut rng = rng();
+    for Subject { card, sample, law, stiffness, .. } in materials() {
+        let mut turned_alone: f64 = 0.0;
+        for _ in 0..100 {
+            let (sine, cosine) = uniform(&mut rng, 0.1, 3.0).sin_cos();
+            let axes = [[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]];
+            let strain: [f64; 6] = std::array::from_fn(|_| sample.size * uniform(&mut rng, -2.0, 2.0));
+            let turned = |v: [f64; 6], shear: f64| {
+                // Engineering shears count twice.
+                let t = [
+                    [v[0], v[3] * shear, v[5] * shear],
+                    [v[3] * shear, v[1], v[4] * shear],
+                    [v[5] * shear, v[4] * shear, v[2]],
+                ];
+                let entry =
+                    |i: usize, j: usize| (0..9).map(|k| axes[k / 3][i] * t[k / 3][k % 3] * axes[k % 3][j]).sum::<f64>();
+                [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1) / shear, entry(1, 2) / shear, entry(2, 0) / shear]
+            };
+            let length = length(&*law);
+            let at = |strain: [f64; 6], axes: Option<&[[f64; 3]; 3]>| {
+                let context = UpdateContext { axes, ..UpdateContext::of_length(length) };
+                law.update_point(&strain, &context, &untouched(&*law), &mut untouched(&*law)).unwrap().stress
+            };
+            let expected = turned(at(strain, None), 1.0);
+            let off = |found: [f64; 6]| {
+                (0..6).map(|i| (found[i] - expected[i]).abs()).fold(0.0, f64::max) / (stiffness * sample.size)
+            };
+            assert!(off(at(turned(strain, 0.5), Some(&axes))) < 1e-9, "{}: {strain:?}", card.tag);
+            turned_alone = turned_alone.max(off(at(turned(strain, 0.5), None)));
+        }
+        assert_eq!(turned_alone < 1e-9, card.claims(Property::ISOTROPIC), "{}: {turned_alone:e}", card.tag);
+    }
+}
+
 /// No update allocates, whatever happens in it.
 #[test]
 fn no_law_call_allocates() {
@@ -283,10 +360,10 @@ fn no_law_call_allocates() {
         let planar: Vec<[f64; 3]> = strains.iter().map(|s| [s[0], s[1], s[3]]).collect();
         let old: Vec<f64> = std::iter::repeat_n(untouched(&*law), 64).flatten().collect();
         let (mut new, mut points) = (old.clone(), vec![StressPoint::ZERO; 64]);
-        let lengths = [length(&*law); 64];
+        let contexts = [UpdateContext::of_length(length(&*law)); 64];
         let mut fine = false;
         let count = allocation_counter::measure(|| {
-            fine = law.update(&strains, &lengths, &old, &mut new, &mut points).is_ok();
+            fine = law.update(&strains, &contexts, &old, &mut new, &mut points).is_ok();
         });
         assert!(fine && count.count_total == 0, "{}: {count:?}", card.tag);
         for plane in [Plane::Strain, Plane::Stress] {
@@ -297,7 +374,7 @@ fn no_law_call_allocates() {
             let (mut new, mut points) = (old.clone(), vec![PlanarPoint::ZERO; 64]);
             let mut fine = Ok(());
             let count = allocation_counter::measure(|| {
-                fine = wrapped.update(&planar, &lengths, &old, &mut new, &mut points);
+                fine = wrapped.update(&planar, &contexts, &old, &mut new, &mut points);
             });
             assert!(fine.is_ok() && count.count_total == 0, "{}: {count:?} {fine:?}", card.tag);
         }
