@@ -9,7 +9,7 @@
 
 use super::facet::{dilatancy, dot, norm};
 use super::mode::ContactMode;
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// A contact point of the active set.
 #[derive(Debug, Clone)]

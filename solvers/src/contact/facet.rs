@@ -1,6 +1,6 @@
 //! Plane vectors and single facets: slack, multipliers of pairs, dilatancy.
 
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// Scalar product.
 pub fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -6,7 +6,7 @@
 //! ```
 
 use super::facet::{across, dilatancy, dot, multipliers};
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

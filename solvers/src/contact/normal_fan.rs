@@ -6,7 +6,7 @@
 //! Operations Research 17: the normal manifold).
 
 use super::facet::dot;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// A cell: the facets that are active in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

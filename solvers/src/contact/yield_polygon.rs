@@ -10,7 +10,7 @@
 use super::facet::{dot, multipliers, norm, slack};
 use super::mode::ContactMode;
 use super::normal_fan::{Cell, NormalFan};
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// Facets of a law and the corners at which two of them meet, for one unit of area.
 #[derive(Debug, Clone, Default)]

@@ -17,8 +17,8 @@
 
 use super::condensed::{Condensed, pair};
 use super::csr::CsrMatrix;
-use crate::lu::Analysis;
 use std::rc::Rc;
+use voussoir_core::linear::Analysis;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;

@@ -1,4 +1,4 @@
-//! Path solvers: elastic blocks under growing loads until they collapse, and behind.
+//! Path solvers: elastic blocks under growing loads until they collapse, and post-peak.
 
 pub mod continuation;
 pub mod event;

@@ -11,7 +11,7 @@ use super::problem::{RateOutcome, RateProblem};
 use crate::optimise::branching::{LcpAnswer, solve_by_branching};
 use crate::optimise::lcp::Lcp;
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
 
 /// Facets above which it is not tried.
 const MOST: usize = 160;

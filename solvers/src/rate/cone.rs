@@ -6,7 +6,7 @@ use crate::contact::mode::ContactMode;
 use crate::contact::normal_fan::{Cell, NormalFan};
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::optimise::lcg::Lcg;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// The cone of a point.
 pub struct Cone {

@@ -6,7 +6,7 @@ use super::lcp::{Pivoted, pivoting};
 use super::problem::{Rate, RateProblem};
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::with_flow_between;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// Shares of the laws' own flow.
 const SHARES: [f64; 7] = [0.0, 0.25, 0.5, 0.7, 0.85, 0.95, 1.0];
@@ -17,8 +17,8 @@ pub fn flow_rule_homotopy(problem: &RateProblem, trials: &mut u64) -> Option<Rat
     for share in SHARES {
         let facets: Vec<Vec<Facet>> = problem.points.iter().map(|p| with_flow_between(p.facets, share)).collect();
         let points = problem.points.iter().zip(&facets).map(|(p, facets)| ActivePoint { facets, ..p.clone() });
-        let (s, drive) = (problem.s.clone(), problem.drive.clone());
-        let turned = RateProblem { points: points.collect(), s, drive, from_nothing: false };
+        let (s, load_rate) = (problem.s.clone(), problem.load_rate.clone());
+        let turned = RateProblem { points: points.collect(), s, load_rate, from_nothing: false };
         match active_set(&turned, modes.clone(), trials) {
             Some(rate) if share == 1.0 => return Some(rate),
             Some(rate) => modes = rate.modes,

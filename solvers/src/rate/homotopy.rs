@@ -116,8 +116,8 @@ pub fn homotopy(problem: &RateProblem, number: u64, trials: &mut u64) -> Option<
     let unit: Vec<f64> = (0..n).map(|i| problem.points[i / 2].stiffness.sqrt()).collect();
     let shift = |i: usize, j: usize| if i == j { REGULARISATION } else { 0.0 };
     let s = DMatrix::from_fn(n, n, |i, j| problem.s[(i, j)] / (unit[i] * unit[j]) - shift(i, j));
-    let drive = DVector::from_fn(n, |i, _| problem.drive[i] / unit[i]);
-    let size = drive.amax().max(1e-300);
+    let load_rate = DVector::from_fn(n, |i, _| problem.load_rate[i] / unit[i]);
+    let size = load_rate.amax().max(1e-300);
     let mut random = Lcg::new(0x51_7CC1 + 7919 * number);
     let (mut force, mut gap) = (DVector::zeros(n), DVector::zeros(n));
     let mut cells = Vec::with_capacity(cones.len());
@@ -135,7 +135,7 @@ pub fn homotopy(problem: &RateProblem, number: u64, trials: &mut u64) -> Option<
             gap[2 * k + i] = place.2[i] * size;
         });
     }
-    let error = &force - &s * &gap - &drive;
+    let error = &force - &s * &gap - &load_rate;
     let (force_rate, gap_rate) = (DVector::zeros(n), DVector::zeros(n));
     let equations = UpdatedInverse::zeros(n);
     let mut path = RatePath { cones: &cones, cells, s, error, force, gap, force_rate, gap_rate, equations, trials };

@@ -10,7 +10,7 @@ use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcp::{Lcp, LemkeResult, lemke};
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// Relative tolerance of what pivoting finds.
 pub const PIVOTING: f64 = 1e-7;
@@ -65,7 +65,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
     let constant = DVector::from_fn(n, |i, _| {
         let (k, a) = (facets[i].0, facet(problem, facets[i]).normal);
-        -(a[0] * problem.drive[2 * k] + a[1] * problem.drive[2 * k + 1]) / unit[i]
+        -(a[0] * problem.load_rate[2 * k] + a[1] * problem.load_rate[2 * k + 1]) / unit[i]
     });
     Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant } })
 }

@@ -25,7 +25,7 @@ const ITERATIONS: usize = 60;
 
 /// ‖F‖ in the units of the points, and the modes there.
 fn natural_map(problem: &RateProblem, cones: &[Cone], gaps: &DVector<f64>) -> (f64, Vec<ContactMode>) {
-    let forces = &problem.s * gaps + &problem.drive;
+    let forces = &problem.s * gaps + &problem.load_rate;
     let (mut sum, mut modes) = (0.0, Vec::with_capacity(cones.len()));
     for (k, cone) in cones.iter().enumerate() {
         let stiffness = problem.points[k].stiffness;
@@ -49,7 +49,8 @@ pub fn line_search(problem: &RateProblem, guess: &[ContactMode], trials: &mut u6
     for (k, point) in problem.points.iter().enumerate() {
         (0..2).for_each(|i| s[(2 * k + i, 2 * k + i)] -= REGULARISATION * point.stiffness);
     }
-    let softer = RateProblem { points: problem.points.clone(), s, drive: problem.drive.clone(), from_nothing: false };
+    let softer =
+        RateProblem { points: problem.points.clone(), s, load_rate: problem.load_rate.clone(), from_nothing: false };
     let mut gaps = match softer.attempt(guess, 1.0) {
         Some(attempt) if !attempt.singular => attempt.gaps,
         _ => DVector::zeros(2 * problem.points.len()),

@@ -7,7 +7,7 @@ use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcg::Lcg;
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// Dry friction without dilatancy at its apex.
 fn facets(friction: f64) -> Vec<Facet> {
@@ -36,7 +36,7 @@ fn branching_agrees_with_every_combination() {
         let problem = RateProblem {
             points: (0..count).map(point).collect(),
             s: &root * root.transpose() + DMatrix::identity(2 * count, 2 * count) * 0.01,
-            drive: DVector::from_fn(2 * count, |_, _| random.next()),
+            load_rate: DVector::from_fn(2 * count, |_, _| random.next()),
             from_nothing: false,
         };
         let all = enumerate_modes(&problem, &mut 0);

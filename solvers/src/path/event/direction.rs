@@ -128,12 +128,12 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Dire
         let Trace { system, state, factors, log, .. } = &mut *trace;
         let base = factors.present.as_mut()?;
         let refined_columns = base.refine_columns;
-        let drive = (state.drive, load);
-        let local = SchurComplement::new((system, &state.points), base, drive, &open, &modes, &mut log.counts.solves)?;
+        let at = (state.load_step, load);
+        let local = SchurComplement::new((system, &state.points), base, at, &open, &modes, &mut log.counts.solves)?;
         let guess: Vec<ContactMode> = open.iter().map(|c| modes[*c]).collect();
         let rate = active_set(&local.rate, guess.clone(), &mut log.counts.rates.trials);
         let rate = rate.or_else(|| local.rate.at_constant_load(&guess))?;
-        let mut rates = rates_of(&local, base, drive, &rate, (&open, &mut modes))?;
+        let mut rates = rates_of(&local, base, at, &rate, (&open, &mut modes))?;
         log.counts.solves += rates.refinements;
         let forces = 2 * system.contacts;
         if rates.factor == 0.0 {
@@ -168,13 +168,13 @@ fn take(trace: &mut Trace, modes: Vec<ContactMode>, rates: Rates, load: &Load) -
 fn rates_of(
     local: &SchurComplement,
     base: &mut UpdatedFactorisation,
-    drive: (usize, &Load),
+    at: (usize, &Load),
     rate: &Rate,
     (open, modes): (&[usize], &mut [ContactMode]),
 ) -> Option<Rates> {
     open.iter().zip(&rate.modes).for_each(|(c, mode)| modes[*c] = *mode);
-    let x = local.combine(base, drive, rate)?;
-    Some(refined(local, base, Rates::new(local.system, x, rate.factor, drive.1), drive.1, modes))
+    let x = local.combine(base, at, rate)?;
+    Some(refined(local, base, Rates::new(local.system, x, rate.factor, at.1), at.1, modes))
 }
 
 /// The rate problem over the active set. `None` where linear algebra fails.
@@ -182,8 +182,8 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
     let mut modes = present_modes(trace);
     let Trace { system, state, factors, log, associated, .. } = &mut *trace;
     let base = factors.present.as_mut()?;
-    let (drive, solves) = ((state.drive, load), &mut log.counts.solves);
-    let mut local = SchurComplement::new((system, &state.points), base, drive, active, &modes, solves)?;
+    let (at, solves) = ((state.load_step, load), &mut log.counts.solves);
+    let mut local = SchurComplement::new((system, &state.points), base, at, active, &modes, solves)?;
     local.rate.from_nothing = state.x.iter().all(|v| *v == 0.0);
     let (rate, falling) = match solve(&local.rate, !*associated, &mut log.counts.rates) {
         RateOutcome::Found(rate, others) => {
@@ -210,7 +210,7 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
             )));
         }
     };
-    let rates = rates_of(&local, base, drive, &rate, (active, &mut modes))?;
+    let rates = rates_of(&local, base, at, &rate, (active, &mut modes))?;
     log.counts.solves += rates.refinements;
     let mut rates = solved_anew(trace, rates, load, &modes);
     if rates.factor != 0.0 && rates.worst > BELIEVED[1] {
@@ -272,7 +272,7 @@ fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMod
     let Some(mut base) = UpdatedFactorisation::new(system, modes.to_vec(), trace.factors.refine_columns) else {
         return rates;
     };
-    let Some(direct) = base.load_rate(system, trace.state.drive, load) else { return rates };
+    let Some(direct) = base.load_rate(system, trace.state.load_step, load) else { return rates };
     let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
     // Where the matrix is singular the sense of its solution is rounding.
     let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
@@ -292,7 +292,7 @@ fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<D
         trace.log.counts.factorisations += 1;
         let system = &trace.system;
         let mut base = UpdatedFactorisation::new(system, modes.clone(), trace.factors.refine_columns)?;
-        let x = base.load_rate(system, trace.state.drive, load)?.clone();
+        let x = base.load_rate(system, trace.state.load_step, load)?.clone();
         let rates = Rates::new(system, x, 1.0, load);
         let mut changes = leaving((system, &trace.state.points), &rates, active, &modes)?;
         if changes.is_empty() {

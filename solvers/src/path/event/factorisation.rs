@@ -13,9 +13,9 @@ use super::system::{Load, System};
 use crate::contact::facet::across;
 use crate::contact::mode::ContactMode;
 use crate::linear::condensed::Condensed;
-use crate::lu::Entries;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
+use voussoir_core::linear::Entries;
 
 /// Added to the flexibility of stuck points, relative to its mean, and taken out again by
 /// refinement: forces that equilibrium and flexibility leave open are shared evenly.

@@ -1,4 +1,4 @@
-//! Following the path: from drive to drive and from event to event, and how it ends.
+//! Following the path: from load step to load step and from event to event, and how it ends.
 
 use super::direction::{Next, next_direction};
 use super::force_method::{Followed, Sections, by_force_method};
@@ -7,9 +7,9 @@ use super::rates::Direction;
 use super::system::Load;
 use super::trace::Trace;
 use super::unique::unique;
+use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::certificate::flow_residual;
-use voussoir_core::path::{DriveEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
 
 /// Rate problems put to the whole system, at most, before the force method is tried again.
 const MOST_RESTS: u32 = 32;
@@ -28,7 +28,7 @@ enum End {
     Ray(Direction, Load, f64),
 }
 
-/// One drive while it is followed.
+/// One load step while it is followed.
 struct Run {
     load: Load,
     /// Sense of λ: 1 or −1.
@@ -49,13 +49,13 @@ struct Follower<'a> {
     limit_point: Option<PathState>,
 }
 
-/// Follows all drives of a problem.
+/// Follows all load steps of a problem.
 pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
     let trace = Trace::new(problem, settings, observer);
     let sections = Sections::new(&trace.system, problem);
     let mut follower = Follower { trace, sections, limit_point: None };
-    for drive in 0..problem.drives.len() {
-        let mut run = begin(&mut follower, drive);
+    for load_step in 0..problem.load_steps.len() {
+        let mut run = begin(&mut follower, load_step);
         if follower.trace.last.is_none() && !follower.trace.record() {
             return finish(follower, End::Stalled("stopped by its observer".into()));
         }
@@ -78,14 +78,14 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
     finish(follower, End::LimitPoint)
 }
 
-/// Begins a drive.
-fn begin(follower: &mut Follower, drive: usize) -> Run {
+/// Begins a load step.
+fn begin(follower: &mut Follower, load_step: usize) -> Run {
     let trace = &mut follower.trace;
-    let present = &trace.problem.drives[drive];
-    (trace.state.drive, trace.state.factor) = (drive, present.start);
-    let (DriveEnd::Factor(target) | DriveEnd::Collapse(target)) = present.end;
+    let present = &trace.problem.load_steps[load_step];
+    (trace.state.load_step, trace.state.factor) = (load_step, present.start);
+    let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = present.end;
     let sense = match present.end {
-        DriveEnd::Factor(f) if f < present.start => -1.0,
+        LoadStepEnd::Factor(f) if f < present.start => -1.0,
         _ => 1.0,
     };
     let mut load = trace.system.load(trace.problem, &present.loading);
@@ -99,7 +99,7 @@ fn begin(follower: &mut Follower, drive: usize) -> Run {
     Run { load, sense, start: present.start, target, events: 0, most_events, rests: 0, patience: 1 }
 }
 
-/// Goes on to the next event, or through many by the force method; whether the drive goes on. An error is the end.
+/// Goes on to the next event, or through many by the force method; whether the load step goes on. An error is the end.
 fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if (run.target - follower.trace.state.factor) * run.sense <= 0.0 {
         return Ok(false);
@@ -147,7 +147,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if follower.limit_point.is_some() && stops { Err(End::LimitPoint) } else { Ok(true) }
 }
 
-/// Follows the path by the force method as far as it goes; whether that reached the end of the drive.
+/// Follows the path by the force method as far as it goes; whether that reached the end of the load step.
 fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if run.rests > 0 || follower.limit_point.is_some() {
         run.rests = run.rests.saturating_sub(1);
@@ -245,7 +245,7 @@ fn finish_ray(mut follower: Follower, direction: &Direction, load: &Load, sense:
     let physical = power * force_unit * trace.system.displacement_unit * sense;
     let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
     let motion: Vec<[f64; 3]> = trace.bodies(&direction.x).into_iter().map(|b| b.map(|v| v * scale)).collect();
-    let gravity = trace.problem.drives[trace.state.drive].gravity;
+    let gravity = trace.problem.load_steps[trace.state.load_step].gravity;
     let (status, factor) = match (&follower.limit_point, gravity) {
         (Some(_), _) => (Status::LimitPoint, None),
         (None, true) => (Status::NoEquilibrium, None),
@@ -290,7 +290,7 @@ fn answer(follower: Follower, status: Status, factor: Option<f64>) -> PathAnswer
     };
     PathAnswer {
         status,
-        drive: state.drive,
+        load_step: state.load_step,
         factor: if status == Status::LimitPoint { Some(state.factor) } else { factor },
         state,
         last,

@@ -4,8 +4,8 @@ use super::rates::{Direction, MECHANISM};
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
-use voussoir_core::interface::FacetMode;
-use voussoir_core::path::{Happening, PathEvent};
+use voussoir_core::law::FacetMode;
+use voussoir_core::path::{ContactEvent, PathEvent};
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
 const SAME: f64 = 1e-12;
@@ -108,7 +108,7 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     point.opening = if was_open || flows { (point.opening + opening).max(0.0) } else { 0.0 };
     let mut happened = Vec::new();
     if !was_open && point.open() {
-        happened.push(Happening::Opens);
+        happened.push(ContactEvent::Opens);
     }
     // What began to flow in this step began at its start.
     if let ContactMode::Facet(f) = point.mode
@@ -116,9 +116,9 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     {
         let facet = &facets[f as usize];
         happened.extend(match facet.mode {
-            FacetMode::Sliding if facet.flow[1] > 0.0 => Some(Happening::SlipsBackward),
-            FacetMode::Sliding => Some(Happening::SlipsForward),
-            FacetMode::Crushing => Some(Happening::Crushes),
+            FacetMode::Sliding if facet.flow[1] > 0.0 => Some(ContactEvent::SlipsBackward),
+            FacetMode::Sliding => Some(ContactEvent::SlipsForward),
+            FacetMode::Crushing => Some(ContactEvent::Crushes),
             FacetMode::Opening => None,
         });
     }
@@ -131,12 +131,12 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
             dot(facet.normal, rate) > -1e-11 * size || slack(facet, force, 1.0) <= SAME
         });
         if had > 0 && point.active.is_empty() && !was_hit && point.noted {
-            happened.push(Happening::Sticks);
+            happened.push(ContactEvent::Sticks);
         }
     }
     point.noted |= !happened.is_empty();
-    let (drive, factor, contact) = (trace.state.drive, before, c);
-    trace.log.events.extend(happened.into_iter().map(|what| PathEvent { drive, factor, contact, what }));
+    let (load_step, factor, contact) = (trace.state.load_step, before, c);
+    trace.log.events.extend(happened.into_iter().map(|what| PathEvent { load_step, factor, contact, what }));
 }
 
 /// Contact points that arrive at a facet, or (`usize::MAX`) close.
@@ -156,8 +156,8 @@ pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
             }
             point.mode = ContactMode::Stick;
             point.noted = true;
-            let (drive, factor) = (state.drive, state.factor);
-            trace.log.events.push(PathEvent { drive, factor, contact: c, what: Happening::Closes });
+            let (load_step, factor) = (state.load_step, state.factor);
+            trace.log.events.push(PathEvent { load_step, factor, contact: c, what: ContactEvent::Closes });
             continue;
         }
         if !point.active.contains(&f) {

@@ -3,7 +3,7 @@
 use super::system::System;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// What is kept of a contact point between events.
 #[derive(Debug, Clone)]

@@ -37,7 +37,7 @@ impl<'a> SchurComplement<'a> {
     pub fn new(
         (system, all): (&'a System, &[Point]),
         base: &mut UpdatedFactorisation,
-        (drive, load): (usize, &Load),
+        (load_step, load): (usize, &Load),
         open: &[usize],
         modes: &[ContactMode],
         solves: &mut u64,
@@ -47,7 +47,7 @@ impl<'a> SchurComplement<'a> {
         points.extend(changed.filter(|c| !open.contains(c)));
         let (n, m) = (points.len(), open.len());
         base.respond(system, &points, solves)?;
-        base.load_rate(system, drive, load)?;
+        base.load_rate(system, load_step, load)?;
         let response = base.local(system, &points, load);
         // Rows that fix ε: ġ of the open points, the mode of the others.
         let mode = |(k, c): (usize, &usize)| system.rows(*c, if k < m { ContactMode::Stick } else { modes[*c] });
@@ -65,7 +65,7 @@ impl<'a> SchurComplement<'a> {
         let rate = RateProblem {
             points: active_points(system, all, open),
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
-            drive: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
+            load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
         };
         Some(SchurComplement { rate, system, points, open: m, response, epsilon })
@@ -75,7 +75,7 @@ impl<'a> SchurComplement<'a> {
     pub fn combine(
         &self,
         base: &mut UpdatedFactorisation,
-        (drive, load): (usize, &Load),
+        (load_step, load): (usize, &Load),
         rate: &Rate,
     ) -> Option<Vec<f64>> {
         let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
@@ -86,8 +86,8 @@ impl<'a> SchurComplement<'a> {
         } else {
             base.combine(&self.points, epsilon.as_slice(), base.nothing())
         };
-        let drive = base.load_rate(self.system, drive, load)?;
-        x.iter_mut().zip(drive).for_each(|(x, d)| *x += rate.factor * d);
+        let load_rate = base.load_rate(self.system, load_step, load)?;
+        x.iter_mut().zip(load_rate).for_each(|(x, d)| *x += rate.factor * d);
         Some(x)
     }
 

@@ -5,7 +5,7 @@
 
 use crate::contact::mode::ContactMode;
 use crate::linear::csr::CsrMatrix;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 use voussoir_core::path::{Contact, ContactLaw, Loading, PathBody, PathProblem};
 
 /// A loading in scaled units.
@@ -128,7 +128,7 @@ impl System {
     /// Scales a problem.
     pub fn new(problem: &PathProblem) -> Self {
         let contacts = problem.contacts.len();
-        let loads: Vec<f64> = problem.drives.iter().map(|drive| magnitude(problem, &drive.loading)).collect();
+        let loads: Vec<f64> = problem.load_steps.iter().map(|step| magnitude(problem, &step.loading)).collect();
         let force_unit = loads.iter().copied().find(|m| *m > 0.0).unwrap_or(1.0);
         let mut indices = 0..;
         let mut index = |held: bool| if held { None } else { indices.next() };

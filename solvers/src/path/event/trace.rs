@@ -15,8 +15,8 @@ pub struct State {
     pub x: Vec<f64>,
     /// Contact points.
     pub points: Vec<Point>,
-    /// The drive in force and its factor.
-    pub drive: usize,
+    /// The load step in force and its factor.
+    pub load_step: usize,
     /// λ.
     pub factor: f64,
     /// Work of loads and supports \[J\].
@@ -83,7 +83,7 @@ pub struct Trace<'a> {
     pub system: System,
     /// Whether all flow is associated.
     pub associated: bool,
-    /// Gaps that each drive's loading opens per unit of its factor \[m\], where it opens any.
+    /// Gaps that each load step's loading opens per unit of its factor \[m\], where it opens any.
     pub loading_gaps: Vec<Option<Vec<[f64; 2]>>>,
     /// The present state.
     pub state: State,
@@ -99,8 +99,8 @@ impl<'a> Trace<'a> {
     /// At the unloaded state.
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
         let system = System::new(problem);
-        let opened = |drive: &voussoir_core::path::Drive| {
-            let gaps = problem.loading_gaps(&drive.loading);
+        let opened = |load_step: &voussoir_core::path::LoadStep| {
+            let gaps = problem.loading_gaps(&load_step.loading);
             gaps.iter().flatten().any(|g| *g != 0.0).then_some(gaps)
         };
         let points = (0..system.contacts).map(|c| Point::untouched(&system, c)).collect();
@@ -109,9 +109,9 @@ impl<'a> Trace<'a> {
             problem,
             settings,
             observer,
-            associated: problem.facets.iter().all(|f| voussoir_core::interface::is_associated(f)),
-            loading_gaps: problem.drives.iter().map(opened).collect(),
-            state: State { x, points, drive: 0, factor: 0.0, work: 0.0, dissipated: 0.0 },
+            associated: problem.facets.iter().all(|f| voussoir_core::law::is_associated(f)),
+            loading_gaps: problem.load_steps.iter().map(opened).collect(),
+            state: State { x, points, load_step: 0, factor: 0.0, work: 0.0, dissipated: 0.0 },
             system,
             factors: Factors::default(),
             log: Log::default(),
@@ -128,9 +128,9 @@ impl<'a> Trace<'a> {
 
     fn motion(&self) -> Vec<[f64; 3]> {
         let mut motion = self.bodies(&self.state.x);
-        let applied = self.problem.applied(self.state.drive, self.state.factor);
-        for (drive, factor) in self.problem.drives.iter().zip(applied) {
-            for (body, settlement) in &drive.loading.settlements {
+        let applied = self.problem.applied(self.state.load_step, self.state.factor);
+        for (load_step, factor) in self.problem.load_steps.iter().zip(applied) {
+            for (body, settlement) in &load_step.loading.settlements {
                 (0..3).for_each(|i| motion[*body][i] += factor * settlement[i]);
             }
         }
@@ -139,14 +139,14 @@ impl<'a> Trace<'a> {
 
     /// Displacement at the load \[m\].
     pub fn displacement(&self) -> f64 {
-        load_displacement(self.problem, &self.problem.drives[self.state.drive].loading, &self.motion())
+        load_displacement(self.problem, &self.problem.load_steps[self.state.load_step].loading, &self.motion())
     }
 
     /// Gaps at the present state \[m\].
     fn gaps(&self) -> Vec<[f64; 2]> {
         let mut gap = self.system.gaps(&self.state.x);
         gap.iter_mut().zip(&self.system.gap).for_each(|(g, initial)| g[0] += initial);
-        let applied = self.problem.applied(self.state.drive, self.state.factor);
+        let applied = self.problem.applied(self.state.load_step, self.state.factor);
         for (opened, factor) in self.loading_gaps.iter().zip(applied) {
             if let (Some(opened), true) = (opened, factor != 0.0) {
                 let factor = factor / self.system.displacement_unit;
@@ -162,14 +162,14 @@ impl<'a> Trace<'a> {
         let motion = self.motion();
         let state = &self.state;
         PathState {
-            drive: state.drive,
+            load_step: state.load_step,
             factor: state.factor,
             force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.force_unit)).collect(),
             gap: self.gaps(),
             stored: self.last.as_ref().map_or(0.0, |(s, _)| s.stored),
             dissipated: state.dissipated,
             work: state.work,
-            displacement: load_displacement(self.problem, &self.problem.drives[state.drive].loading, &motion),
+            displacement: load_displacement(self.problem, &self.problem.load_steps[state.load_step].loading, &motion),
             motion,
             memory: Vec::new(),
             yielded: Vec::new(),
@@ -193,7 +193,7 @@ impl<'a> Trace<'a> {
         let mut state = self.present();
         let mut now = snapshot(self.problem, &state);
         now.stored += self.stored_by_opening();
-        let applied = self.problem.applied(self.state.drive, self.state.factor);
+        let applied = self.problem.applied(self.state.load_step, self.state.factor);
         if let Some((before, earlier)) = &self.last {
             self.state.work += work(before, &now, [earlier, &applied]);
         }

@@ -6,7 +6,7 @@ use super::system::SHIFT;
 use crate::contact::mode::ContactMode as Regime;
 use crate::contact::yield_polygon::YieldPolygon as Polygon;
 use crate::linear::csr::CsrMatrix;
-use crate::lu::Entries;
+use voussoir_core::linear::Entries;
 
 /// Gaps and balance by all unknowns.
 #[derive(Debug)]

@@ -20,9 +20,9 @@ use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
 use crate::linear::condensed::Condensed;
 use crate::linear::csr::CsrMatrix;
-use crate::lu::Analysis;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
+use voussoir_core::linear::Analysis;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
@@ -86,7 +86,7 @@ impl Frame {
     }
 
     /// Right-hand sides of the rows that belong to no contact point.
-    pub fn drive(&mut self, right: &[f64]) {
+    pub fn load_rate(&mut self, right: &[f64]) {
         self.right[2 * self.points..].copy_from_slice(&right[2 * self.points..]);
         self.base = None;
     }

@@ -208,7 +208,7 @@ impl Model<'_> {
         let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
         right[row.len() - 1] = -left;
         let mut frame = Frame::new(curvature.rows(self).clone(), points, row);
-        frame.drive(&right);
+        frame.load_rate(&right);
         let rate = self.moving(&vec![0.0; right.len()]);
         let mut path = StepPath { model: self, frame, place, rate, gap_rate: vec![[0.0; 2]; points] };
         for c in 0..points {

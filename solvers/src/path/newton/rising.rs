@@ -14,11 +14,11 @@
 
 use super::model::{Model, Rate, State};
 use crate::contact::mode::ContactMode;
-use crate::lu::{Entries, SparseLu};
 use crate::optimise::branching::{LcpAnswer, solve_by_branching};
 use crate::optimise::lcp::Lcp;
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
+use voussoir_core::linear::{Entries, SparseLu};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
 const VERGE: f64 = 1e-8;

@@ -14,7 +14,7 @@ use crate::contact::facet::across;
 use crate::contact::mode::ContactMode;
 use crate::path::event::point::Point;
 use nalgebra::{Matrix2, Matrix3, Matrix3xX, Vector2, Vector3};
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// Condition of K, relative to all points stuck, above which its twist is an unknown of its own.
 const WEAK: f64 = 1e5;

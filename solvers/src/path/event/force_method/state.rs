@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 /// What is nearest: arc until then, rate with which it comes, contact point, facet or `usize::MAX`.
 pub type Hit = (f64, f64, usize, usize);
 
-/// One drive, or a part of it.
+/// One load step, or a part of it.
 pub struct Run<'s> {
     /// The assembly as sections.
     pub sections: &'s Sections,
