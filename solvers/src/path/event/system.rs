@@ -5,7 +5,7 @@
 
 use crate::path::rows::Rows;
 use voussoir_core::law::{Facet, FacetMode};
-use voussoir_core::path::{ContactLaw, Loading, PathProblem};
+use voussoir_core::path::{Loading, PathProblem};
 
 /// A facet at a contact point: slack s = bound − a·r, flow ġ = −γ d.
 #[derive(Debug, Clone, Copy)]
@@ -159,17 +159,14 @@ impl System {
         let facets = problem
             .contacts
             .iter()
-            .map(|contact| match contact.law {
-                ContactLaw::Bonded => None,
-                ContactLaw::Law(law) => {
-                    let scaled = |f: &Facet| PointFacet {
-                        mode: f.mode,
-                        normal: f.normal,
-                        bound: f.bound * contact.area / force_unit,
-                        flow: f.flow,
-                    };
-                    Some(problem.facets[law].iter().map(scaled).collect())
-                }
+            .map(|contact| {
+                let scaled = |f: &Facet| PointFacet {
+                    mode: f.mode,
+                    normal: f.normal,
+                    bound: f.bound * contact.area / force_unit,
+                    flow: f.flow,
+                };
+                Some(contact.law.facets()?.iter().map(scaled).collect())
             })
             .collect();
         let gap = problem.contacts.iter().map(|c| c.gap / displacement_unit).collect();

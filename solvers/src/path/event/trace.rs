@@ -67,7 +67,7 @@ impl<'a> Tracer<'a> {
             let gaps = problem.loading_gaps(&load_step.loading);
             gaps.iter().flatten().any(|g| *g != 0.0).then_some(gaps)
         };
-        let associated = problem.facets.iter().all(|f| voussoir_core::law::is_associated(f));
+        let associated = problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated);
         Tracer {
             x: vec![0.0; system.size()],
             loading_gaps: problem.load_steps.iter().map(opened).collect(),

@@ -22,7 +22,6 @@ use super::law::Regime;
 use super::model::{Control, Model, Refusal, State};
 use crate::path::shuffle::Shuffle;
 use crate::path::walk::{Met, Standing, Walk};
-use voussoir_core::path::ContactLaw;
 
 /// Sizes of the shift of the guess that are tried, relative to forces.
 const SHIFTS: [f64; 3] = [1e-3, 0.03, 0.5];
@@ -124,12 +123,9 @@ impl Model<'_> {
         let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
         right[size - 1] = -left;
         frame.load_rate(&right);
-        let laws = self.polygons.clone();
+        let (laws, polygon_of) = (self.polygons.clone(), self.polygon_of.clone());
         let contacts = &self.problem.contacts;
-        let law_of = |c: usize| match contacts[c].law {
-            ContactLaw::Law(law) => Some(&laws[law]),
-            ContactLaw::Bonded => None,
-        };
+        let law_of = |c: usize| polygon_of[c].map(|law| &laws[law]);
         let mut standing: Vec<Option<Standing>> = Vec::with_capacity(points);
         for (c, contact) in contacts.iter().enumerate() {
             let cell = place.cells[c].zip(law_of(c));
