@@ -6,7 +6,7 @@
 use crate::contact::mode::ContactMode;
 use crate::linear::csr::CsrMatrix;
 use voussoir_core::law::Facet;
-use voussoir_core::path::{Contact, ContactLaw, Loading, PathBody, PathProblem};
+use voussoir_core::path::{Contact, Loading, PathBody, PathProblem};
 
 /// A loading in scaled units.
 #[derive(Debug, Clone)]
@@ -140,12 +140,9 @@ impl System {
         let displacement_unit = if mean > 0.0 { force_unit * mean } else { problem.length };
         let scaled = |value: f64| value * force_unit / displacement_unit;
         let flexibility: Vec<_> = flexibility.into_iter().map(|row| merged(row, scaled)).collect();
-        let facets_of = |contact: &Contact| match contact.law {
-            ContactLaw::Bonded => None,
-            ContactLaw::Law(law) => {
-                let scaled = |f: &Facet| Facet { bound: f.bound * contact.area / force_unit, ..*f };
-                Some(problem.facets[law].iter().map(scaled).collect())
-            }
+        let facets_of = |contact: &Contact| {
+            let scaled = |f: &Facet| Facet { bound: f.bound * contact.area / force_unit, ..*f };
+            contact.law.facets().map(|facets| facets.iter().map(scaled).collect())
         };
         System {
             contacts,

@@ -109,7 +109,7 @@ impl<'a> Trace<'a> {
             problem,
             settings,
             observer,
-            associated: problem.facets.iter().all(|f| voussoir_core::law::is_associated(f)),
+            associated: problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated),
             loading_gaps: problem.load_steps.iter().map(opened).collect(),
             state: State { x, points, load_step: 0, factor: 0.0, work: 0.0, dissipated: 0.0 },
             system,

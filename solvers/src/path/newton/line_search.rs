@@ -129,7 +129,7 @@ mod tests {
     use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
-    use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
+    use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw};
 
     /// A rigid block on three compliant points of the ground with friction that dilates, pushed down and aside.
     fn pushed() -> PathProblem {
@@ -142,6 +142,8 @@ mod tests {
             flexibility: None,
             inelastic: None,
         };
+        let [left, right] = Facet::friction(0.5, 0.0, 0.2);
+        let law = PointLaw::Facets(vec![Facet::opening(0.0), left, right].into());
         let contact = |x: f64| Contact {
             joint: 0,
             position: Vec2::new(x, 0.0),
@@ -151,20 +153,17 @@ mod tests {
             plus: Attachment { body: 1, slot: None },
             area: 1.0,
             gap: 0.0,
-            law: ContactLaw::Law(0),
+            law: law.clone(),
             sliding: voussoir_core::path::Sliding::middle(0.0),
             compliance: [1e-6, 2e-6],
         };
         let pole = Vec2::new(0.0, 0.5);
         let loading = Loading { forces: vec![(1, None, pole, Vec2::new(4.0, -10.0))], ..Loading::default() };
-        let [left, right] = Facet::friction(0.5, 0.0, 0.2);
         PathProblem {
             bodies: vec![body(true, Vec2::zeros()), body(false, pole)],
             body_of: vec![0, 1],
             contacts: vec![contact(-1.0), contact(0.2), contact(1.0)],
-            facets: vec![vec![Facet::opening(0.0), left, right]],
             load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
-            responses: vec![],
             length: 2.0,
             counters: Counters::new(),
         }

@@ -74,7 +74,7 @@ impl Model<'_> {
     /// pivoting, with associated flow by the caller's (a line search finds nothing there that it does not).
     pub fn newton(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
         let found = self.iterate(start, guess.clone(), control, 8, None);
-        if found.is_ok() || (!self.responses.is_empty() && self.polygons.iter().all(|law| law.facets.is_empty())) {
+        if found.is_ok() || (!self.responses.is_empty() && self.polygons.is_empty()) {
             return found;
         }
         if self.finite() || !self.piecewise_linear() {
