@@ -9,9 +9,9 @@ pub mod random;
 pub mod seen;
 pub mod written;
 
-use voussoir::core::assembly::Assembly;
-use voussoir::core::geometry::Vec2;
 use voussoir::core::limit::Status;
+use voussoir::core::model::Assembly;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::PathSettings;
 use voussoir::kinds::run::answer_case;
 use voussoir::results::CaseResult;

@@ -1,10 +1,8 @@
 //! The registry, and the conformance of every card.
 
 use std::path::Path;
-use voussoir::core::card::{audit, cards, cards_of};
-use voussoir::core::interface::{Formulation, InterfaceLaw};
-use voussoir::core::material::BulkMaterial;
-use voussoir::core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir::core::law::{BulkMaterial, Formulation, InterfaceLaw};
+use voussoir::core::plugin::{Need, Parameter, PluginKind, Shape, audit, cards, cards_of};
 
 /// Every kind of plug-in is there, no tag twice, every card complete, file = tag.
 #[test]
@@ -40,7 +38,7 @@ fn documented(tag: &str, parameter: &Parameter) {
 }
 
 /// A configuration of a law or material with a plausible number for every key that must be given.
-fn sample(card: &voussoir::core::card::Card) -> serde_json::Value {
+fn sample(card: &voussoir::core::plugin::Card) -> serde_json::Value {
     let mut table = serde_json::Map::new();
     table.insert("law".into(), card.tag.into());
     for parameter in card.parameters {

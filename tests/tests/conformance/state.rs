@@ -5,13 +5,11 @@ use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use voussoir::core::assembly::Plane;
-use voussoir::core::card::{Capability, Card, cards};
-use voussoir::core::interface::facet_response::FacetResponse;
-use voussoir::core::interface::{Formulation, InterfaceLaw, InterfaceResponse, TractionPoint};
-use voussoir::core::material::plane::{PlanarPoint, PlanarUpdate};
-use voussoir::core::material::{BulkMaterial, StressPoint, StressUpdate};
-use voussoir::core::schema::{Need, PluginKind, Shape};
+use voussoir::core::law::{
+    BulkMaterial, FacetResponse, Formulation, InterfaceLaw, InterfaceResponse, PlanarPoint, PlanarUpdate, Plane,
+    StressPoint, StressUpdate, TractionPoint,
+};
+use voussoir::core::plugin::{Capability, Card, Need, PluginKind, Shape, cards};
 
 fn uniform(rng: &mut TestRng, low: f64, high: f64) -> f64 {
     low + (high - low) * (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64
@@ -199,7 +197,7 @@ fn every_joint_with_state_conforms() {
                     response.respond_point(moved, &old, &mut other).unwrap()
                 };
                 let (a, b, c, d) = (at(1.0), at(-1.0), at(0.5), at(-0.5));
-                let same = [a, b, c, d].iter().all(|point| point.regime == here.regime);
+                let same = [a, b, c, d].iter().all(|point| point.branch == here.branch);
                 let worst = |f: &dyn Fn(usize) -> f64| f(0).abs().max(f(1).abs());
                 let spread =
                     worst(&|i| (a.traction[i] - b.traction[i]) / (2.0 * h) - (c.traction[i] - d.traction[i]) / h);
@@ -208,8 +206,8 @@ fn every_joint_with_state_conforms() {
                         here.tangent[i][0] * direction[0] + here.tangent[i][1] * direction[1]
                             - (c.traction[i] - d.traction[i]) / h
                     });
-                    assert!(error < 1e-6, "{tag}: tangent off by {error:e} in {:?}", here.regime);
-                    *compared.entry((tag, here.regime.name())).or_default() += 1;
+                    assert!(error < 1e-6, "{tag}: tangent off by {error:e} in {:?}", here.branch);
+                    *compared.entry((tag, here.branch.name())).or_default() += 1;
                 }
                 old = new;
             }

@@ -1,6 +1,6 @@
 //! What must not change a load factor: units, scale, rotation, reflection, numbering, solver.
 
-use voussoir::core::geometry::Vec2;
+use voussoir::core::model::geometry::Vec2;
 use voussoir_tests::{Arch, as_blocks, assert_close, collapse_factor, crushing, friction};
 
 const SOLVERS: [&str; 2] = ["limit_chain", "limit_conic"];

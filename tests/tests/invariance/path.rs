@@ -1,8 +1,8 @@
 //! What must not matter to a path, with friction that is not associated: which way round the scene is,
 //! in which order its blocks are named, in which units it is written. Events are compared one by one.
 
-use voussoir::core::geometry::Vec2;
-use voussoir::core::path::Happening;
+use voussoir::core::model::geometry::Vec2;
+use voussoir::core::path::ContactEvent;
 use voussoir::results::CaseResult;
 use voussoir_tests::{Arch, answered, as_blocks, assert_close};
 
@@ -33,7 +33,7 @@ fn path(study: &str, modulus: f64) -> CaseResult {
 fn events(
     result: &CaseResult,
     place: impl Fn([f64; 2]) -> [f64; 2],
-    what: impl Fn(Happening) -> Happening,
+    what: impl Fn(ContactEvent) -> ContactEvent,
 ) -> Vec<([f64; 2], String, bool, f64)> {
     let round = |x: f64| (x * 1e6).round() / 1e6 + 0.0;
     let one = |e: &voussoir::results::EventEntry| {
@@ -61,7 +61,7 @@ fn same(found: &CaseResult, expected: &CaseResult) {
     let kind = |r: &CaseResult| r.mechanism.as_ref().map(|m| (m.kind, m.hinge_count, m.sliding.len()));
     assert_eq!(kind(found), kind(expected));
     let slips =
-        |e: &&voussoir::results::EventEntry| matches!(e.what, Happening::SlipsForward | Happening::SlipsBackward);
+        |e: &&voussoir::results::EventEntry| matches!(e.what, ContactEvent::SlipsForward | ContactEvent::SlipsBackward);
     assert!(expected.events.iter().filter(slips).count() > 0, "it slides");
 }
 
@@ -79,8 +79,8 @@ fn mirror_order_and_units_do_not_matter() {
     let mirrored = path(&as_blocks(&arch(), flip, flip, &order), 5e9);
     same(&mirrored, &plain);
     let other = |what| match what {
-        Happening::SlipsForward => Happening::SlipsBackward,
-        Happening::SlipsBackward => Happening::SlipsForward,
+        ContactEvent::SlipsForward => ContactEvent::SlipsBackward,
+        ContactEvent::SlipsBackward => ContactEvent::SlipsForward,
         kept => kept,
     };
     same_events(events(&mirrored, |[x, y]| [-x, y], other), expected.clone(), unit);

@@ -1,8 +1,8 @@
 //! Scenes of the random stress test at whose corners a path once stopped where it need not: what it finds there now,
 //! and with how much work. The numbers are those from which `random::scene` makes the scene.
 
+use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
-use voussoir::core::mechanism::MechanismKind;
 use voussoir::results::CaseResult;
 use voussoir_tests::random::{Law, Numbers, RandomScene, scene};
 use voussoir_tests::{answered, assert_close};

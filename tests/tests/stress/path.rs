@@ -3,8 +3,8 @@
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
-use voussoir::core::mechanism::MechanismKind;
 use voussoir::results::CaseResult;
 use voussoir_tests::answered;
 use voussoir_tests::random::{History, Law, RandomScene, numbers, scene};

@@ -1,8 +1,8 @@
 //! Arches whose load factors are known by independent calculation (CLAIMS, code D of the project's
 //! benchmark list): Drosopoulos, Stavroulakis & Massalas (2008), Construction and Building Materials 22.
 
+use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
-use voussoir::core::mechanism::MechanismKind;
 use voussoir_tests::{Arch, answered, assert_close, collapse_factor, crushing, friction};
 
 const SOLVERS: [(&str, f64); 2] = [("limit_chain", 1e-12), ("limit_conic", 1e-11)];

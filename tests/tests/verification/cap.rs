@@ -1,7 +1,6 @@
 //! The cap model against closed forms (reference values derived from its equations by hand, by name).
 
-use voussoir::core::assembly::Plane;
-use voussoir::core::material::{BulkMaterial, Isotropic, StressUpdate, plane::PlanarUpdate};
+use voussoir::core::law::{BulkMaterial, Isotropic, PlanarUpdate, Plane, StressUpdate};
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
 

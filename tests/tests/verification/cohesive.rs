@@ -1,8 +1,8 @@
 //! Cohesive joints along a path against closed forms, an integration along the joint and limit analysis.
 
 use std::sync::Arc;
+use voussoir::core::certificate::{PathChecker, TOLERANCES, Tolerance};
 use voussoir::core::limit::Status;
-use voussoir::core::path::certificate::{TOLERANCES, Tolerance, Watch};
 use voussoir::core::path::{Continuation, PathAnswer, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
     arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
@@ -19,10 +19,10 @@ fn settings(strategy: impl Continuation + 'static) -> PathSettings {
 fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Vec<PathState>) {
     let case = first_case(text);
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
-    let mut states = Seen { watch: Watch::new(settings.finite), ..Seen::default() };
+    let mut states = Seen { checker: PathChecker::new(settings.finite), ..Seen::default() };
     let answer = NewtonPath {}.trace(&problem, settings, &mut states);
     for Tolerance { name, result: bound, .. } in TOLERANCES {
-        let worst = states.watch.worst.get(name).copied().unwrap_or(0.0);
+        let worst = states.checker.worst.get(name).copied().unwrap_or(0.0);
         assert!(worst <= *bound, "{name} is {worst:.2e}: {:?}", answer.notes);
     }
     (problem, answer, states.states)
@@ -270,10 +270,14 @@ solver = "newton_path"
     let pressed = (moves[0] + moves[1] + moves[2]) / (1.0 + softness * NORMAL);
     let last = softening(moves.iter().sum());
     let expected = [tension(first), secant * back, NORMAL * pressed, tension(last)];
-    for (drive, stress) in expected.into_iter().enumerate() {
-        let state = states.iter().rfind(|s| s.drive == drive).expect("a state of each drive");
+    for (load_step, stress) in expected.into_iter().enumerate() {
+        let state = states.iter().rfind(|s| s.load_step == load_step).expect("a state of each load step");
         let force: f64 = -state.force[state.force.len() / 2..].iter().map(|r| r[0]).sum::<f64>();
-        assert!((force / 0.02 - stress).abs() <= 1e-8 * STRENGTH, "drive {drive}: {} against {stress}", force / 0.02);
+        assert!(
+            (force / 0.02 - stress).abs() <= 1e-8 * STRENGTH,
+            "load step {load_step}: {} against {stress}",
+            force / 0.02
+        );
     }
 }
 
@@ -324,7 +328,7 @@ loads = [{{ kind = "point", block = "a", point = [0.0, 0.0], force = [1e3, 0.0] 
         assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
         let peak = shear((end * resist / SHEAR).sqrt()) * area / 1e3;
         assert_close(answer.factor.expect("a factor"), peak, 1e-9);
-        for state in states.iter().filter(|s| s.drive == 1) {
+        for state in states.iter().filter(|s| s.load_step == 1) {
             let g = state.gap[0][1].abs();
             assert!((state.factor * 1e3 / area - shear(g)).abs() <= 1e-8 * COHESION, "{} at {g}", state.factor);
         }
@@ -512,8 +516,9 @@ fn arch_of(elements: usize) -> [f64; 2] {
     let (_, answer, states) = traced(&text, &settings);
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     let at = 2e-3;
-    let pair =
-        states.windows(2).find(|pair| pair[0].drive == 1 && pair[0].displacement < at && pair[1].displacement >= at);
+    let pair = states
+        .windows(2)
+        .find(|pair| pair[0].load_step == 1 && pair[0].displacement < at && pair[1].displacement >= at);
     let [before, after] = pair.expect("a path of 2 mm") else { unreachable!("windows of two") };
     let share = (at - before.displacement) / (after.displacement - before.displacement);
     [answer.factor.expect("a factor"), before.dissipated + share * (after.dissipated - before.dissipated)]

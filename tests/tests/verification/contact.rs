@@ -4,13 +4,13 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use voussoir::core::assembly::Bond;
-use voussoir::core::geometry::Vec2;
-use voussoir::core::interface::Facet;
+use voussoir::core::certificate::PathChecker;
+use voussoir::core::law::Facet;
 use voussoir::core::limit::Status;
-use voussoir::core::path::certificate::Watch;
+use voussoir::core::model::Bond;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
+    Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
     PathSolver, PathState, Sliding, Unobserved,
 };
 use voussoir::solvers::path::continuation::arc_length::ArcLength;
@@ -22,9 +22,9 @@ use voussoir_tests::{assert_close, first_case, small_displacements};
 
 /// Both path solvers' answers; every state of the first is certified.
 fn both(problem: &PathProblem) -> [PathAnswer; 2] {
-    let mut watch = Watch::new(false);
-    let event = EventPath {}.trace(problem, &small_displacements(), &mut watch);
-    for (name, value) in &watch.worst {
+    let mut checker = PathChecker::new(false);
+    let event = EventPath {}.trace(problem, &small_displacements(), &mut checker);
+    for (name, value) in &checker.worst {
         assert!(*value < 1e-8, "{name} {value:e} {:?}", event.notes);
     }
     let control = LoadControl { first_step: 0.1, largest_step: None };
@@ -269,12 +269,12 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
     let foot = |x| contact(x, ContactLaw::Law(0), [1e-3 / k, feet.len() as f64 / k]);
     // Pulls sideways only: its other stiffness is nothing beside the feet's.
     let pulling = contact(0.0, ContactLaw::Bonded, [1e9 / k, 1.0 / spring]);
-    let drive =
-        |stage, gravity, loading, end| Drive { stage, gravity, loading, start: 0.0, end: DriveEnd::Factor(end) };
+    let load_step =
+        |stage, gravity, loading, end| LoadStep { stage, gravity, loading, start: 0.0, end: LoadStepEnd::Factor(end) };
     let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
     let push = Loading { forces: vec![(1, None, Vec2::zeros(), Vec2::new(1.0, 0.0))], ..Loading::default() };
-    let mut drives = vec![drive(0, true, dead, 1.0)];
-    drives.extend(history.iter().enumerate().map(|(stage, q)| drive(stage + 1, false, push.clone(), *q)));
+    let mut load_steps = vec![load_step(0, true, dead, 1.0)];
+    load_steps.extend(history.iter().enumerate().map(|(stage, q)| load_step(stage + 1, false, push.clone(), *q)));
     let facets = std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect();
     PathProblem {
         bodies: vec![body(true), body(false)],
@@ -282,7 +282,7 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         contacts: feet.iter().map(|x| foot(*x)).chain([pulling]).collect(),
         facets: vec![facets],
         responses: vec![],
-        drives,
+        load_steps,
         length: 2.0,
         counters: BTreeMap::new(),
     }
@@ -308,8 +308,8 @@ fn a_slider_beside_a_spring_keeps_its_hysteresis() {
         let answer = solver.trace(&problem, &settings, &mut record);
         assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
         let (mut slip, mut dissipated, mut seen) = (0.0, 0.0, 0);
-        for state in record.0.iter().filter(|state| state.drive > 0) {
-            let force: f64 = history[..state.drive - 1].iter().sum::<f64>() + state.factor;
+        for state in record.0.iter().filter(|state| state.load_step > 0) {
+            let force: f64 = history[..state.load_step - 1].iter().sum::<f64>() + state.factor;
             // The point slides where the force that sticking needs is beyond F.
             let stuck = (force + stiffness * slip) / (stiffness + spring);
             let sense = (stiffness * (stuck - slip)).signum();
@@ -343,13 +343,13 @@ fn the_energy_error_of_steps_falls_with_their_square() {
         .into_iter()
         .map(|parts| {
             let problem = slider(0.5, 40.0, [1000.0, 250.0], &feet, &vec![22.0 / f64::from(parts); parts as usize]);
-            let mut watch = Watch::new(false);
+            let mut checker = PathChecker::new(false);
             let control = ArcLength { first_step: 100.0, ..ArcLength::default() };
             let settings = PathSettings { continuation: Some(Arc::new(control)), ..small_displacements() };
-            let answer = NewtonPath {}.trace(&problem, &settings, &mut watch);
+            let answer = NewtonPath {}.trace(&problem, &settings, &mut checker);
             assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
             assert!(answer.state.dissipated > 0.1 * answer.state.work, "feet slide");
-            watch.worst["path_energy"]
+            checker.worst["path_energy"]
         })
         .collect();
     assert!(errors[0] < 1e-3, "{errors:?}");
@@ -390,10 +390,10 @@ fn a_three_hinge_arch_has_the_thrust_of_statics() {
         let half = problem.bodies.iter().find(|b| !b.held && b.pole.x < 0.0).expect("a left half");
         let weight = 10.0 * half.mass;
         let thrust = weight * (half.pole.x - springing) / crown;
-        let mut watch = Watch::new(false);
-        let answer = EventPath {}.trace(&problem, &small_displacements(), &mut watch);
+        let mut checker = PathChecker::new(false);
+        let answer = EventPath {}.trace(&problem, &small_displacements(), &mut checker);
         assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-        assert!(watch.worst.values().all(|value| *value < 1e-8), "{:?}", watch.worst);
+        assert!(checker.worst.values().all(|value| *value < 1e-8), "{:?}", checker.worst);
         let stepped = NewtonPath {}.trace(&problem, &small_displacements(), &mut Unobserved);
         assert_eq!(stepped.status, Status::Stands, "{:?}", stepped.notes);
         assert!(difference(&answer.state, &stepped.state) < 1e-9);

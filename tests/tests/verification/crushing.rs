@@ -1,7 +1,7 @@
 //! An arch whose stone softens as it crushes: what the fracture energy makes independent of the mesh, and what
 //! goes wrong without it (docs/crushing.md).
 
-use voussoir::core::path::certificate::Watch;
+use voussoir::core::certificate::PathChecker;
 use voussoir::core::path::{PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Seen;
@@ -43,16 +43,16 @@ fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<
         stop_factor: None,
         continuation: None,
     };
-    let mut seen = Seen { states: Vec::new(), watch: Watch::new(true) };
+    let mut seen = Seen { states: Vec::new(), checker: PathChecker::new(true) };
     let answer = NewtonPath {}.trace(&problem, &settings, &mut seen);
     for name in ["path_inner_equilibrium", "path_yield", "path_strength"] {
-        let worst = seen.watch.worst[name];
+        let worst = seen.checker.worst[name];
         if worst.is_nan() || worst > 1e-8 {
             return Err(format!("{name} is {worst:.2e}: {:?}, {:?}", answer.factor, answer.notes));
         }
     }
     let peak = answer.factor.ok_or(format!("{:?}", answer.notes))?;
-    let pair = seen.states.windows(2).find(|pair| pair[1].drive == 1 && pair[1].displacement >= AT);
+    let pair = seen.states.windows(2).find(|pair| pair[1].load_step == 1 && pair[1].displacement >= AT);
     let Some([before, after]) = pair else { return Err(format!("peak {peak}, {:?}", answer.notes)) };
     let share = (AT - before.displacement) / (after.displacement - before.displacement);
     let lost = |state: &PathState| (state.work - state.stored) / 1e3;

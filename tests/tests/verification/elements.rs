@@ -2,9 +2,9 @@
 //! invariances of the condensed flexibility, and a dense Ritz solution of another kind.
 
 use nalgebra::{Complex, DMatrix, DVector, Matrix2};
-use voussoir::core::assembly::Plane;
 use voussoir::core::elastic::*;
-use voussoir::core::geometry::{Vec2, area_and_centroid, cross, edges, turned};
+use voussoir::core::law::Plane;
+use voussoir::core::model::geometry::{Vec2, area_and_centroid, cross, edges, turned};
 use voussoir_tests::{Arch, assert_close, first_case};
 
 const STONE: IsotropicElastic = IsotropicElastic { young_modulus: 5e9, poisson_ratio: 0.3, density: 2200.0 };

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use voussoir::core::geometry::Vec2;
-use voussoir::core::interface::Facet;
+use voussoir::core::certificate::PathChecker;
+use voussoir::core::law::Facet;
 use voussoir::core::limit::Status;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
-    PathSolver, PathState, Sliding, certificate::Watch,
+    Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
+    PathSolver, PathState, Sliding,
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
@@ -87,7 +88,7 @@ fn congruent_voussoirs_are_condensed_once() {
 }
 
 /// The two-degree-of-freedom example of Klarbring's kind: K = [[1, −1], [−1, 2]] in (t, n).
-fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
+fn two_degrees(friction: f64, forces: &[([f64; 2], LoadStepEnd)]) -> PathProblem {
     // C = K⁻¹ = [[2, 1], [1, 1]]; axes x = t, y = n. The plus body is held and deforms.
     let flexibility = Arc::new(nalgebra::DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]));
     let body = |flexible: bool| PathBody {
@@ -99,7 +100,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
         flexibility: flexible.then(|| flexibility.clone()),
         inelastic: None,
     };
-    let drive = |(stage, (force, end)): (usize, &([f64; 2], DriveEnd))| Drive {
+    let load_step = |(stage, (force, end)): (usize, &([f64; 2], LoadStepEnd))| LoadStep {
         stage,
         gravity: false,
         loading: Loading {
@@ -127,7 +128,7 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], DriveEnd)]) -> PathProblem {
         }],
         facets: vec![std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect()],
         responses: Vec::new(),
-        drives: forces.iter().enumerate().map(drive).collect(),
+        load_steps: forces.iter().enumerate().map(load_step).collect(),
         length: 1.0,
         counters: BTreeMap::new(),
     }
@@ -142,7 +143,8 @@ fn trace(problem: &PathProblem) -> (PathAnswer, Vec<PathState>) {
 /// f = (λ, −1), μ = 1.25: stick to 1.25, slip back to λ = 1 at u_t = 1, then open without bound.
 #[test]
 fn friction_can_turn_the_load_back() {
-    let problem = two_degrees(1.25, &[([0.0, -1.0], DriveEnd::Factor(1.0)), ([1.0, 0.0], DriveEnd::Collapse(100.0))]);
+    let problem =
+        two_degrees(1.25, &[([0.0, -1.0], LoadStepEnd::Factor(1.0)), ([1.0, 0.0], LoadStepEnd::Collapse(100.0))]);
     let (answer, states) = trace(&problem);
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     assert_close(answer.factor.unwrap(), 1.25, 1e-12);
@@ -157,7 +159,7 @@ fn friction_can_turn_the_load_back() {
 #[test]
 fn separation_where_it_is_the_only_solution() {
     for mu in [0.5, 0.9, 1.1] {
-        let (answer, states) = trace(&two_degrees(mu, &[([1.2, -1.0], DriveEnd::Factor(1.0))]));
+        let (answer, states) = trace(&two_degrees(mu, &[([1.2, -1.0], LoadStepEnd::Factor(1.0))]));
         assert_eq!(answer.status, Status::Stands, "{mu} {:?}", answer.notes);
         let end = states.last().unwrap();
         // K u = f without contact force: u_t = 2·1.2 − 1, u_n = 1.2 − 1.
@@ -172,7 +174,7 @@ fn separation_where_it_is_the_only_solution() {
 #[test]
 fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
     for (mu, slip) in [(1.25f64, 0.2f64), (1.5, 0.6), (2.0, 0.8)] {
-        let problem = two_degrees(mu, &[([1.2, -1.0], DriveEnd::Factor(1.0))]);
+        let problem = two_degrees(mu, &[([1.2, -1.0], LoadStepEnd::Factor(1.0))]);
         // u_t and (r_t, r_n): K u = f + r.
         let slides = [slip, slip - 1.2, 1.0 - slip];
         let sticks = [0.0, -1.2, 1.0];
@@ -180,12 +182,12 @@ fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
             let motion = vec![[0.0; 3]; 2];
             let (force, gap) = (vec![[r_n, r_t]], vec![[u_n, u]]);
             let state = PathState { factor: 1.0, force, gap, motion, ..PathState::default() };
-            let mut watch = Watch::new(false);
-            watch.state(&problem, &state);
+            let mut checker = PathChecker::new(false);
+            checker.state(&problem, &state);
             let names = ["path_kinematics", "path_strength", "path_penetration", "path_complementarity"];
             let dissipated = -r_t * u;
             assert!(dissipated >= 0.0);
-            names.iter().map(|name| watch.worst.get(name).copied().unwrap_or(0.0)).fold(0.0, f64::max)
+            names.iter().map(|name| checker.worst.get(name).copied().unwrap_or(0.0)).fold(0.0, f64::max)
         };
         assert!((slides[1].abs() - mu * slides[2]).abs() < 1e-14, "slip at the limit of friction");
         for (solution, opening) in [(slides, 0.0), (sticks, 0.0), ([1.4, 0.0, 0.0], 0.2)] {
@@ -193,7 +195,7 @@ fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
         }
         // What is no solution is seen: another slip.
         assert!(residuals([slip + 0.1, slip - 1.1, 0.9 - slip], 0.0) > 0.01);
-        let in_turn = [([0.0, -1.0], DriveEnd::Factor(1.0)), ([1.2, 0.0], DriveEnd::Factor(1.0))];
+        let in_turn = [([0.0, -1.0], LoadStepEnd::Factor(1.0)), ([1.2, 0.0], LoadStepEnd::Factor(1.0))];
         for problem in [problem, two_degrees(mu, &in_turn)] {
             for solver in [&EventPath {} as &dyn PathSolver, &NewtonPath {}] {
                 let answer = solver.trace(&problem, &small_displacements(), &mut Record::default());
@@ -226,12 +228,12 @@ fn a_spring_slider_keeps_its_history() {
     );
     let case = first_case(&text);
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
-    let mut watch = Watch::new(false);
-    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut watch);
+    let mut checker = PathChecker::new(false);
+    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut checker);
     // 4 kN of weight, friction 2 kN: ±1.5 kN never slide as a whole; forces at the joint's points do
     // not move, because weight and shear are uniform.
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-    assert!(watch.worst["path_energy"] < 1e-9 && watch.worst["path_strength"] < 1e-9, "{:?}", watch.worst);
+    assert!(checker.worst["path_energy"] < 1e-9 && checker.worst["path_strength"] < 1e-9, "{:?}", checker.worst);
     let slip = answer.state.motion[1][0];
     assert!(slip.abs() < 1e-12, "back where it began: {slip:e}");
     // 2.5 kN is more than friction carries: the block slides away at 2.
@@ -283,8 +285,8 @@ loads = [
 "#;
     let case = first_case(text);
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
-    let mut watch = Watch::new(false);
-    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut watch);
+    let mut checker = PathChecker::new(false);
+    let answer = EventPath {}.trace(&problem, &small_displacements(), &mut checker);
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
     let bottom = |x: f64| {
         let at = |c: &Contact| c.position.y.abs() < 1e-12 && (c.position.x - x).abs() < 1e-9;
@@ -298,7 +300,7 @@ loads = [
     for (x, u) in published {
         assert_close(bottom(x), u, 0.05);
     }
-    for (name, value) in watch.worst.iter().filter(|(name, _)| **name != "path_energy") {
+    for (name, value) in checker.worst.iter().filter(|(name, _)| **name != "path_energy") {
         assert!(*value < 1e-8, "{name} {value:e}");
     }
 }
@@ -375,7 +377,7 @@ loads = [{ kind = "body", acceleration = [-9.81, 0.0] }]
     let answer = EventPath {}.trace(&problem, &small_displacements(), &mut record);
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
     let opened = record.0.iter().filter(|s| s.force.iter().any(|f| f[0] < 0.0)).count();
-    let at = |drive: usize| record.0.iter().rfind(|s| s.drive == drive).expect("a state");
+    let at = |load_step: usize| record.0.iter().rfind(|s| s.load_step == load_step).expect("a state");
     let (dead, pushed, back) = (at(0), at(1), at(2));
     assert!(opened > 4 && pushed.stored > 2.0 * dead.stored);
     for state in &record.0 {
@@ -427,7 +429,7 @@ loads = [{{ kind = "body", acceleration = {acceleration:?} }}]
     for (acceleration, factor, unique) in [([0.0, 10.0], 1.0, false), ([10.0, 0.0], 0.4, true)] {
         let case = first_case(&text(acceleration));
         let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
-        let answer = EventPath {}.trace(&problem, &small_displacements(), &mut Watch::default());
+        let answer = EventPath {}.trace(&problem, &small_displacements(), &mut PathChecker::default());
         assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         assert_close(answer.factor.expect("a factor"), factor, 1e-12);
         assert_eq!(answer.unique, Some(unique), "{acceleration:?}");

@@ -2,11 +2,11 @@
 //! reference bridge and what it must not depend on.
 
 use std::sync::Arc;
-use voussoir::core::geometry::Vec2;
+use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::{Counters, Status};
-use voussoir::core::mechanism::MechanismKind;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathAnswer, PathBody, PathProblem,
+    Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem,
     PathSettings, PathSolver, PathState, Sliding,
 };
 use voussoir::solvers::path::newton::NewtonPath;
@@ -76,12 +76,12 @@ fn two_bars(rise: f64) -> PathProblem {
         ],
         facets: vec![],
         responses: vec![],
-        drives: vec![Drive {
+        load_steps: vec![LoadStep {
             stage: 0,
             gravity: false,
             loading: Loading { forces, ..Loading::default() },
             start: 0.0,
-            end: DriveEnd::Collapse(f64::INFINITY),
+            end: LoadStepEnd::Collapse(f64::INFINITY),
         }],
         length: 2.0 * SPAN,
         counters: Counters::new(),
@@ -232,7 +232,7 @@ loads = [{ kind = "point", span_fraction = 0.4, force = [0.0, -1000.0] }, { kind
     let support = contacts(0).min_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("points");
     let crown = contacts(1).max_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("points");
     let left = support.plus.body;
-    let load = problem.drives[1].loading.forces.iter().find(|f| f.0 == left).expect("a load on the left block").2;
+    let load = problem.load_steps[1].loading.forces.iter().find(|f| f.0 == left).expect("a load on the left block").2;
     let bar = Bar {
         crown: crown.position - support.position,
         load: load - support.position,
@@ -245,7 +245,7 @@ loads = [{ kind = "point", span_fraction = 0.4, force = [0.0, -1000.0] }, { kind
     };
     let factor = answer.factor.expect("a peak");
     let (mut compared, mut least, mut least_compared) = (0, 0.0f64, 0.0f64);
-    for state in states.iter().filter(|s| s.drive == 1) {
+    for state in states.iter().filter(|s| s.load_step == 1) {
         least = least.min(state.factor);
         let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0]));
         let pressed = |joint: usize| {
@@ -556,7 +556,7 @@ fn spreading_supports_end_where_three_rigid_hinges_do() {
         let crown: Vec<usize> =
             (0..problem.contacts.len()).filter(|c| problem.contacts[*c].position.x.abs() < 1e-9).collect();
         let mut compared = 0;
-        for state in states.iter().filter(|s| s.drive == 1 && s.factor > 0.02) {
+        for state in states.iter().filter(|s| s.load_step == 1 && s.factor > 0.02) {
             let thrust: f64 = crown.iter().map(|c| state.force[*c][0]).sum();
             assert_close(thrust, spread(state.factor).0, 1e-3);
             compared += 1;

@@ -1,6 +1,6 @@
 //! What is read off a path: joints that became hinges, curves, recovered stresses and their files.
 
-use voussoir::core::geometry::Vec2;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::deformed::{DeformedBlock, deformed_blocks};
 use voussoir::history::{JointState, joint_events};
 use voussoir::kinds::run::{answer_case, answer_cases};

@@ -188,7 +188,7 @@ fn a_pressed_block_follows_one_point() {
         let across = if sides { held } else { free };
         let mut yields = 0;
         for state in &seen.states {
-            let applied: f64 = problem.applied(state.drive, state.factor).iter().sum();
+            let applied: f64 = problem.applied(state.load_step, state.factor).iter().sum();
             let strain = -sunk(&problem, state, &press) / 0.1;
             point.step(&[across, Control::Strain(strain), held, held, held, held]).expect("a step");
             let (found, wanted) = (-applied * LOAD / press.width, point.response.stress[1]);

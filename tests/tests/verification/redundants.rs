@@ -49,8 +49,8 @@ fn same_path(study: &str) -> (Status, Option<f64>) {
     // Where flow is not associated and few points choose, other rates are looked for on the whole system.
     let least = if study.contains("law = \"coulomb\"\n") { 0 } else { all / 2 };
     assert!(by_redundants > least, "{by_redundants} of {all} rate problems by the force method\n{study}");
-    for (name, value) in &seen.watch.worst {
-        assert!(*value <= 1e-10, "{name} is {value:.1e} (whole: {:.1e})\n{study}", other.watch.worst[name]);
+    for (name, value) in &seen.checker.worst {
+        assert!(*value <= 1e-10, "{name} is {value:.1e} (whole: {:.1e})\n{study}", other.checker.worst[name]);
     }
     assert_eq!(few.status, whole.status, "{:?} {:?}\n{study}", few.notes, whole.notes);
     match (few.factor, whole.factor) {
@@ -60,7 +60,7 @@ fn same_path(study: &str) -> (Status, Option<f64>) {
     // What happens at one moment may be noted in another order.
     let events = |answer: &PathAnswer| {
         let mut all: Vec<(usize, usize, String, f64)> =
-            answer.events.iter().map(|e| (e.drive, e.contact, format!("{:?}", e.what), e.factor)).collect();
+            answer.events.iter().map(|e| (e.load_step, e.contact, format!("{:?}", e.what), e.factor)).collect();
         all.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.3.total_cmp(&b.3)));
         all
     };
@@ -80,7 +80,7 @@ fn same_path(study: &str) -> (Status, Option<f64>) {
         let work = few.state.work.abs() + few.state.stored;
         assert!((a - b).abs() <= 1e-9 * work, "{a:e} {b:e}\n{study}");
     }
-    assert_eq!(other.states.last().map(|s| s.drive), seen.states.last().map(|s| s.drive));
+    assert_eq!(other.states.last().map(|s| s.load_step), seen.states.last().map(|s| s.load_step));
     (few.status, few.factor)
 }
 

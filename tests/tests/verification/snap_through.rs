@@ -283,7 +283,7 @@ fn a_block_slides_a_long_way_under_the_same_load() {
         let (problem, answer, states) = followed(&text, 4.5, None);
         assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         assert_close(answer.factor.expect("a load"), 20.0, 1e-9);
-        let sliding: Vec<&PathState> = states.iter().filter(|s| s.drive == 1 && s.displacement > 0.05).collect();
+        let sliding: Vec<&PathState> = states.iter().filter(|s| s.load_step == 1 && s.displacement > 0.05).collect();
         let last = *sliding.last().expect("states");
         assert!(sliding.len() > 20 && last.displacement > 4.0);
         for state in &sliding {
@@ -325,7 +325,7 @@ fn a_block_that_slides_over_an_edge_tips_where_the_resultant_reaches_it() {
         let (_, answer, states) = followed(&text, 2.0, None);
         assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         let mut tipping = None;
-        for state in states.iter().filter(|s| s.drive == 1 && s.displacement > 0.05) {
+        for state in states.iter().filter(|s| s.load_step == 1 && s.displacement > 0.05) {
             let slip = -state.gap[0][1];
             let [pressed, rubbed] = [0, 1].map(|i| state.force.iter().map(|r| r[i].abs()).sum::<f64>());
             // Where it tips it sticks, and far behind it slides back.

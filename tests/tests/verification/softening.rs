@@ -1,8 +1,7 @@
 //! Softening laws: a published test of a finite-element program, fracture energies, dry friction.
 
 use std::sync::Arc;
-use voussoir::core::interface::{Formulation, InterfaceLaw, InterfaceResponse};
-use voussoir::core::material::{BulkMaterial, UpdateFailure};
+use voussoir::core::law::{BulkMaterial, Formulation, InterfaceLaw, InterfaceResponse, UpdateFailure};
 use voussoir::laws::cohesive::Cohesive;
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 use voussoir::laws::drucker_prager_softening::DruckerPragerSoftening;

@@ -1,7 +1,7 @@
 //! Every status with its proof, on scenes whose answer follows from statics alone.
 
+use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
-use voussoir::core::mechanism::MechanismKind;
 use voussoir_tests::{answered, assert_close};
 
 /// A block of 1 m × 1 m × 1 m, density 1000, g 10 (weight 10 kN), on a rough ground.

@@ -3,7 +3,7 @@
 
 use super::{active_pieces, on_cap};
 use dashu_float::{FBig, round::mode::HalfEven};
-use voussoir::core::material::Isotropic;
+use voussoir::core::law::Isotropic;
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 
 type Big = FBig<HalfEven, 2>;

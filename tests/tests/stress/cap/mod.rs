@@ -6,9 +6,7 @@ mod exact;
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::collections::BTreeMap;
-use voussoir::core::assembly::Plane;
-use voussoir::core::material::plane::PlanarUpdate;
-use voussoir::core::material::{BulkMaterial, Isotropic, Region, von_mises};
+use voussoir::core::law::{BulkMaterial, Isotropic, PlanarUpdate, Plane, Region, von_mises};
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 
 fn rng() -> TestRng {
@@ -514,6 +512,6 @@ fn nonsense_is_refused() {
         let result = update.update_point(&[bad, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0, &[0.0; 7], &mut new);
         assert!(result.is_err() || result.unwrap().stress.iter().all(|x| x.is_finite()));
     }
-    let mut points = [voussoir::core::material::StressPoint::ZERO; 2];
+    let mut points = [voussoir::core::law::StressPoint::ZERO; 2];
     assert!(update.update(&[[0.0; 6]; 2], &[1.0; 2], &[0.0; 14], &mut [0.0; 7], &mut points).is_err());
 }

@@ -1,5 +1,6 @@
-//! The one place that factorises sparse matrices, and the only one that knows how.
+//! L D Lᵀ of symmetric quasi-definite sparse matrices.
 
+use super::entries::Entries;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::sparse::linalg::cholesky::{
@@ -9,19 +10,16 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, Mat, MatMut, MatRef, Par, Side};
 use nalgebra::DMatrix;
 
-/// Entries (row, column, value); repeated ones add up.
-pub type Entries = Vec<(usize, usize, f64)>;
-
 /// L D Lᵀ of a symmetric quasi-definite matrix, with the matrix itself. Such matrices have a
 /// factorisation in any order, so the order that keeps it sparse is free to choose, also where a
 /// variable occurs in every equation.
-pub struct Factorised {
+pub struct SparseLdlt {
     matrix: SparseColMat<usize, f64>,
     symbolic: SymbolicCholesky<usize>,
     values: Vec<f64>,
 }
 
-impl Factorised {
+impl SparseLdlt {
     /// Factorises \[A, Bᵀ; B, −C\], A and C positive definite, A of size `positive`. `entries` hold
     /// both triangles. `None` where it fails.
     pub fn new(size: usize, positive: usize, entries: &Entries) -> Option<Self> {
@@ -53,7 +51,7 @@ impl Factorised {
                 Default::default(),
             )
             .ok()?;
-        Some(Factorised { matrix, symbolic, values })
+        Some(SparseLdlt { matrix, symbolic, values })
     }
 
     fn solve_once(&self, x: MatMut<f64>) -> Option<()> {

@@ -12,9 +12,17 @@
 //! isotropic law stay zero. ε_zz at the end of a step is the last number of the state: the next step
 //! starts there.
 
-use super::{BatchFailure, Region, StressPoint, StressUpdate, UpdateFailure, Voigt};
-use crate::assembly::Plane;
+use super::material::{BatchFailure, Region, StressPoint, StressUpdate, UpdateFailure, Voigt};
 use std::sync::Arc;
+
+/// Stress state of deformable bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// ε_z = 0.
+    Strain,
+    /// σ_z = 0.
+    Stress,
+}
 
 /// Voigt indices of the plane's components.
 const IN_PLANE: [usize; 3] = [0, 1, 3];

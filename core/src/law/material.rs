@@ -3,9 +3,7 @@
 //! Stresses and strains at a point are 6-vectors in the order xx, yy, zz, xy, yz, zx, tension positive;
 //! shear strains are engineering strains (γ = 2 ε), so that stress · strain is work per volume.
 //! A material is parameters plus a pure function; state belongs to whoever solves. Plane strain and
-//! plane stress are made from the law in space by [`plane`].
-
-pub mod plane;
+//! plane stress are made from the law in space by [`PlanarUpdate`](super::PlanarUpdate).
 
 use std::fmt::{self, Debug};
 use std::sync::Arc;

@@ -2,9 +2,7 @@
 //!
 //! A law is parameters plus a pure function; state belongs to the solver. A law knows no solver.
 
-pub mod facet_response;
-
-use crate::material::{BatchFailure, UpdateFailure};
+use super::material::{BatchFailure, UpdateFailure};
 use serde::Serialize;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -78,7 +76,7 @@ pub enum Formulation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
-pub enum Regime {
+pub enum UpdateBranch {
     /// Nothing irreversible in this step.
     Elastic,
     /// The bond softens.
@@ -89,14 +87,14 @@ pub enum Regime {
     SofteningSliding,
 }
 
-impl Regime {
+impl UpdateBranch {
     /// Its name in result files.
     pub fn name(self) -> &'static str {
         match self {
-            Regime::Elastic => "elastic",
-            Regime::Softening => "softening",
-            Regime::Sliding => "sliding",
-            Regime::SofteningSliding => "softening_sliding",
+            UpdateBranch::Elastic => "elastic",
+            UpdateBranch::Softening => "softening",
+            UpdateBranch::Sliding => "sliding",
+            UpdateBranch::SofteningSliding => "softening_sliding",
         }
     }
 }
@@ -109,7 +107,7 @@ pub struct TractionPoint {
     /// ∂t/∂g of the update itself \[Pa/m\], row by row.
     pub tangent: [[f64; 2]; 2],
     /// What happened.
-    pub regime: Regime,
+    pub branch: UpdateBranch,
     /// Energy stored at the end of the step \[J/m²\].
     pub stored: f64,
     /// Energy dissipated in the step \[J/m²\].
@@ -121,7 +119,7 @@ impl TractionPoint {
     pub const ZERO: TractionPoint = TractionPoint {
         traction: [0.0; 2],
         tangent: [[0.0; 2]; 2],
-        regime: Regime::Elastic,
+        branch: UpdateBranch::Elastic,
         stored: 0.0,
         dissipated: 0.0,
     };
@@ -172,7 +170,7 @@ pub trait InterfaceResponse: Debug + Send + Sync {
 }
 
 /// A law of a joint. Implementors also register with `#[typetag::serde]` and submit a
-/// [`Card`](crate::card::Card).
+/// [`Card`](crate::plugin::Card).
 #[typetag::serde(tag = "law")]
 pub trait InterfaceLaw: Debug + Send + Sync {
     /// What the joint can carry and how it flows.
@@ -193,13 +191,13 @@ impl Formulation {
     }
 }
 
-/// How the flow of laws is read.
+/// How limit analysis and mechanisms read the flow of laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FlowReading {
+pub enum FlowRule {
     /// As the normal of each facet, whatever the law says: the bound theorems hold.
     Associated,
     /// As each facet's own direction.
-    Own,
+    NonAssociated,
 }
 
 /// Whether every facet's flow is its normal, so that the bound theorems hold as they stand.

@@ -3,7 +3,7 @@
 
 /// One mistake in a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Issue {
+pub struct Diagnostic {
     /// Dotted path from the study's root, list entries by index: `stages.1.loads.0.force`.
     pub path: String,
     /// What is wrong.
@@ -12,10 +12,10 @@ pub struct Issue {
     pub help: Option<String>,
 }
 
-impl Issue {
+impl Diagnostic {
     /// A mistake at `path`.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
-        Issue { path: path.into(), message: message.into(), help: None }
+        Diagnostic { path: path.into(), message: message.into(), help: None }
     }
 
     /// With advice.

@@ -1,7 +1,8 @@
 //! Finding the joints of an assembly of polygons: overlaps of edges, not given by hand.
 
-use crate::assembly::{Body, Bond, Gap, Joint};
-use crate::geometry::{Vec2, bounding_box, edges, overlap_depth};
+use super::assembly::Body;
+use super::geometry::{Vec2, bounding_box, edges, overlap_depth};
+use super::joints::{Bond, Gap, Joint};
 
 /// Tolerance for overlap, gap and interpenetration, as a share of the scene's size.
 pub const CONTACT_TOLERANCE: f64 = 1e-9;

@@ -25,8 +25,8 @@
 //! - `path_power`: |p·q̇ − 1| of a mechanism;
 //! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
 
-use super::{ContactLaw, Displaced, Loading, PathObserver, PathProblem, PathState};
-use crate::interface::{Facet, FacetMode};
+use crate::law::{Facet, FacetMode};
+use crate::path::{ContactLaw, Displaced, Loading, PathObserver, PathProblem, PathState};
 use std::collections::BTreeMap;
 
 /// How large a residual may be.
@@ -71,12 +71,12 @@ const NOTHING: f64 = 1e-6;
 
 /// Watches a path and keeps the worst of each residual.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub struct PathChecker {
     /// Name → worst value.
     pub worst: BTreeMap<&'static str, f64>,
     /// Number of states seen.
     pub states: u64,
-    /// (displacement \[m\], λ) of the states of the last drive.
+    /// (displacement \[m\], λ) of the states of the last load step.
     pub curve: Vec<[f64; 2]>,
     /// Whether equilibrium holds in displaced positions.
     pub finite: bool,
@@ -109,10 +109,10 @@ impl Asks {
     }
 }
 
-impl Watch {
-    /// A watch over small or `finite` displacements.
+impl PathChecker {
+    /// A checker over small or `finite` displacements.
     pub fn new(finite: bool) -> Self {
-        Watch { finite, ..Watch::default() }
+        PathChecker { finite, ..PathChecker::default() }
     }
 
     fn note(&mut self, name: &'static str, value: f64) {
@@ -123,8 +123,8 @@ impl Watch {
     fn check(&mut self, problem: &PathProblem, state: &PathState) {
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
         let mut size = 0.0;
-        for (drive, factor) in problem.drives.iter().zip(problem.applied(state.drive, state.factor)) {
-            for [x, y, _] in problem.wrenches(&drive.loading) {
+        for (load_step, factor) in problem.load_steps.iter().zip(problem.applied(state.load_step, state.factor)) {
+            for [x, y, _] in problem.wrenches(&load_step.loading) {
                 size += (factor * x.hypot(y)).abs();
             }
         }
@@ -196,11 +196,11 @@ impl Watch {
         self.note("path_energy", (state.work - state.stored - state.dissipated).abs() / energy.max(1e-300));
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
         self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
-        self.last = Some((state.drive, state.dissipated));
+        self.last = Some((state.load_step, state.dissipated));
     }
 }
 
-impl Watch {
+impl PathChecker {
     /// Checks the blocks whose material yields.
     fn check_blocks(&mut self, problem: &PathProblem, state: &PathState) {
         if !problem.yields() {
@@ -225,11 +225,11 @@ impl Watch {
     }
 }
 
-impl PathObserver for Watch {
+impl PathObserver for PathChecker {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
         self.states += 1;
         self.check(problem, state);
-        if state.drive + 1 == problem.drives.len() {
+        if state.load_step + 1 == problem.load_steps.len() {
             self.curve.push([state.displacement, state.factor]);
         }
         true

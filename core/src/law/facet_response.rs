@@ -6,8 +6,8 @@
 //! strength is no plastic flow: the joint opens and closes where it was, so its share in g_p is not
 //! kept; what has torn or crushed or dilated is.
 
-use super::{Facet, FacetMode, InterfaceResponse, Regime, TractionPoint};
-use crate::material::UpdateFailure;
+use super::interface::{Facet, FacetMode, InterfaceResponse, TractionPoint, UpdateBranch};
+use super::material::UpdateFailure;
 
 /// A joint of facets with stiffness.
 #[derive(Debug, Clone)]
@@ -134,13 +134,13 @@ impl InterfaceResponse for FacetResponse {
                 return Err(UpdateFailure::NoConvergence);
             }
         }
-        let mut regime = Regime::Elastic;
+        let mut branch = UpdateBranch::Elastic;
         let mut dissipated = 0.0;
         for (facet, step) in found.facets.iter().zip(found.steps) {
             let Some(facet) = facet else { continue };
             dissipated += step * dot(facet.flow, found.traction);
             if step > 0.0 && !(facet.mode == FacetMode::Opening && facet.bound == 0.0) {
-                regime = Regime::Sliding;
+                branch = UpdateBranch::Sliding;
                 new[0] -= step * facet.flow[0];
                 new[1] -= step * facet.flow[1];
             }
@@ -150,7 +150,7 @@ impl InterfaceResponse for FacetResponse {
         Ok(TractionPoint {
             traction: found.traction,
             tangent: self.tangent(&found.facets),
-            regime,
+            branch,
             stored,
             dissipated: dissipated.max(0.0),
         })

@@ -4,7 +4,7 @@
 //! `voussoir explain`. It lives beside the traits because every plug-in's card carries one.
 //! Reading files is not done here.
 
-use crate::units::Quantity;
+use super::units::Quantity;
 
 /// The values a number may take.
 #[derive(Debug, Clone, Copy, PartialEq)]

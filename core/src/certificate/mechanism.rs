@@ -1,9 +1,8 @@
 //! Mechanisms: which joints rotate, slide and crush in a motion, and what kind of collapse it is.
 
-use crate::assembly::{Assembly, Bond, Joint};
-use crate::geometry::{Vec2, turned};
-use crate::interface::{FacetMode, FlowReading, InterfaceLaw};
-use crate::strength::YieldPolygon;
+use crate::law::{FacetMode, FlowRule, InterfaceLaw, YieldPolygon};
+use crate::model::geometry::{Vec2, turned};
+use crate::model::{Assembly, Bond, Joint};
 use serde::{Deserialize, Serialize};
 
 /// What kind of collapse a mechanism is.
@@ -149,7 +148,7 @@ pub fn mechanism(
     assembly: &Assembly,
     motion: &[CentroidVelocity],
     unique: Option<bool>,
-    flow: FlowReading,
+    flow: FlowRule,
 ) -> Option<Mechanism> {
     mechanism_above(TOLERANCE, assembly, motion, unique, flow)
 }
@@ -161,7 +160,7 @@ pub fn mechanism_above(
     assembly: &Assembly,
     motion: &[CentroidVelocity],
     unique: Option<bool>,
-    flow: FlowReading,
+    flow: FlowRule,
 ) -> Option<Mechanism> {
     let jumps = jumps(assembly, motion);
     let tolerance = share * jumps.iter().map(Jump::size).fold(0.0, f64::max);
@@ -237,10 +236,10 @@ impl Mechanism {
     }
 }
 
-fn contact_rays(law: &dyn InterfaceLaw, flow: FlowReading) -> Vec<[f64; 2]> {
+fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {
     let facets = law.formulation().facets().unwrap_or_default();
     let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
-    if flow == FlowReading::Own {
+    if flow == FlowRule::NonAssociated {
         uncrushed.iter_mut().for_each(|f| f.normal = f.flow);
     }
     let mut rays = YieldPolygon::of(&uncrushed).rays;

@@ -7,13 +7,12 @@
 //! combinations of the facets' flow directions and their power with the field's distance from the
 //! yield surface must vanish, joint by joint.
 
-use crate::assembly::{Assembly, Bond, StageLoads, add_force};
-use crate::geometry::{Vec2, cross};
-use crate::interface::{Facet, FacetMode};
-use crate::limit::Status;
-use crate::mechanism::{CentroidVelocity, Jump, jumps};
-use crate::product_proof::{LowerProof, LowerProofKind, proved};
-use crate::strength::YieldPolygon;
+use super::mechanism::{CentroidVelocity, Jump, jumps};
+use super::products::proved;
+use crate::law::{Facet, FacetMode, YieldPolygon};
+use crate::limit::{LowerProof, LowerProofKind, Status};
+use crate::model::geometry::{Vec2, cross};
+use crate::model::{Assembly, Bond, StageLoads, add_force};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -59,12 +58,12 @@ pub struct Claim<'a> {
     /// Whether some factor is feasible where the start is not, and the interval.
     pub feasible_interval: Option<[f64; 2]>,
     /// Set where field and motion are claimed to obey the laws' own flow.
-    pub own_flow: Option<OwnFlowClaim<'a>>,
+    pub non_associated: Option<NonAssociatedClaim<'a>>,
 }
 
 /// What is claimed besides where joints flow as their laws say.
 #[derive(Debug, Clone, Copy)]
-pub struct OwnFlowClaim<'a> {
+pub struct NonAssociatedClaim<'a> {
     /// No such factor is less.
     pub proved_lower: Option<f64>,
     /// What that rests on. Multipliers of products are checked; of an exhaustive search, which is no
@@ -130,7 +129,7 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         Status::Stands => {
             check.field(claim);
         }
-        Status::Collapse if claim.own_flow.is_some() => bounds = check.own_flow(claim, gap),
+        Status::Collapse if claim.non_associated.is_some() => bounds = check.non_associated(claim, gap),
         Status::Collapse => {
             let lower = check.field(claim).then_some(claim.field_factor);
             let upper = check.upper_bound(claim);
@@ -327,8 +326,8 @@ impl Check<'_> {
 
     /// Field and mechanism with the laws' own flow: both exist at one factor, each joint moves only
     /// where it yields, and no associated bound is exceeded. The bounds \[claimed lower, factor\].
-    fn own_flow(&mut self, claim: &Claim, gap: f64) -> Option<[f64; 2]> {
-        let own = claim.own_flow?;
+    fn non_associated(&mut self, claim: &Claim, gap: f64) -> Option<[f64; 2]> {
+        let own = claim.non_associated?;
         let (Some(factor), Some(motion), Some(field)) = (claim.factor, claim.motion, claim.field) else {
             self.fail("a collapse needs a factor, an admissible field and a mechanism");
             return None;

@@ -1,12 +1,10 @@
-//! The one place that factorises unsymmetric sparse matrices.
+//! L U of unsymmetric sparse matrices.
 
+use super::entries::Entries;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Mat, MatMut};
-
-/// Entries (row, column, value); repeated ones add up.
-pub type Entries = Vec<(usize, usize, f64)>;
 
 /// L U of a square sparse matrix with partial pivoting, with the matrix itself for refinement.
 pub struct SparseLu {

@@ -4,7 +4,7 @@
 //! configuration, `inventory::submit!` hands in its [`Card`]. Lists, help pages, the JSON Schema,
 //! the check of study files and the conformance tests read cards only.
 
-use crate::schema::{Parameter, PluginKind};
+use super::schema::{Parameter, PluginKind};
 
 /// What laws offer and solvers ask for; compared when a study is loaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -20,68 +20,18 @@
 //! that holds for every state (γ has none where mechanisms with p·q̇ = 0 exist). The check takes
 //! [`COVERED`] times the greatest γ times the greatest s of the state that was found.
 
-use crate::assembly::{Assembly, Bond, StageLoads};
-use crate::geometry::{Vec2, cross};
-use crate::interface::Facet;
-use crate::strength::YieldPolygon;
+use crate::law::{Facet, YieldPolygon};
+use crate::limit::{FIRST, LAST, ProductStep};
+use crate::model::geometry::{Vec2, cross};
+use crate::model::{Assembly, Bond, StageLoads};
 use nalgebra::DMatrix;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Products up to so many times those of the state that was found are covered.
 pub const COVERED: f64 = 100.0;
 
-/// In place of a row: p·q̇ among the first factors, λ − a among the second ones.
-pub const FIRST: i64 = -1;
-/// In place of a row among the second factors: t − λ.
-pub const LAST: i64 = -2;
-
 /// Columns shorter than this share of the longest are none.
 const RANK: f64 = 1e-11;
-
-/// What a proved lower bound rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LowerProofKind {
-    /// Multipliers of products, which are stored and checked.
-    Products,
-    /// An exhaustive search, of which nothing is stored.
-    Search,
-    /// The bound is the associated load: nothing flows otherwise.
-    Associated,
-    /// The bound is where the stage starts: nothing better was proved.
-    Start,
-}
-
-/// The proof of a lower bound.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LowerProof {
-    /// What it rests on.
-    pub by: LowerProofKind,
-    /// For products: each range begins where the one before ends.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub steps: Vec<ProductStep>,
-}
-
-impl LowerProof {
-    /// A proof without data.
-    pub fn by(by: LowerProofKind) -> Self {
-        LowerProof { by, steps: Vec::new() }
-    }
-}
-
-/// No state with a factor in the range lies below `bound`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ProductStep {
-    /// \[a, t\].
-    pub range: [f64; 2],
-    /// β.
-    pub bound: f64,
-    /// Λ: first factor, then pairs of second factor and multiplier. A row is four times the index of its joint plus
-    /// 0 or 1 for opening at that end, 2 or 3 for sliding with a_t > 0 or < 0; [`FIRST`] and [`LAST`] are the other
-    /// factors. γ \[m/s for p·q̇ = 1 W\] and s \[N\] are in SI units.
-    pub multipliers: Vec<(i64, Vec<(i64, f64)>)>,
-}
 
 /// One row of one joint over its forces (N_0, N_1, T).
 struct Row {
