@@ -1,4 +1,6 @@
 //! Every plug-in, found by its card, keeps what its trait promises.
 
+mod added_law;
+mod capped_friction;
 mod cards;
 mod state;
