@@ -9,6 +9,7 @@ mod arch;
 pub mod by_hand;
 pub mod known;
 pub mod random;
+pub mod samples;
 pub mod seen;
 mod wall;
 pub mod written;

@@ -3,4 +3,5 @@
 mod added_law;
 mod capped_friction;
 mod cards;
+mod laws;
 mod state;

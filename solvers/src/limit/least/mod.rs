@@ -17,7 +17,7 @@ use products::Bound;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, Status};
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, no_further_check};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 /// Work of the search where it is not given.
 const SEARCH_LIMIT: f64 = 4.0;
@@ -76,8 +76,9 @@ voussoir_core::inventory::submit! {
                 need: Need::Default("12000"),
             },
         ],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        provides: &[Capability::NON_ASSOCIATED],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(10),
         sources: &[
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
@@ -85,7 +86,7 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("limit_least.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

@@ -23,7 +23,7 @@ mod unique;
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// The exact path of piecewise linear problems.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -59,8 +59,9 @@ voussoir_core::inventory::submit! {
         tag: "event_path",
         summary: "exact path of elastic blocks and facet laws, small displacements, from event to event, to rounding",
         parameters: &[],
-        provides: &[Capability::Settlement],
-        requires: &[Capability::Facets, Capability::Linear],
+        provides: &[Capability::SETTLEMENT],
+        requires: &[&[Capability::FACETS], &[Capability::LINEAR]],
+        cost: Some(10),
         sources: &[
             "Klarbring 1990, Ingenieur-Archiv 60, 529-541 (the frictional rate problem)",
             "Maier 1970, Meccanica 5, 54-66 (piecewise linear laws as complementarity problems)",
@@ -69,6 +70,6 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("event_path.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
