@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, no_further_check};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample};
 
 /// Associated friction with a crushing strength.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -35,11 +35,12 @@ voussoir_core::inventory::submit! {
             Parameter::number("friction", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient of friction μ"),
             Parameter::number("compressive_strength", Quantity::Stress, Range::POSITIVE, "crushing strength f_c"),
         ],
-        provides: &[Capability::Facets],
-        requires: &[],
+        provides: &[Capability::FACETS],
+        claims: &[Property::ASSOCIATED, Property::DISSIPATIVE],
+        samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6", 1e-4, &[])],
         sources: &["where the equations come from"],
         file: file!(),
         page: "# `capped_friction`\n\nPurpose, equations, regimes, state, validity, sources.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
