@@ -12,6 +12,8 @@ pub struct CappedFriction {
     pub friction: f64,
     /// f_c \[Pa\].
     pub compressive_strength: f64,
+    /// k \[Pa/m\], the same against closing and slip; without it the joint itself is stiff.
+    pub stiffness: Option<f64>,
 }
 
 #[typetag::serde(name = "capped_friction")]
@@ -22,7 +24,7 @@ impl InterfaceLaw for CappedFriction {
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {
-        None
+        self.stiffness.map(|k| [k, k])
     }
 }
 
@@ -34,10 +36,12 @@ voussoir_core::inventory::submit! {
         parameters: &[
             Parameter::number("friction", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient of friction μ"),
             Parameter::number("compressive_strength", Quantity::Stress, Range::POSITIVE, "crushing strength f_c"),
+            Parameter::number("stiffness", Quantity::Stiffness, Range::POSITIVE, "stiffness k of the joint itself")
+                .optional("the joint itself is stiff"),
         ],
         provides: &[Capability::FACETS],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE],
-        samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6", 1e-4, &[])],
+        samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6\nstiffness = 1e10", 1e-4, &[])],
         sources: &["where the equations come from"],
         file: file!(),
         page: "# `capped_friction`\n\nPurpose, equations, regimes, state, validity, sources.\n",
