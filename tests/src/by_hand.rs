@@ -6,7 +6,7 @@ use voussoir::core::law::Facet;
 use voussoir::core::limit::Counters;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, Sliding,
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding,
 };
 
 /// A free rigid body without mass. `index` is its place among the bodies.
@@ -28,7 +28,7 @@ pub fn ground(index: usize, pole: Vec2) -> PathBody {
 }
 
 /// A point between two rigid bodies, minus and plus, on a joint without compliance; t is n turned by +90°.
-pub fn contact(joint: usize, position: Vec2, normal: Vec2, [minus, plus]: [usize; 2], law: ContactLaw) -> Contact {
+pub fn contact(joint: usize, position: Vec2, normal: Vec2, [minus, plus]: [usize; 2], law: PointLaw) -> Contact {
     Contact {
         joint,
         position,
@@ -44,9 +44,9 @@ pub fn contact(joint: usize, position: Vec2, normal: Vec2, [minus, plus]: [usize
     }
 }
 
-/// Facets of dry friction without dilatancy.
-pub fn dry_friction(friction: f64) -> Vec<Facet> {
-    once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect()
+/// Dry friction without dilatancy.
+pub fn dry_friction(friction: f64) -> PointLaw {
+    PointLaw::Facets(once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect())
 }
 
 /// Loads of a stage that grow from zero.
@@ -59,23 +59,8 @@ pub fn forces(forces: Vec<(usize, Option<usize>, Vec2, Vec2)>) -> Loading {
     Loading { forces, ..Loading::default() }
 }
 
-/// The problem of these parts. `facets` by the index in [`ContactLaw::Law`].
-pub fn problem(
-    bodies: Vec<PathBody>,
-    contacts: Vec<Contact>,
-    facets: Vec<Vec<Facet>>,
-    load_steps: Vec<LoadStep>,
-    length: f64,
-) -> PathProblem {
+/// The problem of these parts.
+pub fn problem(bodies: Vec<PathBody>, contacts: Vec<Contact>, load_steps: Vec<LoadStep>, length: f64) -> PathProblem {
     let body_of = (0..bodies.len()).collect();
-    PathProblem {
-        bodies,
-        body_of,
-        contacts,
-        facets,
-        responses: Vec::new(),
-        load_steps,
-        length,
-        counters: Counters::new(),
-    }
+    PathProblem { bodies, body_of, contacts, load_steps, length, counters: Counters::new() }
 }

@@ -8,8 +8,8 @@ use voussoir::core::limit::Status;
 use voussoir::core::model::Bond;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings, PathSolver,
-    PathState, Unobserved,
+    Contact, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings, PathSolver, PathState,
+    PointLaw, Unobserved,
 };
 use voussoir::solvers::path::continuation::arc_length::ArcLength;
 use voussoir::solvers::path::continuation::load_control::LoadControl;
@@ -247,9 +247,9 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         compliance,
         ..by_hand::contact(0, Vec2::new(x, 0.0), Vec2::new(0.0, 1.0), [0, 1], law)
     };
-    let foot = |x| point(x, ContactLaw::Law(0), [1e-3 / k, feet.len() as f64 / k]);
+    let foot = |x| point(x, dry_friction(friction), [1e-3 / k, feet.len() as f64 / k]);
     // Pulls sideways only: its other stiffness is nothing beside the feet's.
-    let pulling = point(0.0, ContactLaw::Bonded, [1e9 / k, 1.0 / spring]);
+    let pulling = point(0.0, PointLaw::Bonded, [1e9 / k, 1.0 / spring]);
     let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
     let push = forces(vec![(1, None, Vec2::zeros(), Vec2::new(1.0, 0.0))]);
     let gravity = LoadStep { gravity: true, ..load_step(0, dead, LoadStepEnd::Factor(1.0)) };
@@ -258,7 +258,6 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
     by_hand::problem(
         vec![ground(0, Vec2::zeros()), PathBody { mass: weight / 10.0, ..body(1, Vec2::zeros()) }],
         feet.iter().map(|x| foot(*x)).chain([pulling]).collect(),
-        vec![dry_friction(friction)],
         std::iter::once(gravity).chain(pushes).collect(),
         2.0,
     )

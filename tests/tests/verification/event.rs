@@ -5,8 +5,7 @@ use voussoir::core::certificate::PathChecker;
 use voussoir::core::limit::Status;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, LoadStepEnd, PathAnswer, PathBody, PathObserver, PathProblem, PathSolver,
-    PathState,
+    Attachment, Contact, LoadStepEnd, PathAnswer, PathBody, PathObserver, PathProblem, PathSolver, PathState,
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
@@ -96,18 +95,12 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], LoadStepEnd)]) -> PathProblem
         flexibility: Some(Arc::new(nalgebra::DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]))),
         ..ground(1, Vec2::zeros())
     };
-    let point = contact(0, Vec2::zeros(), Vec2::new(0.0, 1.0), [0, 1], ContactLaw::Law(0));
+    let point = contact(0, Vec2::zeros(), Vec2::new(0.0, 1.0), [0, 1], dry_friction(friction));
     let point = Contact { tangent: Vec2::new(1.0, 0.0), plus: Attachment { body: 1, slot: Some(0) }, ..point };
     let pushes = forces.iter().enumerate().map(|(stage, (force, end))| {
         load_step(stage, by_hand::forces(vec![(1, Some(0), Vec2::zeros(), Vec2::new(force[0], force[1]))]), *end)
     });
-    by_hand::problem(
-        vec![ground(0, Vec2::zeros()), elastic],
-        vec![point],
-        vec![dry_friction(friction)],
-        pushes.collect(),
-        1.0,
-    )
+    by_hand::problem(vec![ground(0, Vec2::zeros()), elastic], vec![point], pushes.collect(), 1.0)
 }
 
 fn trace(problem: &PathProblem) -> (PathAnswer, Vec<PathState>) {

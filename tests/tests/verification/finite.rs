@@ -6,7 +6,7 @@ use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Contact, ContactLaw, Continuation, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathSolver, PathState,
+    Contact, Continuation, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathSolver, PathState, PointLaw,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::by_hand::{self, body, contact, forces, ground, load_step};
@@ -42,7 +42,7 @@ fn two_bars(rise: f64) -> PathProblem {
     let crown = Vec2::new(0.0, rise);
     let pin = |joint: usize, position: Vec2, normal: Vec2, compliance: [f64; 2]| Contact {
         compliance,
-        ..contact(joint, position, normal, [joint, (joint + 1) % 3], ContactLaw::Bonded)
+        ..contact(joint, position, normal, [joint, (joint + 1) % 3], PointLaw::Bonded)
     };
     let load = Vec2::new(0.0, -1.0e3);
     let loading = forces(vec![
@@ -57,7 +57,6 @@ fn two_bars(rise: f64) -> PathProblem {
             pin(1, crown, Vec2::new(1.0, 0.0), [CROWN, PIN[1]]),
             pin(2, Vec2::new(SPAN, 0.0), mirrored, PIN),
         ],
-        vec![],
         vec![load_step(0, loading, LoadStepEnd::Collapse(f64::INFINITY))],
         2.0 * SPAN,
     )
