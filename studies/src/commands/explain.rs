@@ -1,9 +1,11 @@
 //! `voussoir list`, `explain` and `schema`.
 
-use super::{FINE, NO_ACCESS, WRONG_INPUT, files, say};
+use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
+use super::files;
+use crate::kinds::json_schema::json_schema;
 use std::path::Path;
-use voussoir::core::card::{Card, cards, cards_of, nearest};
-use voussoir::core::schema::{Need, PluginKind, Shape};
+use voussoir_core::card::{Card, cards, cards_of, nearest};
+use voussoir_core::schema::{Need, PluginKind, Shape};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {
@@ -29,7 +31,7 @@ pub fn list(kind: Option<&str>) -> u8 {
 
 /// Prints the JSON Schema of study files.
 pub fn schema() -> u8 {
-    say(format!("{:#}", voussoir::config::json_schema::json_schema()));
+    say(format!("{:#}", json_schema()));
     FINE
 }
 
@@ -38,7 +40,7 @@ pub fn explain(what: &str) -> u8 {
     if what.ends_with(".toml") || Path::new(what).is_file() {
         return match files::study(Path::new(what), &[]) {
             Ok(study) => {
-                say(voussoir::plan::plan(&study));
+                say(study.explain());
                 FINE
             }
             Err(code) => code,
@@ -72,7 +74,7 @@ fn print_card(card: &Card) {
         };
         say(format!("  {}{unit}  {} ({need})", parameter.name, parameter.doc));
     }
-    let words = |all: &[voussoir::core::card::Capability]| {
+    let words = |all: &[voussoir_core::card::Capability]| {
         all.iter().map(|capability| capability.describe()).collect::<Vec<_>>().join(", ")
     };
     if !card.provides.is_empty() {

@@ -1,6 +1,6 @@
 //! Figures of hand-made scenes: well-formed, finite, escaped, labels apart.
 
-use super::lettering::Area;
+use super::text_layout::Area;
 use super::sample::*;
 use super::sweep::{study_chart, sweep_chart};
 use super::*;
@@ -114,7 +114,7 @@ fn drawings_are_well_formed_and_finite() {
 }
 
 #[test]
-fn labels_do_not_overlap_and_stay_on_the_sheet() {
+fn labels_do_not_overlap_and_stay_on_the_canvas() {
     for (name, svg) in drawings() {
         let size: Vec<f64> = attribute(&svg, "viewBox").split(' ').map(|x| x.parse().expect("a number")).collect();
         let texts = texts(&svg);
@@ -122,7 +122,7 @@ fn labels_do_not_overlap_and_stay_on_the_sheet() {
         for (i, (words, area)) in texts.iter().enumerate() {
             assert!(
                 area.low[0] >= 0.0 && area.low[1] >= 0.0 && area.high[0] <= size[2] && area.high[1] <= size[3],
-                "{name}: \"{words}\" leaves the sheet"
+                "{name}: \"{words}\" leaves the canvas"
             );
             for (other, covered) in &texts[i + 1..] {
                 assert!(area.shared(covered) < 1.0, "{name}: \"{words}\" overlaps \"{other}\"");
@@ -136,7 +136,7 @@ fn displaced_blocks_keep_their_size_and_meet_at_hinges() {
     for scene in scenes() {
         let (Some(mechanism), Some(motion)) = (&scene.answer.mechanism, &scene.answer.motion) else { continue };
         let (placements, _) = displaced::displaced(&scene.assembly, motion).expect("it moves");
-        let placements = closure::closed(&scene.assembly, mechanism, placements);
+        let placements = hinge_closure::close_hinges(&scene.assembly, mechanism, placements);
         let size = scene.assembly.size();
         for (body, placement) in scene.assembly.bodies.iter().zip(&placements).filter(|(b, _)| !b.vertices.is_empty()) {
             let (a, b) = (body.vertices[0], body.vertices[2]);
