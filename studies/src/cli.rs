@@ -86,7 +86,7 @@ enum Command {
 /// Does what the arguments of the process ask for; 0 all cases answered and certified, 1 some case not,
 /// 2 wrong input, 3 cannot read or write.
 pub fn main() -> ExitCode {
-    let wrong = voussoir_core::card::audit();
+    let wrong = voussoir_core::plugin::audit();
     if !wrong.is_empty() {
         wrong.iter().for_each(|why| eprintln!("voussoir: registry: {why}"));
         return ExitCode::from(commands::NO_ACCESS);

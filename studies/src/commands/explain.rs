@@ -4,8 +4,7 @@ use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
 use super::files;
 use crate::kinds::json_schema::json_schema;
 use std::path::Path;
-use voussoir_core::card::{Card, cards, cards_of, nearest};
-use voussoir_core::schema::{Need, PluginKind, Shape};
+use voussoir_core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, nearest};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {
@@ -74,7 +73,7 @@ fn print_card(card: &Card) {
         };
         say(format!("  {}{unit}  {} ({need})", parameter.name, parameter.doc));
     }
-    let words = |all: &[voussoir_core::card::Capability]| {
+    let words = |all: &[voussoir_core::plugin::Capability]| {
         all.iter().map(|capability| capability.describe()).collect::<Vec<_>>().join(", ")
     };
     if !card.provides.is_empty() {

@@ -9,9 +9,7 @@ use crate::config::gravity::gravity_of;
 use crate::config::origin::Origin;
 use crate::config::shape_words::{any_shape, describe, fits};
 use serde_json::{Map, Value as Json};
-use voussoir_core::card::{Card, candidate, candidates};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape, Variant};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -272,7 +270,7 @@ impl<'a> Checker<'a> {
             let known = skip.contains(&entry.key.as_str()) || parameters.iter().any(|p| p.name == entry.key);
             if !known {
                 let names: Vec<_> = skip.iter().copied().chain(parameters.iter().map(|p| p.name)).collect();
-                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                let near = voussoir_core::plugin::nearest(&entry.key, names.iter().copied());
                 misspelt.extend(near.filter(|name| table.get(name).is_none()));
                 let elsewhere = others.iter().find(|other| other.parameters.iter().any(|p| p.name == entry.key));
                 let help = match (near, elsewhere) {
@@ -347,11 +345,11 @@ impl<'a> Checker<'a> {
             let path = join(key, &entry.key);
             if others.is_empty() {
                 let mut names: Vec<_> = std::iter::once(tag_key).chain(parameters.iter().map(|p| p.name)).collect();
-                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                let near = voussoir_core::plugin::nearest(&entry.key, names.iter().copied());
                 misspelt.extend(near);
                 if near.is_none() {
                     let all = registered.iter().flat_map(|card| card.parameters).map(|p| p.name);
-                    if let Some(name) = voussoir_core::card::nearest(&entry.key, all) {
+                    if let Some(name) = voussoir_core::plugin::nearest(&entry.key, all) {
                         names = vec![name];
                     }
                 }

@@ -1,7 +1,6 @@
 //! Keys and words that every plug-in of a kind takes besides those of its card.
 
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
     Parameter { name, doc, shape, need }

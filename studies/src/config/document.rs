@@ -254,7 +254,8 @@ impl Reader {
         let message = error.message();
         if message.contains("duplicate key") {
             let key = error.span().and_then(|span| text.get(span)).unwrap_or_default().trim();
-            return LocatedDiagnostic::new(&origin, key, "is given twice in the same table").help("keep one of the two");
+            return LocatedDiagnostic::new(&origin, key, "is given twice in the same table")
+                .help("keep one of the two");
         }
         LocatedDiagnostic::new(&origin, "", format!("this is not TOML: {message}"))
     }

@@ -2,11 +2,11 @@
 //! the scenes, then the axes of the sweep in the order of the file, the first slowest. A variant is
 //! set on top of a scene, a swept value on top of both.
 
+use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Node, Table, Value};
 use crate::config::dotted_key::join;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
-use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use serde_json::{Map, Value as Json};
 
 /// Greatest number of cases.
@@ -61,10 +61,11 @@ impl Plan {
         let mut mistakes = Vec::new();
         let table = root.table().cloned().unwrap_or_default();
         let axes = table.get("sweep").map(|node| axes(node, &mut mistakes)).unwrap_or_default();
-        let overrides = |node: Option<&Node>, key: &str, what: &str, mistakes: &mut Vec<LocatedDiagnostic>| -> Vec<Variant> {
-            let read = node.map(|node| read_variants(node, key, what, mistakes)).unwrap_or_default();
-            if read.is_empty() { vec![Variant { name: None, set: Vec::new() }] } else { read }
-        };
+        let overrides =
+            |node: Option<&Node>, key: &str, what: &str, mistakes: &mut Vec<LocatedDiagnostic>| -> Vec<Variant> {
+                let read = node.map(|node| read_variants(node, key, what, mistakes)).unwrap_or_default();
+                if read.is_empty() { vec![Variant { name: None, set: Vec::new() }] } else { read }
+            };
         let variants = overrides(table.get("variants"), "variants", "variants", &mut mistakes);
         let kind = table.get("kind").and_then(Node::text).filter(|kind| kind_tables.contains(kind)).unwrap_or_default();
         let scenes = table.get(kind).and_then(|own| own.table()?.get("scenes"));
@@ -79,7 +80,9 @@ impl Plan {
             for (key, origin, _) in list.iter().flat_map(|entry| &entry.set) {
                 if swept.contains(&key.as_str()) {
                     let help = format!("remove it from the sweep or from the {what}");
-                    mistakes.push(LocatedDiagnostic::new(origin, key, format!("is set by a {what}, but swept too")).help(help));
+                    mistakes.push(
+                        LocatedDiagnostic::new(origin, key, format!("is set by a {what}, but swept too")).help(help),
+                    );
                 }
             }
         }
@@ -94,7 +97,8 @@ impl Plan {
         if count.is_none_or(|count| count > MAX_CASES) {
             let count = count.map_or("far too many".into(), |count| count.to_string());
             let message = format!("makes {count} cases; a study holds at most {MAX_CASES}");
-            mistakes.push(LocatedDiagnostic::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
+            mistakes
+                .push(LocatedDiagnostic::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
         }
         if mistakes.is_empty() { Ok(plan) } else { Err(mistakes) }
     }
@@ -205,8 +209,10 @@ fn axes(node: &Node, mistakes: &mut Vec<LocatedDiagnostic>) -> Vec<Axis> {
                     keys_name(&keys),
                     first.len()
                 );
-                mistakes
-                    .push(LocatedDiagnostic::new(&entry.node.origin, path, message).help("give both the same number of values"));
+                mistakes.push(
+                    LocatedDiagnostic::new(&entry.node.origin, path, message)
+                        .help("give both the same number of values"),
+                );
                 continue;
             }
             keys.push((entry.key.clone(), entry.origin.clone()));
@@ -231,18 +237,22 @@ const FORMS: &str = "write { list = [1.0, 2.0] }, { from = 1.0, to = 2.0, step =
 fn axis(node: &Node, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Option<Vec<Node>> {
     let before = mistakes.len();
     let Some(table) = node.table() else {
-        mistakes
-            .push(LocatedDiagnostic::new(&node.origin, path, format!("must be a table, but is {}", node.describe())).help(FORMS));
+        mistakes.push(
+            LocatedDiagnostic::new(&node.origin, path, format!("must be a table, but is {}", node.describe()))
+                .help(FORMS),
+        );
         return None;
     };
     for entry in &table.entries {
         let names = ["list", "from", "to", "step", "count"];
         if !names.contains(&entry.key.as_str()) {
-            let help = match voussoir_core::card::nearest(&entry.key, names) {
+            let help = match voussoir_core::plugin::nearest(&entry.key, names) {
                 Some(_) => suggest(&entry.key, &names, "keys here"),
                 None => FORMS.into(),
             };
-            mistakes.push(LocatedDiagnostic::new(&entry.origin, join(path, &entry.key), "is not a key of an axis").help(help));
+            mistakes.push(
+                LocatedDiagnostic::new(&entry.origin, join(path, &entry.key), "is not a key of an axis").help(help),
+            );
         }
     }
     if mistakes.len() > before {

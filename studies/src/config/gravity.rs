@@ -1,7 +1,7 @@
 //! The gravity of a study, by which specific weights become densities.
 
 use crate::config::document::{Node, Value};
-use voussoir_core::units::{Quantity, STANDARD_GRAVITY};
+use voussoir_core::plugin::{Quantity, STANDARD_GRAVITY};
 
 /// The magnitude of the first gravity in the study's stages; standard gravity where there is none.
 pub fn gravity_of(root: &Node) -> f64 {

@@ -4,9 +4,7 @@ use crate::config::common_keys::{common_parameters, common_words};
 use crate::config::document::parse_value;
 use crate::config::origin::Origin;
 use serde_json::{Map, Value as Json, json};
-use voussoir_core::card::{Card, candidates};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, candidates};
 
 /// Definitions of all plug-ins that study files configure, by name.
 pub fn definitions() -> Map<String, Json> {

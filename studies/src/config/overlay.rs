@@ -1,9 +1,9 @@
 //! Setting single keys of a document: `--set`, variants and sweeps.
 
+use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Table, Value};
 use crate::config::dotted_key::{join, segments};
 use crate::config::origin::Origin;
-use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 
 /// Sets the key at a dotted path. List entries are found by index from 0 or, where they are tables
 /// with a `name`, by that name. Tables and keys that are missing are created, so that a misspelt

@@ -2,8 +2,7 @@
 
 use crate::config::diagnostic::any_of;
 use crate::config::document::{Node, Value};
-use voussoir_core::schema::Shape;
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Quantity, Shape};
 
 /// What a shape takes, in words.
 pub fn describe(shape: &Shape) -> String {

@@ -3,13 +3,13 @@
 
 use super::format::{case_title, format_force, headline};
 use super::loads::Loads;
-use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
 use super::svg_canvas::SvgCanvas;
+use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
 use super::thrust::{resultants, strut_lines, thrust_pieces};
 use crate::results::CaseResult;
-use voussoir_core::assembly::{Assembly, Stage};
-use voussoir_core::geometry::{Vec2, bounding_box, turned};
 use voussoir_core::limit::Status;
+use voussoir_core::model::geometry::{Vec2, bounding_box, turned};
+use voussoir_core::model::{Assembly, Stage};
 
 /// Rings of more voussoirs get two faces instead of outlines.
 const MANY: usize = 300;

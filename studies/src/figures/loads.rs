@@ -1,11 +1,11 @@
 //! Loads of the last stage as arrows.
 
 use super::format::{format_force, format_number};
-use super::text_layout::{Area, Spot};
-use super::symbols::LOAD;
 use super::svg_canvas::SvgCanvas;
-use voussoir_core::assembly::{Assembly, PointForce, Stage};
-use voussoir_core::geometry::{Vec2, contains};
+use super::symbols::LOAD;
+use super::text_layout::{Area, Spot};
+use voussoir_core::model::geometry::{Vec2, contains};
+use voussoir_core::model::{Assembly, PointForce, Stage};
 
 /// More forces than this share one label.
 const SINGLE: usize = 3;

@@ -1,16 +1,16 @@
 //! A mechanism: where its blocks go.
 
-use super::hinge_closure::close_hinges;
 use super::displaced::displaced;
 use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
-use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
+use super::hinge_closure::close_hinges;
 use super::svg_canvas::SvgCanvas;
+use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use crate::results::CaseResult;
 use crate::results::inelastic_state::CRUSHED;
-use voussoir_core::assembly::Assembly;
 use voussoir_core::elastic::Mesh;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::Vec2;
 
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
 pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {

@@ -1,10 +1,10 @@
 //! Marks for joints: hinges, sliding, crushing; and the symbols of a legend.
 
-use super::text_layout::{Area, Spot};
 use super::svg_canvas::{LegendSymbol, SvgCanvas};
-use voussoir_core::assembly::{Assembly, Joint};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::mechanism::Mechanism;
+use super::text_layout::{Area, Spot};
+use voussoir_core::certificate::Mechanism;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Joint};
 
 /// Fill of free blocks.
 pub const STONE: &str = "#e9dfcb";

@@ -5,8 +5,7 @@ use crate::results::{CaseResult, Comparison};
 use crate::solve::{Observer, solve_cases};
 use crate::study::{Outline, Study, StudySource};
 use serde_json::{Map, Value as Json};
-use voussoir_core::issue::Issue;
-use voussoir_core::schema::Parameter;
+use voussoir_core::plugin::{Diagnostic, Parameter};
 
 /// A kind of study, chosen by `kind = …`. Instances register with
 /// `inventory::submit! { KindEntry { … } }` beside their card. The card's parameters are the keys of the
@@ -21,7 +20,7 @@ pub trait StudyKind: Sync {
     }
 
     /// Mistakes in a study's axes and in the table of this kind, beyond those of single keys.
-    fn check(&self, outline: &Outline) -> Vec<Issue> {
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
         let _ = outline;
         Vec::new()
     }

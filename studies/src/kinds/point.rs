@@ -11,8 +11,7 @@ pub mod study;
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::study::StudySource;
-use voussoir_core::card::{Card, no_further_check};
-use voussoir_core::schema::{Parameter, PluginKind};
+use voussoir_core::plugin::{Card, Parameter, PluginKind, no_further_check};
 
 struct Point;
 

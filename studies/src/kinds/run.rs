@@ -3,8 +3,7 @@
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::study::{Study, StudySource};
-use voussoir_core::card::{Card, no_further_check};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Card, PluginKind, no_further_check};
 
 struct Run;
 

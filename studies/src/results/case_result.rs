@@ -3,10 +3,8 @@
 use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
-use voussoir_core::certificate::Certificate;
-use voussoir_core::limit::{Counters, Status};
-use voussoir_core::mechanism::Mechanism;
-use voussoir_core::product_proof::LowerProof;
+use voussoir_core::certificate::{Certificate, Mechanism};
+use voussoir_core::limit::{Counters, LowerProof, Status};
 
 /// Which case of its study it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -1,8 +1,8 @@
 //! The cases of a study beside each other: what `kind = "compare"` and `"map"` add to its results.
 
 use serde::{Deserialize, Serialize};
+use voussoir_core::certificate::MechanismKind;
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::MechanismKind;
 
 /// The cases of a study beside each other: a row for each scene and swept value, a column for each
 /// variant (a law with a solver).

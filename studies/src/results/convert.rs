@@ -1,9 +1,8 @@
 //! Forces and motions as they are written.
 
 use super::entries::{FieldEntry, MotionEntry};
-use voussoir_core::assembly::Assembly;
-use voussoir_core::certificate::ContactForce;
-use voussoir_core::mechanism::CentroidVelocity;
+use voussoir_core::certificate::{CentroidVelocity, ContactForce};
+use voussoir_core::model::Assembly;
 
 /// Contact forces as they are written.
 pub fn field_entries(forces: &[ContactForce]) -> Vec<FieldEntry> {

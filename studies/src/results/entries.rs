@@ -1,7 +1,7 @@
 //! Entries of a result: forces, velocities, displacements, yielded blocks and events, one by one.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::path::Happening;
+use voussoir_core::path::ContactEvent;
 
 /// A contact force at a point of a joint \[N\].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,5 +63,5 @@ pub struct EventEntry {
     /// Where \[m\].
     pub point: [f64; 2],
     /// What happened there.
-    pub what: Happening,
+    pub what: ContactEvent,
 }

@@ -2,11 +2,10 @@
 //! mechanism of a motion, and the bounds of residuals.
 
 use super::inelastic_state::with_crushing;
-use voussoir_core::assembly::Assembly;
-use voussoir_core::geometry::{Vec2, turned};
-use voussoir_core::interface::FlowReading;
-use voussoir_core::mechanism::{CentroidVelocity, Mechanism, mechanism, mechanism_above};
-use voussoir_core::path::certificate::tolerance;
+use voussoir_core::certificate::{CentroidVelocity, Mechanism, mechanism, mechanism_above, tolerance};
+use voussoir_core::law::FlowRule;
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{PathProblem, PathState};
 
 /// Whether a residual is within its bound for results; NaN is not, where there is one.
@@ -29,9 +28,9 @@ pub fn mechanism_of(
 ) -> Option<Mechanism> {
     let deforming = finite || !state.yielded.iter().all(Option::is_none);
     let found = if deforming {
-        mechanism_above(DEFORMATION, assembly, motion, unique, FlowReading::Own)
+        mechanism_above(DEFORMATION, assembly, motion, unique, FlowRule::NonAssociated)
     } else {
-        mechanism(assembly, motion, unique, FlowReading::Own)
+        mechanism(assembly, motion, unique, FlowRule::NonAssociated)
     };
     found.map(|found| with_crushing(found, assembly, problem, &state.yielded))
 }

@@ -1,6 +1,6 @@
 //! Where a stage's search for collapse starts.
 
-use voussoir_core::assembly::Stage;
+use voussoir_core::model::Stage;
 
 /// The factor nearest to 0 among those searched.
 pub fn search_start(stage: &Stage) -> f64 {

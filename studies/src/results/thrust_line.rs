@@ -1,8 +1,8 @@
 //! The thrust line of an arch from its contact forces.
 
-use voussoir_core::assembly::Assembly;
 use voussoir_core::certificate::ContactForce;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::Vec2;
 
 /// Where the resultant crosses each joint of an arch.
 pub fn thrust_line(assembly: &Assembly, field: &[ContactForce]) -> Option<Vec<Option<[f64; 2]>>> {

@@ -64,11 +64,11 @@ struct Followed<'a> {
 impl PathObserver for Followed<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
         self.states += 1;
-        let drive = &problem.drives[state.drive];
+        let load_step = &problem.load_steps[state.load_step];
         self.observer.on_path(&PathProgress {
             case: self.case.id,
-            stage: &self.case.stages[drive.stage].name,
-            gravity: drive.gravity,
+            stage: &self.case.stages[load_step.stage].name,
+            gravity: load_step.gravity,
             factor: state.factor,
             states: self.states,
         });

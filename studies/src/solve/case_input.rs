@@ -1,7 +1,7 @@
 //! What is needed to solve a case, without the study that it came from.
 
 use crate::study::{Case, SelectedSolver};
-use voussoir_core::assembly::{Assembly, Stage};
+use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::PathSettings;
 
 /// One case, ready to be solved.

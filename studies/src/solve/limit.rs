@@ -5,15 +5,15 @@ use super::case_input::CaseInput;
 use super::limit_result::certified;
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
-use voussoir_core::assembly::{Assembly, Stage, StageLoads, Target, stage_loads};
 use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
+use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
 
 /// What is asked of a stage: can it stand at its start, and how far does it go from there?
 fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
     let idle = problem.magnitude(&problem.varying) == 0.0;
     match stage.target {
-        Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Stand(0.0),
-        Target::Factor(factor) if factor < 0.0 => LimitQuestion::Stand(factor),
+        Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Admissible(0.0),
+        Target::Factor(factor) if factor < 0.0 => LimitQuestion::Admissible(factor),
         Target::Factor(factor) => LimitQuestion::Collapse { start: 0.0, max: factor },
         Target::Collapse => LimitQuestion::Collapse { start: search_start(stage), max: stage.factor_max },
     }

@@ -4,12 +4,13 @@ use super::case_input::CaseInput;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields};
-use voussoir_core::assembly::{Assembly, Stage, StageLoads, Target};
-use voussoir_core::certificate::{Claim, ContactForce, OwnFlowClaim, certify, largest_jump};
-use voussoir_core::geometry::{Vec2, turned};
-use voussoir_core::interface::FlowReading;
+use voussoir_core::certificate::{
+    CentroidVelocity, Claim, ContactForce, NonAssociatedClaim, certify, jumps, largest_jump, mechanism,
+};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity};
-use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage, StageLoads, Target};
 
 /// The result of one stage, certified.
 pub(super) fn certified(
@@ -23,23 +24,23 @@ pub(super) fn certified(
     let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
     let ray = solved.ray.as_ref().map(|forces| contact_forces(problem, forces));
     let motion = scaled_motion(assembly, problem, &solved);
-    let own = solved.own_flow.as_ref();
+    let own = solved.non_associated.as_ref();
     let associated_motion =
         own.and_then(|own| own.associated_motion.as_ref()).map(|motion| body_velocities(assembly, problem, motion));
-    let reading = if own.is_some() { FlowReading::Own } else { FlowReading::Associated };
+    let reading = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
     let claim = Claim {
         status: solved.status,
         factor: solved.factor,
         field_factor: solved.field_factor,
         start: match asked {
-            LimitQuestion::Stand(factor) => factor,
+            LimitQuestion::Admissible(factor) => factor,
             LimitQuestion::Collapse { start, .. } => start,
         },
         field: field.as_deref(),
         motion: motion.as_deref(),
         ray: ray.as_deref(),
         feasible_interval: solved.feasible_interval,
-        own_flow: own.map(|own| OwnFlowClaim {
+        non_associated: own.map(|own| NonAssociatedClaim {
             proved_lower: own.proved_lower,
             lower_proof: own.lower_proof.as_ref(),
             associated_factor: own.associated_factor,
@@ -69,7 +70,7 @@ pub(super) fn certified(
         non_associated: NonAssociatedAnswer {
             associated_load_factor: own.and_then(|own| own.associated_factor),
             associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
-            lower_proof: solved.own_flow.and_then(|own| own.lower_proof),
+            lower_proof: solved.non_associated.and_then(|own| own.lower_proof),
         },
         certificate,
         counters: solved.counters,
@@ -79,11 +80,7 @@ pub(super) fn certified(
 }
 
 /// Velocities of all bodies; those that refute equilibrium without a factor are scaled to a greatest jump of 1.
-fn scaled_motion(
-    assembly: &Assembly,
-    problem: &LimitProblem,
-    solved: &LimitAnswer,
-) -> Option<Vec<CentroidVelocity>> {
+fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnswer) -> Option<Vec<CentroidVelocity>> {
     let mut motion = body_velocities(assembly, problem, solved.motion.as_ref()?);
     if (solved.status, solved.feasible_interval) == (Status::NoEquilibrium, None) {
         let largest = largest_jump(&jumps(assembly, &motion));

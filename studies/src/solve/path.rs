@@ -3,12 +3,12 @@
 use super::case_input::CaseInput;
 use super::path_result::path_result;
 use crate::results::CaseResult;
-use voussoir_core::path::certificate::Watch;
+use voussoir_core::certificate::PathChecker;
 use voussoir_core::path::{PathObserver, PathProblem, PathSolver, PathState};
 
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
-    watch: Watch,
+    watch: PathChecker,
     observer: &'a mut dyn PathObserver,
 }
 
@@ -19,7 +19,12 @@ impl PathObserver for Watched<'_> {
 }
 
 /// Solves a case along its path; `observer` sees every state.
-pub(super) fn solve_by_path(input: &CaseInput, tag: &str, solver: &dyn PathSolver, observer: &mut dyn PathObserver) -> CaseResult {
+pub(super) fn solve_by_path(
+    input: &CaseInput,
+    tag: &str,
+    solver: &dyn PathSolver,
+    observer: &mut dyn PathObserver,
+) -> CaseResult {
     let assembly = input.assembly;
     let problem = match PathProblem::new(assembly, input.stages) {
         Ok(problem) => problem,
@@ -28,7 +33,7 @@ pub(super) fn solve_by_path(input: &CaseInput, tag: &str, solver: &dyn PathSolve
     if let Some(why) = solver.refuses(&problem, input.settings) {
         return failed(tag, format!("{tag}: {why}"));
     }
-    let mut watched = Watched { watch: Watch::new(input.settings.finite), observer };
+    let mut watched = Watched { watch: PathChecker::new(input.settings.finite), observer };
     let solved = solver.trace(&problem, input.settings, &mut watched);
     path_result(input, tag, &problem, solved, watched.watch)
 }

@@ -7,12 +7,12 @@ use crate::results::path_state::{carried, mechanism_of, small};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, ProofFields, StageResult};
 use std::collections::BTreeMap;
-use voussoir_core::assembly::{Assembly, Stage, Target};
-use voussoir_core::certificate::{Certificate, ContactForce, largest_jump};
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::certificate::{
+    CentroidVelocity, Certificate, ContactForce, PathChecker, flow_residual, jumps, largest_jump,
+};
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{CentroidVelocity, jumps};
-use voussoir_core::path::certificate::{Watch, flow_residual};
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage, Target};
 use voussoir_core::path::{ContactLaw, PathAnswer, PathEvent, PathProblem, coarse_joints};
 
 /// The result of a path that `watch` has looked on.
@@ -21,7 +21,7 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     solved: PathAnswer,
-    watch: Watch,
+    watch: PathChecker,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     let certificate = certificate(problem, &solved, &watch, finite);
@@ -32,9 +32,9 @@ pub(super) fn path_result(
         notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
         status = Status::Stalled;
     }
-    let drive = &problem.drives[solved.drive];
+    let load_step = &problem.load_steps[solved.load_step];
     let load_factor = match status {
-        Status::Collapse | Status::LimitPoint if !drive.gravity => solved.factor,
+        Status::Collapse | Status::LimitPoint if !load_step.gravity => solved.factor,
         _ => None,
     };
     let rates = scaled_rates(assembly, problem, &solved);
@@ -43,7 +43,7 @@ pub(super) fn path_result(
     let mechanism = motion
         .as_deref()
         .and_then(|motion| mechanism_of((assembly, problem), &solved.state, motion, solved.unique, finite));
-    let reached = match (status, input.stages[drive.stage].target) {
+    let reached = match (status, input.stages[load_step.stage].target) {
         (Status::Stands, Target::Factor(factor)) => Some(factor),
         (Status::Stands, Target::Collapse) => solved.factor,
         _ => load_factor,
@@ -70,7 +70,7 @@ pub(super) fn path_result(
         },
         certificate,
         counters,
-        stages: stage_results(input.stages, drive.stage, status, reached, hinges),
+        stages: stage_results(input.stages, load_step.stage, status, reached, hinges),
         notes,
         path: path_record(input, problem, solved, watch),
         ..CaseResult::empty()
@@ -78,7 +78,7 @@ pub(super) fn path_result(
 }
 
 /// What the state, the events and the curve of a path are written as.
-fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, watch: Watch) -> PathRecord {
+fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, watch: PathChecker) -> PathRecord {
     let assembly = input.assembly;
     let name = |body: usize| assembly.bodies[body].name.clone();
     let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
@@ -93,7 +93,7 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, wat
 }
 
 /// Residuals of all states and of the mechanism's flow, against their bounds.
-fn certificate(problem: &PathProblem, solved: &PathAnswer, watch: &Watch, finite: bool) -> Certificate {
+fn certificate(problem: &PathProblem, solved: &PathAnswer, watch: &PathChecker, finite: bool) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &watch.worst {
         certificate.residuals.insert((*name).into(), *value);
@@ -175,11 +175,11 @@ fn stage_results(
 
 fn events(stages: &[Stage], problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
     let entry = |event: &PathEvent| {
-        let (drive, contact) = (&problem.drives[event.drive], &problem.contacts[event.contact]);
+        let (load_step, contact) = (&problem.load_steps[event.load_step], &problem.contacts[event.contact]);
         EventEntry {
-            stage: stages[drive.stage].name.clone(),
+            stage: stages[load_step.stage].name.clone(),
             factor: event.factor,
-            gravity: drive.gravity,
+            gravity: load_step.gravity,
             joint: contact.joint,
             point: contact.position.into(),
             what: event.what,
@@ -226,4 +226,3 @@ fn velocities(
     }
     all
 }
-

@@ -4,10 +4,8 @@ use super::diagnostics::DiagnosticList;
 use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
-use voussoir_core::assembly::{Assembly, Catalogue};
-use voussoir_core::interface::InterfaceLaw;
-use voussoir_core::material::BulkMaterial;
-use voussoir_core::scene::Scene;
+use voussoir_core::law::{BulkMaterial, InterfaceLaw};
+use voussoir_core::model::{Assembly, Catalogue, Scene};
 
 /// The plug-in that a checked table configures, or a diagnostic at `key`.
 pub(crate) fn read_plugin<T: serde::de::DeserializeOwned>(
@@ -30,9 +28,8 @@ fn read_plugins<T: serde::de::DeserializeOwned>(
     tables: &Json,
 ) -> Option<Vec<(String, T)>> {
     let tables = tables.as_object()?.iter();
-    let read = tables.filter_map(|(entry, table)| {
-        Some((entry.clone(), read_plugin(diagnostics, &join(name, entry), table)?))
-    });
+    let read =
+        tables.filter_map(|(entry, table)| Some((entry.clone(), read_plugin(diagnostics, &join(name, entry), table)?)));
     Some(read.collect())
 }
 
@@ -55,5 +52,5 @@ pub(super) fn assembly(
     catalogue: &Catalogue,
 ) -> Option<Assembly> {
     let scene: Box<dyn Scene> = read_plugin(diagnostics, "scene", resolved.get("scene")?)?;
-    scene.build(catalogue).map_err(|issues| diagnostics.extend(issues)).ok()
+    scene.build(catalogue).map_err(|wrong| diagnostics.extend(wrong)).ok()
 }

@@ -11,8 +11,7 @@ use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
 use crate::config::expand::Expanded;
 use serde_json::{Map, Value as Json};
-use voussoir_core::card::{cards_of, nearest};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{PluginKind, cards_of, nearest};
 
 /// Checks and builds one case.
 pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<LocatedDiagnostic>> {

@@ -2,7 +2,7 @@
 
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::Node;
-use voussoir_core::issue::Issue;
+use voussoir_core::plugin::Diagnostic;
 
 /// What was found wrong so far, each placed by its key in the study `root`.
 #[derive(Debug)]
@@ -24,13 +24,13 @@ impl<'a> DiagnosticList<'a> {
     }
 
     /// Adds diagnostics that know their key only.
-    pub fn extend(&mut self, issues: Vec<Issue>) {
-        self.found.extend(issues.into_iter().map(|issue| located(self.root, issue)));
+    pub fn extend(&mut self, diagnostics: Vec<Diagnostic>) {
+        self.found.extend(diagnostics.into_iter().map(|diagnostic| located(self.root, diagnostic)));
     }
 }
 
 /// A diagnostic with the place of its key in the study `root`.
-pub fn located(root: &Node, issue: Issue) -> LocatedDiagnostic {
-    let origin = root.place(&issue.path);
-    LocatedDiagnostic { origin, key: issue.path, message: issue.message, help: issue.help, case: None }
+pub fn located(root: &Node, diagnostic: Diagnostic) -> LocatedDiagnostic {
+    let origin = root.place(&diagnostic.path);
+    LocatedDiagnostic { origin, key: diagnostic.path, message: diagnostic.message, help: diagnostic.help, case: None }
 }

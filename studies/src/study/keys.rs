@@ -3,9 +3,7 @@
 use crate::kinds::kinds;
 use crate::loads::LOAD;
 use std::sync::LazyLock;
-use voussoir_core::card::{Card, card};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
     Parameter { name, doc, shape, need }
@@ -108,7 +106,8 @@ pub fn kind_tables() -> Vec<&'static str> {
 /// The keys of a study file: those that every study has, and the table of each study kind that reads one.
 pub fn study_keys() -> &'static [Parameter] {
     static KEYS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
-        let table = |card: &Card| key(card.tag, Shape::Table(card.parameters), Need::Optional("defaults"), card.summary);
+        let table =
+            |card: &Card| key(card.tag, Shape::Table(card.parameters), Need::Optional("defaults"), card.summary);
         let output = key("output", OUTPUT, Need::Default("{}"), "what is written besides the results");
         COMMON.iter().copied().chain(kinds_with_tables().map(table)).chain([output]).collect()
     });

@@ -15,7 +15,7 @@ use crate::config::overlay::set;
 use crate::kinds::kind;
 use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
-use voussoir_core::schema::{Parameter, Shape};
+use voussoir_core::plugin::{Parameter, Shape};
 
 /// Greatest number of different mistakes reported.
 const MAX_MISTAKES: usize = 100;

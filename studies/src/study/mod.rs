@@ -10,8 +10,8 @@ mod keys;
 mod load;
 mod model;
 mod outline;
-mod source;
 mod solver;
+mod source;
 mod stages;
 
 pub(crate) use assemble::read_plugin;

@@ -5,8 +5,8 @@ use super::outline::Outline;
 use crate::config::expand::Plan;
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
-use voussoir_core::assembly::{Assembly, Stage};
 use voussoir_core::limit::LimitSolver;
+use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::{PathSettings, PathSolver};
 
 /// Who solves a case.

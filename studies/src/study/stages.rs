@@ -5,8 +5,8 @@ use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use crate::loads::{Load, place};
 use serde_json::Value as Json;
-use voussoir_core::assembly::{Assembly, Joint, PointForce, Settlement, Stage, Target};
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Joint, PointForce, Settlement, Stage, Target};
 
 /// All stages, or `None` where there is no list of them.
 pub(super) fn build_stages(
@@ -20,8 +20,7 @@ pub(super) fn build_stages(
     for (index, stage) in stages.iter().enumerate() {
         let at = format!("stages.{index}");
         let (target, factors) = build_target(diagnostics, stages, index, &at);
-        let settlements =
-            assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
+        let settlements = assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
         let settlements = settlements.unwrap_or_default();
         let (forces, accelerations) = build_loads(diagnostics, stage, assembly, &at);
         let stage = Stage {
@@ -120,14 +119,19 @@ fn build_loads(
                 forces.extend(placed);
                 accelerations.extend(accelerated);
             }
-            Err(issues) => diagnostics.extend(issues),
+            Err(wrong) => diagnostics.extend(wrong),
         }
     }
     (forces, accelerations)
 }
 
 /// The movements of supports of a stage.
-fn build_settlements(diagnostics: &mut DiagnosticList<'_>, list: &Json, assembly: &Assembly, at: &str) -> Vec<Settlement> {
+fn build_settlements(
+    diagnostics: &mut DiagnosticList<'_>,
+    list: &Json,
+    assembly: &Assembly,
+    at: &str,
+) -> Vec<Settlement> {
     let mut out = Vec::new();
     for (number, entry) in list.as_array().into_iter().flatten().enumerate() {
         let support = entry["support"].as_str().unwrap_or_default();

@@ -4,10 +4,9 @@ use super::findings::Findings;
 use super::{limit, path};
 use crate::results::CaseResult;
 use crate::study::Case;
-use voussoir_core::assembly::Target;
-use voussoir_core::card::card;
 use voussoir_core::limit::Status;
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::Target;
+use voussoir_core::plugin::{PluginKind, card};
 
 /// What is wrong with a result.
 pub(super) fn verify_case(case: &Case, result: &CaseResult) -> Vec<String> {

@@ -2,10 +2,9 @@
 
 use crate::results::path_state::motion_of_body;
 use crate::results::{CaseResult, FieldEntry, MotionEntry};
-use voussoir_core::assembly::Assembly;
-use voussoir_core::certificate::ContactForce;
-use voussoir_core::geometry::{Vec2, distance_to_segment};
-use voussoir_core::mechanism::CentroidVelocity;
+use voussoir_core::certificate::{CentroidVelocity, ContactForce};
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::{Vec2, distance_to_segment};
 use voussoir_core::path::PathProblem;
 
 /// Relative difference up to which recomputed numbers count as equal.
@@ -46,7 +45,11 @@ pub fn path_forces(
             .iter()
             .zip(&problem.contacts)
             .all(|(f, c)| f.joint == c.joint && (f.point - c.position).norm() <= 1e-9 * problem.length);
-    if same { Ok(forces.iter().map(|f| f.force).collect()) } else { Err("field: not the contact points of the scene".into()) }
+    if same {
+        Ok(forces.iter().map(|f| f.force).collect())
+    } else {
+        Err("field: not the contact points of the scene".into())
+    }
 }
 
 /// Rigid motions of a path's bodies from the stored displacements of the blocks.

@@ -7,11 +7,12 @@ use crate::results::CaseResult;
 use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
 use crate::study::Case;
-use voussoir_core::assembly::{Assembly, Bond, Stage, StageLoads, Target, stage_loads};
-use voussoir_core::certificate::{Certificate, Claim, ContactForce, OwnFlowClaim, certify};
-use voussoir_core::interface::{FlowReading, is_associated};
+use voussoir_core::certificate::{
+    CentroidVelocity, Certificate, Claim, ContactForce, NonAssociatedClaim, certify, mechanism,
+};
+use voussoir_core::law::{FlowRule, is_associated};
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{CentroidVelocity, mechanism};
+use voussoir_core::model::{Assembly, Bond, Stage, StageLoads, Target, stage_loads};
 
 /// Stored forces and velocities, as certificates read them.
 struct Stored {
@@ -57,8 +58,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let non_associated = non_associated(assembly);
     let associated_factor = result.non_associated.associated_load_factor;
     let own = (non_associated && result.flow_read_as.is_none()) || associated_factor.is_some();
-    findings
-        .expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
+    findings.expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
     let infinite = [f64::NEG_INFINITY, f64::INFINITY];
     let claim = Claim {
         status: result.status,
@@ -69,7 +69,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         motion: stored.motion.as_deref(),
         ray: stored.ray.as_deref(),
         feasible_interval: result.feasible_interval.map(|ends| [0, 1].map(|i| ends[i].unwrap_or(infinite[i]))),
-        own_flow: own.then_some(OwnFlowClaim {
+        non_associated: own.then_some(NonAssociatedClaim {
             proved_lower: result.bounds.map(|b| b[0]),
             lower_proof: result.non_associated.lower_proof.as_ref(),
             associated_factor,
@@ -80,7 +80,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let (certificate, bounds) = certify(assembly, loads, &claim, case.solver.settings.tolerance);
     verify_certificate(result, &certificate, bounds, findings);
     verify_factors(result, (stage, loads), &claim, last, findings);
-    let reading = if own { FlowReading::Own } else { FlowReading::Associated };
+    let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
     verify_mechanism(assembly, result, &stored, reading, last, findings);
     let fits = result.flow_read_as.as_deref().is_none_or(|word| word == "associated" && non_associated);
     findings.expect(fits, "flow_read_as does not fit the laws");
@@ -150,7 +150,7 @@ fn verify_mechanism(
     assembly: &Assembly,
     result: &CaseResult,
     stored: &Stored,
-    reading: FlowReading,
+    reading: FlowRule,
     last: usize,
     findings: &mut Findings,
 ) {

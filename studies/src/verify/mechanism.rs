@@ -1,8 +1,8 @@
 //! A stored mechanism and thrust line against those that follow from the stored motion and forces.
 
 use super::fields::{EQUAL, close};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::mechanism::Mechanism;
+use voussoir_core::certificate::Mechanism;
+use voussoir_core::model::geometry::Vec2;
 
 /// In what a stored mechanism is not the recomputed one.
 pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {

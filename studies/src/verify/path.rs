@@ -7,11 +7,12 @@ use crate::results::CaseResult;
 use crate::results::inelastic_state;
 use crate::results::path_state::{mechanism_of, small};
 use crate::study::Case;
-use voussoir_core::assembly::Assembly;
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::certificate::{
+    CentroidVelocity, Mechanism, PathChecker, flow_residual, power_residual, ray_residual,
+};
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{CentroidVelocity, Mechanism};
-use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual};
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Displaced, PathObserver, PathProblem, PathState};
 
 /// Checks the result of a case that a path solver answered.
@@ -20,7 +21,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     let problem = PathProblem::new(assembly, &case.stages)?;
     let finite = case.solver.settings.finite;
     let state = stored_state(assembly, &problem, result, finite)?;
-    let mut watch = Watch::new(finite);
+    let mut watch = PathChecker::new(finite);
     watch.state(&problem, &state);
     for (name, value) in &watch.worst {
         findings.expect(small(name, *value), &format!("{name} is {value:.2e}"));
@@ -38,7 +39,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     }
     if result.status == Status::Unbounded {
         let ray = path_forces(assembly, &problem, result.proof.ray.as_deref().ok_or("unbounded without a ray")?)?;
-        let residual = ray_residual(&problem, &problem.drives[state.drive].loading, &ray);
+        let residual = ray_residual(&problem, &problem.load_steps[state.load_step].loading, &ray);
         findings.expect(small("path_ray", residual), "the ray does not carry the load");
     }
     Ok(())
@@ -52,15 +53,15 @@ fn stored_state(
     finite: bool,
 ) -> Result<PathState, String> {
     let stage = result.stages.len() - 1;
-    let drive = problem.drives.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
-    let drive = match result.status {
-        Status::NoEquilibrium => problem.drives.iter().position(|d| d.stage == stage).unwrap_or(drive),
-        _ => drive,
+    let load_step = problem.load_steps.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
+    let load_step = match result.status {
+        Status::NoEquilibrium => problem.load_steps.iter().position(|d| d.stage == stage).unwrap_or(load_step),
+        _ => load_step,
     };
     let force = path_forces(assembly, problem, result.proof.field.as_deref().ok_or("no field")?)?;
     let motion = path_motion(assembly, problem, result, finite)?;
     let factor = result.proof.field_factor.ok_or("no factor of the field")?;
-    let mut state = PathState { drive, factor, force, motion, ..PathState::default() };
+    let mut state = PathState { load_step, factor, force, motion, ..PathState::default() };
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
     state.memory = result.path.joint_states.clone().unwrap_or_default();
     state.yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;
@@ -85,7 +86,7 @@ fn verify_motion(
     let flow = flow_residual(problem, &state.force, &rates);
     findings.expect(small("path_flow", flow), &format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
     if result.status == Status::Collapse {
-        let power = power_residual(problem, &problem.drives[state.drive].loading, &rates);
+        let power = power_residual(problem, &problem.load_steps[state.load_step].loading, &rates);
         findings.expect(small("path_power", power), "the mechanism is not scaled to p·q̇ = 1");
     }
     let unique = result.mechanism.as_ref().and_then(|m| m.unique);

@@ -18,7 +18,9 @@ impl Writer for ComparisonFiles {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
         let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison).into_bytes())];
         if study.output.figures {
-            files.extend(figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())));
+            files.extend(
+                figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())),
+            );
         }
         files
     }

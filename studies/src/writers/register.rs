@@ -4,8 +4,8 @@
 macro_rules! register {
     ($tag:literal, $writer:expr, $summary:literal, $page:literal) => {
         voussoir_core::inventory::submit! {
-            voussoir_core::card::Card {
-                kind: voussoir_core::schema::PluginKind::Writer,
+            voussoir_core::plugin::Card {
+                kind: voussoir_core::plugin::PluginKind::Writer,
                 tag: $tag,
                 summary: $summary,
                 parameters: &[],
@@ -14,7 +14,7 @@ macro_rules! register {
                 sources: &[],
                 file: file!(),
                 page: $page,
-                check: voussoir_core::card::no_further_check,
+                check: voussoir_core::plugin::no_further_check,
             }
         }
         voussoir_core::inventory::submit! {

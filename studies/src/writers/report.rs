@@ -2,9 +2,9 @@
 
 use super::comparison::{comparison_rows, figure};
 use super::page::{self, STYLE};
-use super::table::{distinct_notes, id_list};
 use super::register::register;
 use super::study_output::StudyOutput;
+use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
 use crate::figures::format::{
     case_title, escape, format_force, format_number, format_seconds, format_short, headline, key_with_unit, kind_words,
@@ -14,8 +14,8 @@ use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
-use voussoir_core::assembly::Assembly;
 use voussoir_core::limit::Status;
+use voussoir_core::model::Assembly;
 
 /// More cases than this are not drawn.
 const DRAWN: usize = 40;
@@ -151,7 +151,9 @@ fn case_table(study: &StudyOutput) -> String {
         let mut row = vec![case.label.id.to_string()];
         row.extend(variants.then(|| case.label.variant.clone().unwrap_or_default()));
         row.extend(scenes.then(|| case.label.scene.clone().unwrap_or_default()));
-        row.extend(study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(page::value).unwrap_or_default()));
+        row.extend(
+            study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(page::value).unwrap_or_default()),
+        );
         row.push(status_word(case.status).replace('_', " "));
         row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));
         let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));

@@ -2,7 +2,7 @@
 
 use crate::results::StudyResults;
 use crate::study::{Output, Study};
-use voussoir_core::assembly::{Assembly, Stage};
+use voussoir_core::model::{Assembly, Stage};
 
 /// A study with its results.
 #[derive(Debug, Clone)]

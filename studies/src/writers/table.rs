@@ -25,7 +25,9 @@ pub fn results_table(study: &StudyOutput) -> String {
         .sweep_keys
         .iter()
         .map(|key| {
-            aligned(&cases.iter().map(|c| c.label.parameters.get(key).map(cell).unwrap_or_default()).collect::<Vec<_>>())
+            aligned(
+                &cases.iter().map(|c| c.label.parameters.get(key).map(cell).unwrap_or_default()).collect::<Vec<_>>(),
+            )
         })
         .collect();
     for (place, case) in cases.iter().enumerate() {

@@ -3,8 +3,8 @@
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use crate::figures::format::{case_title, escape};
+use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use std::fmt::Write;
 
 /// Writes `vtu/`.
@@ -85,7 +85,7 @@ pub fn vtu_text(blocks: &[DisplacedBlock], factor: f64) -> String {
          format=\"ascii\">{factor:e}</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"{points}\" \
          NumberOfCells=\"{cells}\">\n      <Points>\n"
     );
-    let three = |v: &voussoir_core::geometry::Vec2| format!("{:e} {:e} 0", v.x, v.y);
+    let three = |v: &voussoir_core::model::geometry::Vec2| format!("{:e} {:e} 0", v.x, v.y);
     array(&mut text, "Points", "Float64", 3, blocks.iter().flat_map(|b| b.nodes.iter().map(three)));
     text.push_str("      </Points>\n      <Cells>\n");
     let words = |list: &mut dyn Iterator<Item = usize>| list.map(|i| i.to_string()).collect::<Vec<_>>().join(" ");

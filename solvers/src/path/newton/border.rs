@@ -15,10 +15,10 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use crate::lu::Analysis;
 use crate::path::condensed::{Condensed, pair};
 use crate::path::rows::Rows;
 use std::rc::Rc;
+use voussoir_core::linear::Analysis;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
@@ -33,13 +33,13 @@ enum Last {
     Unknown(Vec<f64>, Vec<f64>),
 }
 
-/// Factorised equations without a control of their own: they serve every control that is a border.
+/// SparseLdlt equations without a control of their own: they serve every control that is a border.
 pub(super) struct Held {
     equations: Condensed,
     last: Last,
 }
 
-/// Factorised equations with a control.
+/// SparseLdlt equations with a control.
 pub(super) struct Bordered {
     held: Rc<Held>,
     /// The control's row with c·w, where it is not part of the matrix.

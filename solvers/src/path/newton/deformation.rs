@@ -3,7 +3,7 @@
 use super::inelastic::Inner;
 use super::kinematics::{Curvature, Kinematics, Loads, Side, Slopes};
 use nalgebra::{DMatrix, Matrix2};
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::model::geometry::{Vec2, turned};
 
 impl Kinematics<'_> {
     /// [n t] r in the undeformed axes, and R(−s φ/2).

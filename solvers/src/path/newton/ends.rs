@@ -6,7 +6,7 @@ use super::model::{Control, Rate, Refusal, State, load_size};
 use super::rising::Rising;
 use super::trace::{Peak, Tracer};
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, Drive, Increment};
+use voussoir_core::path::{Continuation, Increment, LoadStep};
 
 /// Share of its fall by which the load must rise for the least one to be that of a snap-through.
 const RISES: f64 = 0.1;
@@ -132,7 +132,7 @@ impl Tracer<'_, '_> {
         ledger.add(&self.model, &self.state, &state, [&self.slopes, &slopes]);
         let start = self.state.clone();
         self.model.keep(&start, &mut state);
-        let recorded = ledger.recorded(&self.model, self.drive, &state, &slopes);
+        let recorded = ledger.recorded(&self.model, self.load_step, &state, &slopes);
         let motion = self.scaled_motion(&state, behind);
         Peak { factor: state.factor, state: recorded, motion }
     }
@@ -210,7 +210,7 @@ impl Tracer<'_, '_> {
     }
 
     /// Whether the path went as far behind its peak as was asked for.
-    pub(super) fn stops(&mut self, drive: &Drive, direction: f64) -> bool {
+    pub(super) fn stops(&mut self, load_step: &LoadStep, direction: f64) -> bool {
         let (factor, displacement) = (self.state.factor, self.recorded.displacement);
         let Some(peak) = &self.peak else {
             if self.model.finite() && displacement.abs() > self.model.units.length {
@@ -229,7 +229,7 @@ impl Tracer<'_, '_> {
         let (stop_displacement, stop_factor) = (self.settings.stop_displacement, self.settings.stop_factor);
         let done = match (stop_displacement, stop_factor) {
             (None, None) => {
-                let grown = (peak.factor - drive.start).abs();
+                let grown = (peak.factor - load_step.start).abs();
                 (peak.factor - factor) * direction >= 0.1 * grown || behind >= peak.state.displacement.abs()
             }
             (most, least) => {

@@ -4,8 +4,8 @@ use super::kinematics::Curvature;
 use super::law::{Polygon, Regime};
 use super::model::Model;
 use super::system::SHIFT;
-use crate::lu::Entries;
 use crate::path::rows::Rows;
+use voussoir_core::linear::Entries;
 
 /// Gaps and balance by all unknowns.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 
 use super::law::Polygon;
 use super::model::{Control, Model, State};
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 impl Model<'_> {
     /// Takes slip to be associated; the laws as they were.

@@ -1,13 +1,13 @@
-//! Following a drive by its strategy: steps, cut-backs, other branches, peaks on the way.
+//! Following a load step by its strategy: steps, cut-backs, other branches, peaks on the way.
 
 use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 use super::softening::MOST_REFINEMENTS;
 use super::trace::{Outcome, Peak, Tracer};
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Drive, DriveEnd, Increment};
+use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 
-/// Greatest number of steps of a drive.
+/// Greatest number of steps of a load step.
 const MOST_STEPS: u64 = 5000;
 
 /// Contact points up to which every change of regime counts for the length of the next step; of more the
@@ -38,14 +38,14 @@ fn jump(before: f64, after: f64, gained: f64) -> f64 {
 
 impl Tracer<'_, '_> {
     /// By the strategy, up to a factor or the end of the path.
-    pub(super) fn follow(&mut self, drive: &Drive, target: f64) -> Outcome {
-        let direction = if target < drive.start { -1.0 } else { 1.0 };
+    pub(super) fn follow(&mut self, load_step: &LoadStep, target: f64) -> Outcome {
+        let direction = if target < load_step.start { -1.0 } else { 1.0 };
         let strategy = self.strategy.clone();
         let unit = self.model.units.factor;
         if target == self.state.factor {
             return Outcome::Reached;
         }
-        let to_factor = matches!(drive.end, DriveEnd::Factor(_));
+        let to_factor = matches!(load_step.end, LoadStepEnd::Factor(_));
         self.rose = None;
         self.model.rest(&mut self.state);
         let Some(first) = self.model.rate(&self.state, &self.state, &Control::Factor(target)) else {
@@ -103,7 +103,7 @@ impl Tracer<'_, '_> {
                 length = share * per_rate;
             }
             if to_factor && rate.factor != 0.0 {
-                let most = (target - drive.start).abs() / 16.0 / rate.factor.abs();
+                let most = (target - load_step.start).abs() / 16.0 / rate.factor.abs();
                 if share > most {
                     share = most;
                     length = share * per_rate;
@@ -361,7 +361,7 @@ impl Tracer<'_, '_> {
             if !self.model.finite() && !self.state.yields() && self.ray_ends(&rate, direction, target) {
                 return Outcome::Ended;
             }
-            if self.stops(drive, direction) {
+            if self.stops(load_step, direction) {
                 return Outcome::Ended;
             }
             previous = Some(increment);

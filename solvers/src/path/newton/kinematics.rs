@@ -24,7 +24,7 @@ use super::model::Model;
 use nalgebra::Matrix2;
 use std::cell::OnceCell;
 use std::rc::Rc;
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Loading, PathProblem};
 
 /// A contact point on an elastic body.

@@ -8,7 +8,7 @@
 //! facets, flow not along the normal); De Saxcé & Feng 1998 (the same law as a bi-potential).
 
 use crate::path::cells::{Cell, Cells};
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

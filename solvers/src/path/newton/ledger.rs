@@ -3,9 +3,9 @@
 use super::kinematics::Slopes;
 use super::law::Regime;
 use super::model::{Model, State};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::interface::FacetMode;
-use voussoir_core::path::{Happening, PathEvent, PathState};
+use voussoir_core::law::FacetMode;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::path::{ContactEvent, PathEvent, PathState};
 
 /// Energies so far \[J\].
 #[derive(Debug, Clone, Copy, Default)]
@@ -16,35 +16,35 @@ pub(super) struct Ledger {
 
 /// What a contact point does, as events see it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Doing {
+enum ContactStatus {
     Sticks,
     Open,
     Slides(i8),
     Crushes,
 }
 
-fn doing(model: &Model, contact: usize, regime: Regime, gap: [f64; 2]) -> Doing {
-    let Some(law) = model.law(contact) else { return Doing::Sticks };
+fn doing(model: &Model, contact: usize, regime: Regime, gap: [f64; 2]) -> ContactStatus {
+    let Some(law) = model.law(contact) else { return ContactStatus::Sticks };
     let by = |i: usize| match law.facets[i].mode {
-        FacetMode::Opening => Doing::Open,
-        FacetMode::Crushing => Doing::Crushes,
-        FacetMode::Sliding => Doing::Slides(if law.facets[i].flow[1] < 0.0 { 1 } else { -1 }),
+        FacetMode::Opening => ContactStatus::Open,
+        FacetMode::Crushing => ContactStatus::Crushes,
+        FacetMode::Sliding => ContactStatus::Slides(if law.facets[i].flow[1] < 0.0 { 1 } else { -1 }),
     };
     match regime {
-        Regime::Stuck => Doing::Sticks,
+        Regime::Stuck => ContactStatus::Sticks,
         Regime::Facet(i) => by(i as usize),
-        Regime::Corner(_) if law.opens(regime) => Doing::Open,
+        Regime::Corner(_) if law.opens(regime) => ContactStatus::Open,
         Regime::Corner(k) => by(law.pair(k, gap).0[0]),
     }
 }
 
 /// Events of a step, in the order of the contact points.
-pub(super) fn events(model: &Model, drive: usize, start: &State, state: &State) -> Vec<PathEvent> {
+pub(super) fn events(model: &Model, load_step: usize, start: &State, state: &State) -> Vec<PathEvent> {
     let mut events = Vec::new();
     for contact in 0..state.gap.len() {
         if model.responses.is(contact) {
             let what = model.response_event(start, state, contact);
-            events.extend(what.map(|what| PathEvent { drive, factor: state.factor, contact, what }));
+            events.extend(what.map(|what| PathEvent { load_step, factor: state.factor, contact, what }));
             continue;
         }
         if start.regime[contact] == state.regime[contact] {
@@ -57,15 +57,15 @@ pub(super) fn events(model: &Model, drive: usize, start: &State, state: &State) 
             continue;
         }
         let what = match (before, after) {
-            (_, Doing::Open) => Happening::Opens,
-            (Doing::Open, Doing::Sticks) => Happening::Closes,
-            (_, Doing::Slides(1)) => Happening::SlipsForward,
-            (_, Doing::Slides(_)) => Happening::SlipsBackward,
-            (_, Doing::Crushes) => Happening::Crushes,
-            (Doing::Crushes, Doing::Sticks) => Happening::Unloads,
-            (_, Doing::Sticks) => Happening::Sticks,
+            (_, ContactStatus::Open) => ContactEvent::Opens,
+            (ContactStatus::Open, ContactStatus::Sticks) => ContactEvent::Closes,
+            (_, ContactStatus::Slides(1)) => ContactEvent::SlipsForward,
+            (_, ContactStatus::Slides(_)) => ContactEvent::SlipsBackward,
+            (_, ContactStatus::Crushes) => ContactEvent::Crushes,
+            (ContactStatus::Crushes, ContactStatus::Sticks) => ContactEvent::Unloads,
+            (_, ContactStatus::Sticks) => ContactEvent::Sticks,
         };
-        events.push(PathEvent { drive, factor: state.factor, contact, what });
+        events.push(PathEvent { load_step, factor: state.factor, contact, what });
     }
     events
 }
@@ -118,7 +118,7 @@ impl Ledger {
     }
 
     /// The state as others read it.
-    pub fn recorded(&self, model: &Model, drive: usize, state: &State, slopes: &Slopes) -> PathState {
+    pub fn recorded(&self, model: &Model, load_step: usize, state: &State, slopes: &Slopes) -> PathState {
         let mut stored = slopes.stored + model.response_stored(state);
         for contact in 0..state.gap.len() {
             let Some(law) = model.law(contact) else { continue };
@@ -129,7 +129,7 @@ impl Ledger {
             }
         }
         PathState {
-            drive,
+            load_step,
             factor: state.factor,
             force: state.force.clone(),
             gap: state.gap.clone(),

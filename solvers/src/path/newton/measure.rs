@@ -1,7 +1,7 @@
 //! Sizes of states, rates and steps in the units of the unknowns: what continuation strategies measure.
 
 use super::model::{Model, Rate, State, load_size};
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::Increment;
 
 impl Model<'_> {

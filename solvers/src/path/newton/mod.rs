@@ -33,9 +33,8 @@ mod wandering;
 use super::continuation::arc_length::ArcLength;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
 /// Steps with Newton's method.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -57,7 +56,7 @@ impl PathSolver for NewtonPath {
         if settings.continuation.as_ref().is_some_and(|c| c.exact_events()) {
             return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
         }
-        if problem.drives.is_empty() {
+        if problem.load_steps.is_empty() {
             return Some("nothing is loaded".into());
         }
         (!problem.deforms()).then(|| {

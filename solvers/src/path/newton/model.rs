@@ -74,7 +74,7 @@ pub(super) enum Control<'a> {
     Spring { weight: f64, length: f64 },
 }
 
-/// The present drive on top of what earlier ones left.
+/// The present load step on top of what earlier ones left.
 #[derive(Clone)]
 pub(super) struct Loaded<'a> {
     pub earlier: Vec<(f64, &'a Loading)>,
@@ -109,9 +109,9 @@ pub(super) struct Model<'a> {
     pub searches: bool,
     /// Undeformed bodies whose material yields.
     blocks: Vec<Option<Inner>>,
-    /// Second derivatives with small displacements, of the present drive.
+    /// Second derivatives with small displacements, of the present load step.
     pub(super) constant: Option<std::rc::Rc<Curvature>>,
-    pub(super) factorised: super::system::Factorised,
+    pub(super) factorised: super::system::SparseLdlt,
 }
 
 /// Why a step was not found.
@@ -168,9 +168,9 @@ impl<'a> Model<'a> {
             bodies_free += 1;
         }
         let size = |loading: &Loading| load_size(problem, loading);
-        let sizes: Vec<f64> = problem.drives.iter().map(|d| size(&d.loading)).collect();
+        let sizes: Vec<f64> = problem.load_steps.iter().map(|d| size(&d.loading)).collect();
         let settlement = problem
-            .drives
+            .load_steps
             .iter()
             .flat_map(|d| &d.loading.settlements)
             .map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * problem.length))
@@ -179,7 +179,7 @@ impl<'a> Model<'a> {
         let force = if force > 0.0 { force } else { 1.0 };
         let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
         let polygons = problem.facets.iter().map(|f| Polygon::new(f)).collect();
-        let loaded = Loaded { earlier: Vec::new(), growing: &problem.drives[0].loading, start: 0.0 };
+        let loaded = Loaded { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 };
         Ok(Model {
             kinematics: Kinematics::new(problem, finite),
             problem,
@@ -195,11 +195,11 @@ impl<'a> Model<'a> {
             searches: true,
             blocks: super::inelastic::undeformed(problem)?,
             constant: None,
-            factorised: super::system::Factorised::default(),
+            factorised: super::system::SparseLdlt::default(),
         })
     }
 
-    /// Begins a drive.
+    /// Begins a load step.
     pub fn load(&mut self, loaded: Loaded<'a>) {
         let size = load_size(self.problem, loaded.growing);
         let settlement = loaded

@@ -123,7 +123,7 @@ impl Model<'_> {
         let mut frame = Frame::new(curvature.rows(self).clone(), points, row);
         let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
         right[size - 1] = -left;
-        frame.drive(&right);
+        frame.load_rate(&right);
         let laws = self.polygons.clone();
         let contacts = &self.problem.contacts;
         let law_of = |c: usize| match contacts[c].law {

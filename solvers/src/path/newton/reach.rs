@@ -3,14 +3,14 @@
 use super::model::{Control, Rate, State};
 use super::trace::{Outcome, Tracer};
 use voussoir_core::limit::Status;
-use voussoir_core::path::Drive;
+use voussoir_core::path::LoadStep;
 
 /// Why there is no first state.
 const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
 
 impl Tracer<'_, '_> {
     /// To a factor: in one step where nothing irreversible happens in it, else in steps.
-    pub(super) fn reach(&mut self, drive: &Drive, factor: f64) -> Outcome {
+    pub(super) fn reach(&mut self, load_step: &LoadStep, factor: f64) -> Outcome {
         let control = Control::Factor(factor);
         let whole = self.model.newton(&self.state, self.state.clone(), &control);
         let small = !self.model.finite();
@@ -28,21 +28,21 @@ impl Tracer<'_, '_> {
                 return if self.commit(next) { Outcome::Reached } else { Outcome::Ended };
             }
             if small && self.model.monotone() {
-                return self.stepped(drive, factor);
+                return self.stepped(load_step, factor);
             }
         }
         if small && self.proportional() {
-            return self.started(drive, factor);
+            return self.started(load_step, factor);
         }
-        self.follow(drive, factor)
+        self.follow(load_step, factor)
     }
 
-    /// The first drive where it is proportional and no state at its factor was found: by a spring, which
+    /// The first load step where it is proportional and no state at its factor was found: by a spring, which
     /// has a solution whatever the load. If λ grows with it, that state in proportion is the one looked
     /// for. If λ stays at nothing, the motion is a mechanism. Where flow is not associated that proves
     /// something only if λ stays at nothing with associated flow too.
-    pub(super) fn started(&mut self, drive: &Drive, factor: f64) -> Outcome {
-        let direction = if factor < drive.start { -1.0 } else { 1.0 };
+    pub(super) fn started(&mut self, load_step: &LoadStep, factor: f64) -> Outcome {
+        let direction = if factor < load_step.start { -1.0 } else { 1.0 };
         let control = Control::Spring { weight: self.spring(), length: direction };
         let nothing = 1e-9 * self.model.units.factor;
         if !self.model.monotone()
@@ -55,19 +55,19 @@ impl Tracer<'_, '_> {
             self.end(Status::Stalled, NO_START.into());
             return Outcome::Ended;
         };
-        if (state.factor - drive.start) * direction > nothing {
-            let guess = self.model.in_proportion(&state, (factor - drive.start) / (state.factor - drive.start));
+        if (state.factor - load_step.start) * direction > nothing {
+            let guess = self.model.in_proportion(&state, (factor - load_step.start) / (state.factor - load_step.start));
             return match self.model.iterate(&self.state, guess, &Control::Factor(factor), 8, None) {
                 Ok((next, _)) if self.commit(next.clone()) => Outcome::Reached,
                 Ok(_) => Outcome::Ended,
-                Err(_) => self.follow(drive, factor),
+                Err(_) => self.follow(load_step, factor),
             };
         }
         if !self.model.monotone() {
             let polygons = self.model.associated();
             let other = self.model.pivoted(&self.state, &self.state.clone(), &control);
             self.model.polygons = polygons;
-            if !other.is_ok_and(|(other, _)| (other.factor - drive.start) * direction <= nothing) {
+            if !other.is_ok_and(|(other, _)| (other.factor - load_step.start) * direction <= nothing) {
                 self.end(Status::Stalled, NO_START.into());
                 return Outcome::Ended;
             }
@@ -96,7 +96,7 @@ impl Tracer<'_, '_> {
 
     /// To a factor that is known to be carried, in equal steps of λ (associated flow: what carries a
     /// factor carries all between).
-    pub(super) fn stepped(&mut self, drive: &Drive, factor: f64) -> Outcome {
+    pub(super) fn stepped(&mut self, load_step: &LoadStep, factor: f64) -> Outcome {
         let from = self.state.factor;
         let mut last: Option<State> = None;
         let mut at = 0.0;
@@ -126,7 +126,7 @@ impl Tracer<'_, '_> {
                     self.model.count("cutbacks", 1);
                     share *= 0.5;
                     if share < 1e-4 {
-                        return self.follow(drive, factor);
+                        return self.follow(load_step, factor);
                     }
                 }
             }

@@ -12,8 +12,8 @@
 
 use super::model::{Control, Model, Rate, State};
 use std::sync::Arc;
-use voussoir_core::interface::{InterfaceResponse, Regime, TractionPoint};
-use voussoir_core::path::{ContactLaw, Happening, PathProblem};
+use voussoir_core::law::{InterfaceResponse, TractionPoint, UpdateBranch};
+use voussoir_core::path::{ContactEvent, ContactLaw, PathProblem};
 
 /// Contact points of one law, and where their states stand.
 #[derive(Debug, Clone)]
@@ -110,19 +110,19 @@ impl Responses {
 
 /// What a point with such a law does, as events see it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Doing {
+enum ContactStatus {
     Holds,
     Softens,
     Slides(bool),
     Open,
 }
 
-fn doing(point: &TractionPoint, gap: [f64; 2], slip: f64) -> Doing {
-    match point.regime {
-        _ if gap[0] > 0.0 && point.traction == [0.0; 2] && point.tangent == [[0.0; 2]; 2] => Doing::Open,
-        Regime::Softening | Regime::SofteningSliding => Doing::Softens,
-        Regime::Sliding => Doing::Slides(slip > 0.0),
-        _ => Doing::Holds,
+fn doing(point: &TractionPoint, gap: [f64; 2], slip: f64) -> ContactStatus {
+    match point.branch {
+        _ if gap[0] > 0.0 && point.traction == [0.0; 2] && point.tangent == [[0.0; 2]; 2] => ContactStatus::Open,
+        UpdateBranch::Softening | UpdateBranch::SofteningSliding => ContactStatus::Softens,
+        UpdateBranch::Sliding => ContactStatus::Slides(slip > 0.0),
+        _ => ContactStatus::Holds,
     }
 }
 
@@ -205,7 +205,7 @@ impl Model<'_> {
 
     /// Points that change what they do between two states.
     pub fn response_changes(&self, start: &State, state: &State) -> usize {
-        let of = |state: &State, c: usize| state.answers.points[c].regime;
+        let of = |state: &State, c: usize| state.answers.points[c].branch;
         self.responses.points().filter(|c| of(start, *c) != of(state, *c)).count()
     }
 
@@ -236,19 +236,19 @@ impl Model<'_> {
     }
 
     /// Event of a step at a point.
-    pub fn response_event(&self, start: &State, state: &State, contact: usize) -> Option<Happening> {
+    pub fn response_event(&self, start: &State, state: &State, contact: usize) -> Option<ContactEvent> {
         let slip = state.gap[contact][1] - start.gap[contact][1];
         let before = doing(&start.answers.points[contact], start.gap[contact], slip);
         let after = doing(&state.answers.points[contact], state.gap[contact], slip);
         Some(match (before, after) {
             (before, after) if before == after => return None,
-            (_, Doing::Open) => Happening::Opens,
-            (_, Doing::Softens) => Happening::Softens,
-            (_, Doing::Slides(true)) => Happening::SlipsForward,
-            (_, Doing::Slides(false)) => Happening::SlipsBackward,
-            (Doing::Open, Doing::Holds) => Happening::Closes,
-            (Doing::Softens, Doing::Holds) => Happening::Unloads,
-            (_, Doing::Holds) => Happening::Sticks,
+            (_, ContactStatus::Open) => ContactEvent::Opens,
+            (_, ContactStatus::Softens) => ContactEvent::Softens,
+            (_, ContactStatus::Slides(true)) => ContactEvent::SlipsForward,
+            (_, ContactStatus::Slides(false)) => ContactEvent::SlipsBackward,
+            (ContactStatus::Open, ContactStatus::Holds) => ContactEvent::Closes,
+            (ContactStatus::Softens, ContactStatus::Holds) => ContactEvent::Unloads,
+            (_, ContactStatus::Holds) => ContactEvent::Sticks,
         })
     }
 
@@ -284,7 +284,7 @@ impl Model<'_> {
         }
         let dissipates = |c: &usize| moved.answers.points[*c].dissipated > 0.0;
         let active: Vec<usize> = self.responses.points().filter(dissipates).collect();
-        let begins = |c: &usize| moved.answers.points[*c].regime != state.answers.points[*c].regime;
+        let begins = |c: &usize| moved.answers.points[*c].branch != state.answers.points[*c].branch;
         let new: Vec<usize> = active.iter().copied().filter(begins).collect();
         let mut all: Vec<Local> = Local::along(&active, &rate.gap).into_iter().collect();
         if new.len() < active.len() {

@@ -14,10 +14,10 @@
 
 use super::law::Regime;
 use super::model::{Model, Rate, State};
-use crate::lu::{Entries, SparseLu};
 use crate::path::complementarity::{Complementarity, Known};
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
+use voussoir_core::linear::{Entries, SparseLu};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
 const VERGE: f64 = 1e-8;

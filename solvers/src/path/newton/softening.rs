@@ -25,7 +25,7 @@ impl Tracer<'_, '_> {
         let slopes = self.model.slopes(next);
         let mut ledger = self.ledger;
         ledger.add(&self.model, &self.state, next, [&self.slopes, &slopes]);
-        let after = ledger.recorded(&self.model, self.drive, next, &slopes);
+        let after = ledger.recorded(&self.model, self.load_step, next, &slopes);
         let of = |state: &voussoir_core::path::PathState| state.work - state.stored - state.dissipated;
         let lost = (of(&after) - of(&self.recorded)).abs();
         let whole = after.stored.abs() + after.dissipated.abs();

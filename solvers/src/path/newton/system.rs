@@ -19,10 +19,10 @@ use super::border::{Bordered, Held};
 use super::kinematics::{Curvature, Slopes};
 use super::law::Regime;
 use super::model::{Control, Model, Rate, State, load_size};
-use crate::lu::Analysis;
 use crate::path::rows::Rows;
 use std::rc::Rc;
-use voussoir_core::geometry::turned;
+use voussoir_core::linear::Analysis;
+use voussoir_core::model::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
 /// Backward error of every row that is rounding.
@@ -41,13 +41,13 @@ struct Kept {
 
 /// What the last factorisation leaves to the next.
 #[derive(Default)]
-pub(super) struct Factorised {
+pub(super) struct SparseLdlt {
     /// The last ones, where nothing but regimes and laws makes the matrix.
     last: Option<Kept>,
     analysis: Analysis,
 }
 
-impl Factorised {
+impl SparseLdlt {
     /// Another load grows.
     pub fn forget(&mut self) {
         self.last = None;

@@ -9,15 +9,14 @@ use crate::path::continuation::exact_events::ExactEvents;
 use crate::path::continuation::load_control::LoadControl;
 use nalgebra::{DMatrix, Rotation2};
 use std::sync::Arc;
-use voussoir_core::assembly::Plane;
 use voussoir_core::elastic::{Condenser, IsotropicElastic, MeshDensity};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::{
+    Facet, Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises,
+};
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::material::plane::PlanarUpdate;
-use voussoir_core::material::{Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises};
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
-    Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathBody, PathObserver, PathProblem,
+    Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathObserver, PathProblem,
     PathSettings, PathSolver, PathState, Sliding, Unobserved,
 };
 
@@ -83,7 +82,7 @@ fn chain() -> PathProblem {
         contacts,
         facets: vec![],
         responses: Vec::new(),
-        drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Factor(1.0) }],
+        load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
         length: 3.0,
         counters: Counters::new(),
     }
@@ -99,7 +98,7 @@ fn some_state() -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
 fn sliding_chain() -> PathProblem {
     let mut problem = chain();
     problem.bodies.iter_mut().for_each(|body| body.flexibility = None);
-    problem.drives[0].loading.forces[0].1 = None;
+    problem.load_steps[0].loading.forces[0].1 = None;
     for (contact, share) in problem.contacts.iter_mut().zip([0.0, 1.0, 0.3]) {
         (contact.minus.slot, contact.plus.slot) = (None, None);
         contact.sliding.share = share;
@@ -113,7 +112,7 @@ fn the_tangent_is_the_derivative() {
     for (problem, finite) in [(chain(), false), (chain(), true), (sliding_chain(), true)] {
         let kinematics = Kinematics::new(&problem, finite);
         let (force, mut motion) = some_state();
-        let loading = &problem.drives[0].loading;
+        let loading = &problem.load_steps[0].loading;
         let settle = |motion: &mut Vec<[f64; 3]>, factor: f64| {
             motion[0] = [0.02 * factor, -0.03 * factor, 0.1 * factor];
         };
@@ -169,9 +168,9 @@ fn the_tangent_is_the_derivative() {
 #[test]
 fn gaps_are_objective() {
     let mut problem = chain();
-    problem.drives[0].loading.settlements.clear();
+    problem.load_steps[0].loading.settlements.clear();
     let (force, motion) = some_state();
-    let loading = problem.drives[0].loading.clone();
+    let loading = problem.load_steps[0].loading.clone();
     let kinematics = Kinematics::new(&problem, true);
     let before = kinematics.slopes(&force, &motion, &Loads { parts: vec![(1.0, &loading)] }, &[]);
     for angle in [1.0, 3.0, 40.0] {
@@ -200,7 +199,7 @@ fn gaps_are_objective() {
 }
 
 /// One contact point on the ground, held by springs K over (t, n): the two-degree-of-freedom example.
-fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, DriveEnd)>) -> PathProblem {
+fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, LoadStepEnd)>) -> PathProblem {
     let [[a, b], [_, d]] = stiffness;
     let det = a * d - b * b;
     let inverse = [[d / det, -b / det], [-b / det, a / det]];
@@ -239,9 +238,9 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, Drive
         contacts: vec![contact],
         facets: vec![vec![Facet::opening(0.0), left, right]],
         responses: Vec::new(),
-        drives: drives
+        load_steps: load_steps
             .into_iter()
-            .map(|(f, end)| Drive {
+            .map(|(f, end)| LoadStep {
                 stage: 0,
                 gravity: false,
                 loading: Loading {
@@ -272,7 +271,10 @@ fn turning() -> PathProblem {
     two_degrees(
         K,
         1.25,
-        vec![(Vec2::new(0.0, -1.0), DriveEnd::Factor(1.0)), (Vec2::new(1.0, 0.0), DriveEnd::Collapse(f64::INFINITY))],
+        vec![
+            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
+            (Vec2::new(1.0, 0.0), LoadStepEnd::Collapse(f64::INFINITY)),
+        ],
     )
 }
 
@@ -286,7 +288,7 @@ fn a_path_that_turns_back() {
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     assert!((answer.factor.unwrap() - 1.25).abs() < 1e-9, "{:?}", answer.factor);
     let (mut slid, mut open) = (0, 0);
-    for state in states.0.iter().filter(|s| s.drive == 1) {
+    for state in states.0.iter().filter(|s| s.load_step == 1) {
         let [normal, tangent] = state.gap[0];
         if normal > 1e-9 {
             open += 1;
@@ -319,7 +321,7 @@ fn one_solution_of_the_two_degree_example() {
     for (friction, tangential, normal) in
         [(0.5, 1.4, 0.2), (0.9, 1.4, 0.2), (1.25, 0.0, 0.0), (1.5, 0.0, 0.0), (2.0, 0.0, 0.0)]
     {
-        let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
+        let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
         let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
         assert_eq!(answer.status, Status::Stands, "μ {friction}: {:?}", answer.notes);
         let [n, t] = answer.state.gap[0];
@@ -331,7 +333,7 @@ fn one_solution_of_the_two_degree_example() {
 /// cycles, the one from the open state does not.
 #[test]
 fn separation_at_a_friction_close_to_the_load() {
-    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
+    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
     let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
     assert_eq!(answer.status, Status::Stands, "{:?} {:?} {:?}", answer.factor, answer.state.gap, answer.notes);
     let [n, t] = answer.state.gap[0];
@@ -342,17 +344,17 @@ fn separation_at_a_friction_close_to_the_load() {
 /// a reversal of twice the friction, and reloads: gap = slip, spring K_t = 1, contact compliant.
 #[test]
 fn slip_has_a_history() {
-    let drive = |t: f64| (Vec2::new(t, 0.0), DriveEnd::Factor(1.0));
+    let load_step = |t: f64| (Vec2::new(t, 0.0), LoadStepEnd::Factor(1.0));
     let problem = two_degrees(
         [[1.0, 0.0], [0.0, 2.0]],
         0.5,
         vec![
-            (Vec2::new(0.0, -1.0), DriveEnd::Factor(1.0)),
-            drive(0.8),
-            drive(-0.6),
-            drive(-0.9),
-            drive(0.5),
-            drive(0.9),
+            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
+            load_step(0.8),
+            load_step(-0.6),
+            load_step(-0.9),
+            load_step(0.5),
+            load_step(0.9),
         ],
     );
     // Force f_t = 0.8, 0.2, −0.7, −0.2, 0.7 in turn: slip f − 0.5 = 0.3; stuck while |f − 0.3| ≤ 0.5;
@@ -366,9 +368,9 @@ fn slip_has_a_history() {
         let mut states = Kept(Vec::new());
         let answer = NewtonPath {}.trace(&problem, &settings(strategy), &mut states);
         assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-        for (drive, slip) in expected.iter().enumerate() {
-            let last = states.0.iter().rfind(|s| s.drive == drive).expect("a state of every drive");
-            assert!((last.gap[0][1] - slip).abs() < 1e-12, "drive {drive}: {} {slip}", last.gap[0][1]);
+        for (load_step, slip) in expected.iter().enumerate() {
+            let last = states.0.iter().rfind(|s| s.load_step == load_step).expect("a state of every load step");
+            assert!((last.gap[0][1] - slip).abs() < 1e-12, "load step {load_step}: {} {slip}", last.gap[0][1]);
         }
         let end = answer.state;
         // Dissipation: μ N × (0.3 + 0.5 + 0.4).
@@ -419,7 +421,13 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         contacts,
         facets: vec![],
         responses: Vec::new(),
-        drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Collapse(f64::INFINITY) }],
+        load_steps: vec![LoadStep {
+            stage: 0,
+            gravity: false,
+            loading,
+            start: 0.0,
+            end: LoadStepEnd::Collapse(f64::INFINITY),
+        }],
         length: 2.0 * half_span,
         counters: Counters::new(),
     }
@@ -485,12 +493,12 @@ fn the_peak_does_not_depend_on_place_or_units() {
     for c in &mut turned.contacts {
         (c.position, c.normal, c.tangent) = (about(c.position), turn * c.normal, turn * c.tangent);
     }
-    for f in &mut turned.drives[0].loading.forces {
+    for f in &mut turned.load_steps[0].loading.forces {
         (f.2, f.3) = (about(f.2), turn * f.3);
     }
     // Millimetres and meganewtons: lengths × 1000, compliances × 1e9.
     let mut units = two_bars(1000.0, 200.0, 1e-3 * 1e9);
-    units.drives[0].loading.forces.iter_mut().for_each(|f| f.3 *= 1e-6);
+    units.load_steps[0].loading.forces.iter_mut().for_each(|f| f.3 *= 1e-6);
     units.bodies.iter_mut().for_each(|b| b.mass *= 1e-3);
     for problem in [turned, units] {
         let factor = NewtonPath {}.trace(&problem, &how, &mut Unobserved).factor.expect("a peak");
@@ -583,13 +591,14 @@ fn steps_with_yielding_blocks_converge_quadratically() {
     });
     let loading =
         Loading { forces: vec![(1, Some(3), Vec2::new(1.0, 1.0), Vec2::new(3e5, -4e5))], ..Loading::default() };
-    let drive = Drive { stage: 0, gravity: false, loading: loading.clone(), start: 0.0, end: DriveEnd::Factor(1.0) };
+    let load_step =
+        LoadStep { stage: 0, gravity: false, loading: loading.clone(), start: 0.0, end: LoadStepEnd::Factor(1.0) };
     let problem = PathProblem {
         bodies: vec![ground, block],
         body_of: vec![0, 1],
         contacts: contacts.collect(),
         facets: Vec::new(),
-        drives: vec![drive],
+        load_steps: vec![load_step],
         responses: vec![],
         length: 1.0,
         counters: Counters::new(),

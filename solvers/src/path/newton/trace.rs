@@ -1,21 +1,21 @@
-//! The drives one after the other, converged states taken over, and the answer.
+//! The load steps one after the other, converged states taken over, and the answer.
 
 use super::kinematics::Slopes;
 use super::ledger::{Ledger, events};
 use super::model::{Loaded, Model, State};
 use super::wandering::Wandering;
 use std::sync::Arc;
+use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::certificate::flow_residual;
 use voussoir_core::path::{
-    Continuation, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
+    Continuation, LoadStepEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
 };
 
 /// Greatest contact force behind a peak of finite displacements, by that at the peak, with which the blocks have
 /// come apart: what is left is rounding.
 const APART: f64 = 1e-6;
 
-/// How a drive ended.
+/// How a load step ended.
 pub(super) enum Outcome {
     /// At its factor.
     Reached,
@@ -41,7 +41,7 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) notes: Vec<String>,
     pub(super) state: State,
     pub(super) recorded: PathState,
-    pub(super) drive: usize,
+    pub(super) load_step: usize,
     pub(super) status: Status,
     pub(super) motion: Option<Vec<[f64; 3]>>,
     pub(super) ray: Option<Vec<[f64; 2]>>,
@@ -59,7 +59,7 @@ pub(super) struct Tracer<'a, 'o> {
     pub(super) wandering: Wandering,
 }
 
-/// Follows all drives.
+/// Follows all load steps.
 pub(super) fn trace(
     problem: &PathProblem,
     settings: &PathSettings,
@@ -84,7 +84,7 @@ pub(super) fn trace(
         notes: Vec::new(),
         state,
         recorded,
-        drive: 0,
+        load_step: 0,
         status: Status::Stalled,
         motion: None,
         ray: None,
@@ -104,7 +104,7 @@ pub(super) fn trace(
 pub(super) fn stalled(why: String) -> PathAnswer {
     PathAnswer {
         status: Status::Stalled,
-        drive: 0,
+        load_step: 0,
         factor: None,
         state: PathState::default(),
         last: None,
@@ -120,14 +120,14 @@ pub(super) fn stalled(why: String) -> PathAnswer {
 impl<'a> Tracer<'a, '_> {
     fn run(&mut self, problem: &'a PathProblem) {
         let mut earlier = Vec::new();
-        for (index, drive) in problem.drives.iter().enumerate() {
-            self.drive = index;
-            self.state.factor = drive.start;
-            self.model.load(Loaded { earlier: earlier.clone(), growing: &drive.loading, start: drive.start });
+        for (index, load_step) in problem.load_steps.iter().enumerate() {
+            self.load_step = index;
+            self.state.factor = load_step.start;
+            self.model.load(Loaded { earlier: earlier.clone(), growing: &load_step.loading, start: load_step.start });
             self.slopes = self.model.slopes(&self.state);
-            let mut outcome = match drive.end {
-                DriveEnd::Factor(factor) => self.reach(drive, factor),
-                DriveEnd::Collapse(most) => self.follow(drive, most),
+            let mut outcome = match load_step.end {
+                LoadStepEnd::Factor(factor) => self.reach(load_step, factor),
+                LoadStepEnd::Collapse(most) => self.follow(load_step, most),
             };
             // Behind a peak a structure with finite displacements comes back to the load as another one:
             // it has snapped through.
@@ -136,9 +136,9 @@ impl<'a> Tracer<'a, '_> {
                 outcome = Outcome::Ended;
             }
             match outcome {
-                Outcome::Reached => earlier.push((self.state.factor - drive.start, &drive.loading)),
+                Outcome::Reached => earlier.push((self.state.factor - load_step.start, &load_step.loading)),
                 Outcome::Ended => {
-                    if drive.gravity && matches!(self.status, Status::Collapse | Status::LimitPoint) {
+                    if load_step.gravity && matches!(self.status, Status::Collapse | Status::LimitPoint) {
                         self.notes.push(format!(
                             "the change of gravity is carried up to {:.9} of its value only",
                             self.peak.as_ref().map_or(self.state.factor, |p| p.factor)
@@ -209,7 +209,7 @@ impl<'a> Tracer<'a, '_> {
         };
         PathAnswer {
             status: self.status,
-            drive: self.drive,
+            load_step: self.load_step,
             factor,
             state,
             last,
@@ -236,11 +236,11 @@ impl<'a> Tracer<'a, '_> {
             self.model.clean(&mut next, self.model.loaded.start);
         }
         let slopes = self.model.slopes(&next);
-        self.events.extend(events(&self.model, self.drive, &self.state, &next));
+        self.events.extend(events(&self.model, self.load_step, &self.state, &next));
         self.ledger.add(&self.model, &self.state, &next, [&self.slopes, &slopes]);
         let start = self.state.clone();
         self.model.keep(&start, &mut next);
-        self.recorded = self.ledger.recorded(&self.model, self.drive, &next, &slopes);
+        self.recorded = self.ledger.recorded(&self.model, self.load_step, &next, &slopes);
         self.state = next;
         self.slopes = slopes;
         self.model.count("steps", 1);

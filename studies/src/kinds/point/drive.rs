@@ -80,7 +80,7 @@ fn record(result: &mut PointResult, point: &DrivenPoint, segment: usize, dissipa
     let invariants = |stress: [f64; 6]| {
         let p = -(stress[0] + stress[1] + stress[2]) / 3.0;
         let deviator: [f64; 6] = std::array::from_fn(|i| if i < 3 { stress[i] + p } else { stress[i] });
-        [p, voussoir_core::material::von_mises(&deviator)]
+        [p, voussoir_core::law::von_mises(&deviator)]
     };
     match point.law() {
         PointLaw::Space(..) => row.extend(invariants(response.stress)),

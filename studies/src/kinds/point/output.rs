@@ -27,7 +27,8 @@ impl LoadedStudy for PointStudy {
         let mut text = format!("study \"{}\" (point): {} case(s)\n", self.name, self.cases.len());
         for case in &self.cases {
             let steps: usize = case.path.iter().map(|segment| segment.steps).sum();
-            text += &format!("case {}: {} at one point, {} segments, {steps} steps\n", case.id, case.tag, case.path.len());
+            text +=
+                &format!("case {}: {} at one point, {} segments, {steps} steps\n", case.id, case.tag, case.path.len());
         }
         text
     }
@@ -36,7 +37,10 @@ impl LoadedStudy for PointStudy {
         let wanted = self.cases.iter().filter(|case| request.wanted.contains(&case.id));
         let results: Vec<PointResult> = wanted.map(drive_point).collect();
         RunOutput {
-            files: files(self, &results, &request.version).into_iter().map(|(n, text)| (n, text.into_bytes())).collect(),
+            files: files(self, &results, &request.version)
+                .into_iter()
+                .map(|(n, text)| (n, text.into_bytes()))
+                .collect(),
             table: table(self, &results),
             certified: results.iter().all(|result| result.status == PathStatus::Reached),
         }
@@ -66,10 +70,7 @@ impl LoadedStudy for PointStudy {
 /// (name, text) of every file.
 pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
     let whole = serde_json::json!({ "study": study.name, "version": version, "kind": "point", "cases": results });
-    let mut out = vec![
-        ("results.json".to_string(), format!("{whole:#}\n")),
-        ("results.csv".to_string(), csv(results)),
-    ];
+    let mut out = vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(results))];
     if study.figures {
         out.push(("figures/path.svg".into(), figure(study, results)));
     }

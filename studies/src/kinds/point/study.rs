@@ -8,13 +8,8 @@ use crate::config::expand::{Expanded, Plan};
 use crate::study::{DiagnosticList, OUTPUT, StudySource, read_plugin};
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
-use voussoir_core::assembly::Plane;
-use voussoir_core::interface::facet_response::FacetResponse;
-use voussoir_core::interface::{Formulation, InterfaceLaw};
-use voussoir_core::material::BulkMaterial;
-use voussoir_core::material::plane::PlanarUpdate;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{BulkMaterial, FacetResponse, Formulation, InterfaceLaw, PlanarUpdate, Plane};
+use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 use voussoir_solvers::point::{Control, PointLaw};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
