@@ -3,7 +3,7 @@
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::study::{Study, StudySource};
-use voussoir_core::plugin::{Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Card, PluginKind};
 
 struct Run;
 
@@ -15,12 +15,9 @@ voussoir_core::inventory::submit! {
         tag: "run",
         summary: "answers every case of the study (variants × sweep) on its own",
         parameters: &[],
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

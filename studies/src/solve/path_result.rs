@@ -13,7 +13,7 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{ContactLaw, PathAnswer, PathEvent, PathProblem, coarse_joints};
+use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, coarse_joints};
 
 /// The result of a path that `watch` has looked on.
 pub(super) fn path_result(
@@ -137,7 +137,7 @@ fn contact_forces(problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForc
 /// Those of them at joints that are not bonded.
 fn unbonded(problem: &PathProblem, field: &[ContactForce]) -> Vec<ContactForce> {
     let pairs = problem.contacts.iter().zip(field);
-    pairs.filter(|(contact, _)| contact.law != ContactLaw::Bonded).map(|(_, force)| *force).collect()
+    pairs.filter(|(contact, _)| !contact.law.is_bonded()).map(|(_, force)| *force).collect()
 }
 
 /// Rates of the path's bodies; those that refute equilibrium are scaled to a greatest jump of 1.

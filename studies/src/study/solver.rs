@@ -10,7 +10,9 @@ use std::sync::Arc;
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Bond};
 use voussoir_core::path::{Continuation, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind, candidate, candidates, card, cards_of};
+use voussoir_core::plugin::{
+    Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
+};
 
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
     candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
@@ -107,7 +109,7 @@ fn read_solver<T: serde::de::DeserializeOwned>(
 
 /// Finite displacements need a solver that offers them.
 fn needs_finite_displacements(diagnostics: &mut DiagnosticList<'_>, tag: &str, chosen: Option<&Card>) {
-    let offers = |card: &Card| card.provides.contains(&Capability::FiniteDisplacements);
+    let offers = |card: &Card| card.offers(Capability::FINITE_DISPLACEMENTS);
     let able = solvers_that(offers);
     if chosen.map_or(!able.is_empty(), offers) {
         return;
@@ -128,7 +130,7 @@ fn needs_capabilities(
     assembly: &Assembly,
 ) {
     // `auto` needs at least what every solver needs.
-    let everyone: Vec<Capability> = cards_of(PluginKind::LimitSolver)
+    let everyone: Vec<Requirement> = cards_of(PluginKind::LimitSolver)
         .iter()
         .flat_map(|card| card.requires)
         .filter(|need| solvers_that(|solver| !solver.requires.contains(need)).is_empty())
@@ -144,12 +146,11 @@ fn needs_capabilities(
         let Some(card) = card(kind, law) else {
             continue;
         };
-        for need in asked.iter().filter(|need| concerns(**need) == kind && !card.gives(**need)) {
-            let takes = |need: &Capability| concerns(*need) != kind || card.gives(*need);
-            let able = solvers_that(|solver| solver.requires.iter().all(takes));
+        for need in asked.iter().filter(|need| !card.meets(need)) {
+            let able = solvers_that(|solver| solver.requires.iter().all(|need| card.meets(need)));
             let message = format!(
                 "solver \"{tag}\" needs {}, which {} \"{law}\" of [{table}.{name}] does not give",
-                need.describe(),
+                describe(need),
                 kind.describe()
             );
             let help = format!("solvers that can take it: {}", or_none(&able));
@@ -178,7 +179,7 @@ fn needs_deformation(
         }
         let at = format!("stages.{index}.settlement");
         if limit {
-            let able = solvers_that(|card| card.provides.contains(&Capability::Settlement));
+            let able = solvers_that(|card| card.offers(Capability::SETTLEMENT));
             let help = format!("remove the settlement, or take a path solver: {}", or_none(&able));
             diagnostics.wrong(&at, "limit analysis of rigid blocks knows loads only", help);
         } else if rigid {
@@ -193,14 +194,6 @@ fn needs_deformation(
             reason,
             "take limit analysis, or give a material a young_modulus (law = \"elastic\")",
         );
-    }
-}
-
-/// Which kind of law a capability is asked of.
-fn concerns(capability: Capability) -> PluginKind {
-    match capability {
-        Capability::RigidLimit | Capability::Linear | Capability::StressUpdate => PluginKind::BulkMaterial,
-        _ => PluginKind::InterfaceLaw,
     }
 }
 

@@ -1,7 +1,6 @@
 //! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
-mod border;
 mod claims;
 mod corners;
 mod deformation;
@@ -14,7 +13,6 @@ mod follow;
 mod frame;
 mod inelastic;
 mod kinematics;
-pub(super) mod law;
 mod ledger;
 mod line_search;
 mod measure;
@@ -34,7 +32,7 @@ use super::continuation::arc_length::ArcLength;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Steps with Newton's method.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -72,8 +70,9 @@ voussoir_core::inventory::submit! {
         tag: "newton_path",
         summary: "steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements, peaks and falling branches",
         parameters: &[],
-        provides: &[Capability::FiniteDisplacements, Capability::Settlement],
-        requires: &[Capability::FacetsOrResponse],
+        provides: &[Capability::FINITE_DISPLACEMENTS, Capability::SETTLEMENT],
+        requires: &[&[Capability::FACETS, Capability::RESPONSE]],
+        cost: Some(20),
         sources: &[
             "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",
@@ -89,7 +88,7 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("newton_path.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

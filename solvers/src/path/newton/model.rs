@@ -5,10 +5,11 @@
 
 use super::inelastic::Inner;
 use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
-use super::law::{Polygon, Regime};
 use super::response::{Answers, Local, Responses};
+use crate::contact::mode::ContactMode as Regime;
+use crate::contact::yield_polygon::YieldPolygon as Polygon;
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{ContactLaw, Continuation, Increment, Loading, PathProblem};
+use voussoir_core::path::{Continuation, Increment, Loading, PathProblem};
 
 /// Units of the unknowns.
 #[derive(Debug, Clone, Copy)]
@@ -94,6 +95,8 @@ pub(super) struct Model<'a> {
     pub problem: &'a PathProblem,
     pub kinematics: Kinematics<'a>,
     pub polygons: Vec<Polygon>,
+    /// For each contact point the index of its polygon.
+    pub polygon_of: Vec<Option<usize>>,
     pub responses: Responses,
     pub units: Units,
     /// Own compliance of every contact point, normal and tangential \[m/N\].
@@ -178,12 +181,14 @@ impl<'a> Model<'a> {
         let force = sizes.iter().copied().find(|s| *s > 0.0).unwrap_or(settlement / mean);
         let force = if force > 0.0 { force } else { 1.0 };
         let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
-        let polygons = problem.facets.iter().map(|f| Polygon::new(f)).collect();
+        let (facets, polygon_of) = problem.shared_facets();
+        let polygons = facets.into_iter().map(Polygon::new).collect();
         let loaded = Loaded { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 };
         Ok(Model {
             kinematics: Kinematics::new(problem, finite),
             problem,
             polygons,
+            polygon_of,
             responses,
             units,
             compliance,
@@ -232,7 +237,7 @@ impl<'a> Model<'a> {
 
     /// Whether flow is associated everywhere: then every step is a monotone problem.
     pub fn monotone(&self) -> bool {
-        self.piecewise_linear() && self.polygons.iter().all(|law| !law.has_other_flow())
+        self.piecewise_linear() && self.polygons.iter().all(|law| !law.is_non_associated())
     }
 
     /// Whether with small displacements every law is one of facets.
@@ -271,7 +276,7 @@ impl<'a> Model<'a> {
             gap: self.problem.contacts.iter().map(|c| [c.gap, 0.0]).collect(),
             motion,
             factor: 0.0,
-            regime: vec![Regime::Stuck; points],
+            regime: vec![Regime::Stick; points],
             slip: vec![[0.0; 2]; points],
             answers: Answers { memory: self.problem.untouched(), ..Answers::default() },
             blocks: self.blocks.clone(),
@@ -285,11 +290,7 @@ impl<'a> Model<'a> {
 
     /// The facets of a contact point, where its law has that form.
     pub fn law(&self, contact: usize) -> Option<&Polygon> {
-        match self.problem.contacts[contact].law {
-            ContactLaw::Bonded => None,
-            ContactLaw::Law(_) if self.responses.is(contact) => None,
-            ContactLaw::Law(law) => Some(&self.polygons[law]),
-        }
+        self.polygon_of[contact].map(|law| &self.polygons[law])
     }
 
     /// Motions with the held bodies where their settlements put them.

@@ -91,7 +91,7 @@ impl Tracer<'_, '_> {
         let problem = self.model.problem;
         let untouched = self.state.force.iter().flatten().chain(self.state.gap.iter().flatten()).all(|v| *v == 0.0);
         let linear = self.model.piecewise_linear();
-        linear && untouched && problem.facets.iter().flatten().all(|f| f.bound == 0.0)
+        linear && untouched && problem.shared_facets().0.into_iter().flatten().all(|f| f.bound == 0.0)
     }
 
     /// To a factor that is known to be carried, in equal steps of λ (associated flow: what carries a

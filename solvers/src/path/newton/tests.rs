@@ -16,8 +16,8 @@ use voussoir_core::law::{
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
-    Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathObserver, PathProblem,
-    PathSettings, PathSolver, PathState, Sliding, Unobserved,
+    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathObserver, PathProblem,
+    PathSettings, PathSolver, PathState, PointLaw, Sliding, Unobserved,
 };
 
 fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
@@ -65,7 +65,7 @@ fn chain() -> PathProblem {
                 plus: Attachment { body: i + 1, slot: slots[i].1 },
                 area: 1.0,
                 gap: 0.01,
-                law: ContactLaw::Bonded,
+                law: PointLaw::Bonded,
                 compliance: [0.003, 0.007],
                 sliding: Sliding::middle(0.0),
             }
@@ -80,8 +80,6 @@ fn chain() -> PathProblem {
         bodies,
         body_of: vec![0, 1, 2, 3],
         contacts,
-        facets: vec![],
-        responses: Vec::new(),
         load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
         length: 3.0,
         counters: Counters::new(),
@@ -228,7 +226,7 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, L
         plus: Attachment { body: 0, slot: Some(0) },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Law(0),
+        law: PointLaw::Facets(vec![Facet::opening(0.0), left, right].into()),
         compliance: [0.0; 2],
         sliding: Sliding::middle(0.0),
     };
@@ -236,8 +234,6 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, L
         bodies: vec![block, ground],
         body_of: vec![0, 1],
         contacts: vec![contact],
-        facets: vec![vec![Facet::opening(0.0), left, right]],
-        responses: Vec::new(),
         load_steps: load_steps
             .into_iter()
             .map(|(f, end)| LoadStep {
@@ -404,7 +400,7 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         plus: Attachment { body: plus, slot: None },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Bonded,
+        law: PointLaw::Bonded,
         compliance: [compliance; 2],
         sliding: Sliding::middle(0.0),
     };
@@ -419,8 +415,6 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         bodies,
         body_of: vec![0, 1, 2],
         contacts,
-        facets: vec![],
-        responses: Vec::new(),
         load_steps: vec![LoadStep {
             stage: 0,
             gravity: false,
@@ -585,7 +579,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         plus: Attachment { body: 1, slot: Some(slot) },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Bonded,
+        law: PointLaw::Bonded,
         compliance: [0.0; 2],
         sliding: Sliding::middle(0.0),
     });
@@ -597,9 +591,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         bodies: vec![ground, block],
         body_of: vec![0, 1],
         contacts: contacts.collect(),
-        facets: Vec::new(),
         load_steps: vec![load_step],
-        responses: vec![],
         length: 1.0,
         counters: Counters::new(),
     };
