@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 use voussoir::core::limit::Status;
-use voussoir::kinds::run::answer_case;
 use voussoir::results::CaseResult;
+use voussoir::solve::solve_case;
 use voussoir_tests::{assert_close, study};
 
 fn root() -> PathBuf {
@@ -41,11 +41,11 @@ fn the_study_of_the_readme_gives_its_numbers() {
     let first_command = std::fs::read_to_string(root().join("studies/cases/strathmashie_rise.toml")).expect("a study");
     let others = study(&first_command).cases;
     assert_eq!(cases.len(), others.len());
-    let results: Vec<CaseResult> = cases.iter().map(answer_case).collect();
+    let results: Vec<CaseResult> = cases.iter().map(solve_case).collect();
     for (result, other) in results.iter().zip(&others) {
         assert!(result.certificate.passed);
-        let other = answer_case(other);
-        assert_eq!((&result.parameters, result.status), (&other.parameters, other.status));
+        let other = solve_case(other);
+        assert_eq!((&result.label.parameters, result.status), (&other.label.parameters, other.status));
         if let (Some(factor), Some(same)) = (result.load_factor, other.load_factor) {
             assert_close(factor, same, 1e-12);
         }
@@ -57,8 +57,8 @@ fn the_study_of_the_readme_gives_its_numbers() {
         let rise: f64 = cells[0].parse().expect("a rise");
         for (cell, variant) in cells[1..].iter().zip(["unlimited strength", "10 MPa"]) {
             let found = results.iter().find(|result| {
-                let value = result.parameters["scene.profile.rise"].as_f64().expect("a number");
-                result.variant.as_deref() == Some(variant) && (value - rise).abs() < 1e-9
+                let value = result.label.parameters["scene.profile.rise"].as_f64().expect("a number");
+                result.label.variant.as_deref() == Some(variant) && (value - rise).abs() < 1e-9
             });
             let found = found.unwrap_or_else(|| panic!("no case of rise {rise}, {variant}"));
             shown += 1;
