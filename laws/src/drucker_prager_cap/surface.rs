@@ -33,6 +33,10 @@ const TRANSITION: UpdateBranch = UpdateBranch::new("transition", Effect::Yieldin
 /// On the cap: compaction, crushing.
 const CAP: UpdateBranch = UpdateBranch::new("cap", Effect::Yielding);
 
+/// The search for η ends without a root.
+const NO_RETURN: UpdateFailure =
+    UpdateFailure::Law("the return to the surface of drucker_prager_cap did not meet its tolerance");
+
 const ITERATIONS: usize = 200;
 
 /// A piece of the hardening table: from `strain` on, p_a = `centre` + `slope` (ε_v − `strain`).
@@ -295,12 +299,12 @@ impl Surface {
             if next <= low || next >= high || next == eta {
                 // Nothing left between two neighbouring numbers.
                 let met = psi.abs() <= 1e-12;
-                return if met { Ok(Some(self.finished(side, eta, &way))) } else { Err(UpdateFailure::NoConvergence) };
+                return if met { Ok(Some(self.finished(side, eta, &way))) } else { Err(NO_RETURN) };
             }
             eta = next;
             way = at(eta);
         }
-        Err(UpdateFailure::NoConvergence)
+        Err(NO_RETURN)
     }
 
     fn finished(&self, side: Side, eta: f64, way: &Way) -> Returned {
