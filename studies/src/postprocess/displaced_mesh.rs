@@ -66,69 +66,90 @@ pub fn displaced_blocks(
     }
     let problem = PathProblem::new(assembly, stages)?;
     let state = end_state(&problem, assembly, result, finite)?;
-    let forces = problem.forces_on_points(&state, finite);
     let applied = problem.applied(state.load_step, state.factor);
     let gravity: Vec2 =
         problem.load_steps.iter().zip(applied).map(|(load_step, factor)| load_step.loading.acceleration * factor).sum();
+    let forces = problem.forces_on_points(&state, finite);
+    let end = EndState { assembly, problem: &problem, state: &state, forces: &forces, gravity, finite };
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
-    let mut blocks = Vec::new();
-    for (block, shape) in assembly.bodies.iter().enumerate() {
-        if shape.vertices.len() < 3 {
-            continue;
+    let shaped = (0..assembly.bodies.len()).filter(|block| assembly.bodies[*block].vertices.len() >= 3);
+    shaped
+        .map(|block| match problem.bodies[problem.body_of[block]].flexibility {
+            None => Ok(end.rigid_block(block)),
+            Some(_) => end.deformable_block(block, &mut condenser),
+        })
+        .collect()
+}
+
+/// The state at which a path ends, with the forces on the points of its bodies.
+struct EndState<'a> {
+    assembly: &'a Assembly,
+    problem: &'a PathProblem,
+    state: &'a PathState,
+    forces: &'a [Vec<Vec2>],
+    gravity: Vec2,
+    finite: bool,
+}
+
+impl EndState<'_> {
+    /// A vector turned by an angle where displacements are finite.
+    fn turn(&self, angle: f64, v: Vec2) -> Vec2 {
+        if self.finite { v * angle.cos() + turned(v) * angle.sin() } else { v }
+    }
+
+    /// Displacement of a place that moves with a body of the path.
+    fn rigid(&self, body: usize, place: Vec2) -> Vec2 {
+        let [x, y, theta] = self.state.motion[body];
+        let arm = place - self.problem.bodies[body].pole;
+        let swing = if self.finite { self.turn(theta, arm) - arm } else { turned(arm) * theta };
+        Vec2::new(x, y) + swing
+    }
+
+    fn rigid_block(&self, block: usize) -> DisplacedBlock {
+        let (vertices, body) = (&self.assembly.bodies[block].vertices, self.problem.body_of[block]);
+        DisplacedBlock {
+            block,
+            displacement: vertices.iter().map(|v| self.rigid(body, *v)).collect(),
+            cells: vec![(0..vertices.len()).collect()],
+            nodes: vertices.clone(),
+            stress: Vec::new(),
+            cell_stress: Vec::new(),
+            plastic_strain: Vec::new(),
+            order: 0,
+            imbalance: 0.0,
         }
-        let body = problem.body_of[block];
-        let pole = problem.bodies[body].pole;
-        let [x, y, theta] = state.motion[body];
-        let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
-        let swing = |v: Vec2| if finite { turn(theta, v) - v } else { turned(v) * theta };
-        let rigid = |place: Vec2| Vec2::new(x, y) + swing(place - pole);
-        if problem.bodies[body].flexibility.is_none() {
-            blocks.push(DisplacedBlock {
-                block,
-                displacement: shape.vertices.iter().map(|v| rigid(*v)).collect(),
-                cells: vec![(0..shape.vertices.len()).collect()],
-                nodes: shape.vertices.clone(),
-                stress: Vec::new(),
-                cell_stress: Vec::new(),
-                plastic_strain: Vec::new(),
-                order: 0,
-                imbalance: 0.0,
-            });
-            continue;
-        }
+    }
+
+    fn deformable_block(&self, block: usize, condenser: &mut Condenser) -> Result<DisplacedBlock, String> {
+        let (assembly, shape, body) = (self.assembly, &self.assembly.bodies[block], self.problem.body_of[block]);
         let material = &assembly.catalogue.materials[shape.material].1;
         let Some(elasticity) = material.elasticity() else {
             return Err(format!("the material of \"{}\" does not deform", shape.name));
         };
-        let (points, own) = (&problem.bodies[body].points, &forces[body]);
-        let weight = turn(-theta, gravity);
+        let (points, own) = (&self.problem.bodies[body].points, &self.forces[body]);
+        let theta = self.state.motion[body][2];
+        let weight = self.turn(-theta, self.gravity);
         let body_force = weight * material.density();
         let mut recovered = condenser.recover(&shape.vertices, &elasticity, &assembly.mesh, points, own, body_force)?;
         let mut plastic_strain = Vec::new();
-        if let (Some(inelastic), Some(own)) = (&problem.bodies[body].inelastic, state.inelastic(body)) {
+        if let (Some(inelastic), Some(own)) = (&self.problem.bodies[body].inelastic, self.state.inelastic(body)) {
             let imbalance = recovered.imbalance;
-            let found = inelastic.recover(&own.displacement, &own.state)?;
-            recovered = Recovered { imbalance, ..found };
+            recovered = Recovered { imbalance, ..inelastic.recover(&own.displacement, &own.state)? };
             plastic_strain = inelastic.by_element(&own.state.equivalent);
         }
         let [fx, fy, moment] = recovered.imbalance;
-        let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * problem.bodies[body].mass;
-        blocks.push(DisplacedBlock {
+        let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * self.problem.bodies[body].mass;
+        let displaced = recovered.nodes.iter().zip(&recovered.displacement);
+        Ok(DisplacedBlock {
             block,
-            displacement: recovered
-                .nodes
-                .iter()
-                .zip(&recovered.displacement)
-                .map(|(node, u)| rigid(*node) + turn(theta, *u))
-                .collect(),
+            displacement: displaced.map(|(node, u)| self.rigid(body, *node) + self.turn(theta, *u)).collect(),
             stress: recovered.stress,
             cell_stress: recovered.element_stress,
             nodes: recovered.nodes,
             cells: recovered.elements,
             order: recovered.order,
             plastic_strain,
-            imbalance: fx.hypot(fy).max(moment.abs() / problem.length) / size.max(f64::MIN_POSITIVE),
-        });
+            imbalance: fx.hypot(fy).max(moment.abs() / self.problem.length) / size.max(f64::MIN_POSITIVE),
+        })
     }
-    Ok(blocks)
 }
