@@ -5,6 +5,7 @@ mod complementarity;
 mod condensed;
 pub mod continuation;
 pub mod event;
+mod events;
 pub mod newton;
 mod rows;
 mod shuffle;

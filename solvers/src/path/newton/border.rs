@@ -22,6 +22,7 @@ use std::rc::Rc;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
+
 /// Least rate of the unknown that is held, relative to the greatest.
 const MOVES: f64 = 1e-4;
 

@@ -1,8 +1,8 @@
-//! The law of a contact point as regimes of a return map.
+//! The law of a contact point as modes of a return map.
 //!
 //! With Δg = g − s, s the irreversible gap at the last converged state, facets a·r ≤ b A and flow d,
 //! the law of a step is Δg = −Σ γ d, 0 ≤ γ ⟂ b A − a·r ≥ 0: the return of z = r − ρ Δg to the polygon
-//! along ρ d. The regime of z is that of the return: inside (stuck), on one facet, or at a corner.
+//! along ρ d. The mode of z is that of the return: inside (stuck), on one facet, or at a corner.
 //! Opening is reversible: its multiplier is the total one, since s leaves opening out.
 //! Sources: Alart & Curnier 1991 (the return as a projection, ρ); Simo & Hughes 1998, ch. 5 (several
 //! facets, flow not along the normal); De Saxcé & Feng 1998 (the same law as a bi-potential).
@@ -12,10 +12,10 @@ use voussoir_core::interface::{Facet, FacetMode};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub(in crate::path) enum Regime {
+pub(in crate::path) enum ContactMode {
     /// No facet: Δg = 0.
     #[default]
-    Stuck,
+    Stick,
     /// On one facet.
     Facet(u8),
     /// At one corner of the polygon.
@@ -77,26 +77,26 @@ impl Polygon {
         Polygon { facets: facets.to_vec(), corners, cells }
     }
 
-    /// The regime of a cell.
-    pub fn regime_of(&self, cell: usize) -> Regime {
+    /// The mode of a cell.
+    pub fn mode_of(&self, cell: usize) -> ContactMode {
         match self.cells.cells[cell].0 {
-            Cell::Inside => Regime::Stuck,
-            Cell::Facet(i) => Regime::Facet(i as u8),
-            Cell::Pair(k, _) => Regime::Corner(k as u8),
+            Cell::Inside => ContactMode::Stick,
+            Cell::Facet(i) => ContactMode::Facet(i as u8),
+            Cell::Pair(k, _) => ContactMode::Corner(k as u8),
         }
     }
 
     /// The cell of z = r − ρ Δg and its return r.
     pub fn returned(&self, z: [f64; 2], rho: [f64; 2], area: f64) -> (usize, [f64; 2]) {
-        match self.regime(Regime::Stuck, z, rho, area, 0.0) {
-            Regime::Stuck => (0, z),
-            Regime::Facet(i) => {
+        match self.mode(ContactMode::Stick, z, rho, area, 0.0) {
+            ContactMode::Stick => (0, z),
+            ContactMode::Facet(i) => {
                 let f = &self.facets[i as usize];
                 let d = [rho[0] * f.flow[0], rho[1] * f.flow[1]];
                 let gamma = (dot(f.normal, z) - f.bound * area) / dot(f.normal, d);
                 (1 + i as usize, [z[0] - gamma * d[0], z[1] - gamma * d[1]])
             }
-            Regime::Corner(k) => {
+            ContactMode::Corner(k) => {
                 let r = self.corners[k as usize].0.map(|x| x * area);
                 let gap = [(r[0] - z[0]) / rho[0], (r[1] - z[1]) / rho[1]];
                 let (pair, _) = self.pair(k, gap);
@@ -125,8 +125,8 @@ impl Polygon {
         best
     }
 
-    /// How far a regime is from being the return of z = r − ρ Δg, as a force \[N\]; 0 where it is.
-    pub fn violation(&self, regime: Regime, z: [f64; 2], rho: [f64; 2], area: f64) -> f64 {
+    /// How far a mode is from being the return of z = r − ρ Δg, as a force \[N\]; 0 where it is.
+    pub fn violation(&self, mode: ContactMode, z: [f64; 2], rho: [f64; 2], area: f64) -> f64 {
         let over = |r: [f64; 2], except: Option<usize>| {
             let mut worst: f64 = 0.0;
             for (i, f) in self.facets.iter().enumerate() {
@@ -137,16 +137,16 @@ impl Polygon {
             worst
         };
         let pull = |d: [f64; 2]| [rho[0] * d[0], rho[1] * d[1]];
-        match regime {
-            Regime::Stuck => over(z, None),
-            Regime::Facet(i) => {
+        match mode {
+            ContactMode::Stick => over(z, None),
+            ContactMode::Facet(i) => {
                 let f = &self.facets[i as usize];
                 let d = pull(f.flow);
                 let gamma = (dot(f.normal, z) - f.bound * area) / dot(f.normal, d);
                 let r = [z[0] - gamma * d[0], z[1] - gamma * d[1]];
                 over(r, Some(i as usize)).max(-gamma * size(d))
             }
-            Regime::Corner(k) => {
+            ContactMode::Corner(k) => {
                 let corner = self.corners[k as usize].0.map(|x| x * area);
                 let gap = [(corner[0] - z[0]) / rho[0], (corner[1] - z[1]) / rho[1]];
                 let (pair, gamma) = self.pair(k, gap);
@@ -156,32 +156,32 @@ impl Polygon {
         }
     }
 
-    /// The regime of z = r − ρ Δg: `present` where it is one, else the one that is least violated.
-    pub fn regime(&self, present: Regime, z: [f64; 2], rho: [f64; 2], area: f64, tolerance: f64) -> Regime {
+    /// The mode of z = r − ρ Δg: `present` where it is one, else the one that is least violated.
+    pub fn mode(&self, present: ContactMode, z: [f64; 2], rho: [f64; 2], area: f64, tolerance: f64) -> ContactMode {
         if self.violation(present, z, rho, area) <= tolerance {
             return present;
         }
-        let facets = (0..self.facets.len() as u8).map(Regime::Facet);
-        let corners = (0..self.corners.len() as u8).map(Regime::Corner);
-        let mut best = (Regime::Stuck, self.violation(Regime::Stuck, z, rho, area));
-        for regime in corners.chain(facets) {
-            let violation = self.violation(regime, z, rho, area);
+        let facets = (0..self.facets.len() as u8).map(ContactMode::Facet);
+        let corners = (0..self.corners.len() as u8).map(ContactMode::Corner);
+        let mut best = (ContactMode::Stick, self.violation(ContactMode::Stick, z, rho, area));
+        for mode in corners.chain(facets) {
+            let violation = self.violation(mode, z, rho, area);
             if violation < best.1 {
-                best = (regime, violation);
+                best = (mode, violation);
             }
         }
         best.0
     }
 
-    /// Irreversible gap after Δg in a regime, opening left out, and the opening's own multiplier.
-    pub fn irreversible(&self, regime: Regime, gap: [f64; 2]) -> ([f64; 2], f64) {
-        match regime {
-            Regime::Stuck => ([0.0; 2], 0.0),
-            Regime::Facet(i) => match self.facets[i as usize].mode {
+    /// Irreversible gap after Δg in a mode, opening left out, and the opening's own multiplier.
+    pub fn irreversible(&self, mode: ContactMode, gap: [f64; 2]) -> ([f64; 2], f64) {
+        match mode {
+            ContactMode::Stick => ([0.0; 2], 0.0),
+            ContactMode::Facet(i) => match self.facets[i as usize].mode {
                 FacetMode::Opening => ([0.0; 2], size(gap)),
                 _ => (gap, 0.0),
             },
-            Regime::Corner(k) => {
+            ContactMode::Corner(k) => {
                 let (pair, gamma) = self.pair(k, gap);
                 let (mut kept, mut opening) = ([0.0; 2], 0.0);
                 for (i, gamma) in pair.into_iter().zip(gamma) {
@@ -197,13 +197,13 @@ impl Polygon {
         }
     }
 
-    /// Whether the point is open in a regime: a facet of opening is active.
-    pub fn opens(&self, regime: Regime) -> bool {
+    /// Whether the point is open in a mode: a facet of opening is active.
+    pub fn opens(&self, mode: ContactMode) -> bool {
         let opening = |i: usize| self.facets[i].mode == FacetMode::Opening;
-        match regime {
-            Regime::Stuck => false,
-            Regime::Facet(i) => opening(i as usize),
-            Regime::Corner(k) => self.corners[k as usize].1.iter().flatten().any(|i| opening(*i)),
+        match mode {
+            ContactMode::Stick => false,
+            ContactMode::Facet(i) => opening(i as usize),
+            ContactMode::Corner(k) => self.corners[k as usize].1.iter().flatten().any(|i| opening(*i)),
         }
     }
 
@@ -212,18 +212,18 @@ impl Polygon {
         self.facets.iter().any(|f| f.flow != f.normal)
     }
 
-    /// How much a rate (ṙ, ġ), scaled to forces and gaps of size one, violates the regime if it goes
+    /// How much a rate (ṙ, ġ), scaled to forces and gaps of size one, violates the mode if it goes
     /// on for ever: ṙ in the recession cone, multipliers growing.
-    pub fn ray_violation(&self, regime: Regime, force: [f64; 2], gap: [f64; 2]) -> f64 {
+    pub fn ray_violation(&self, mode: ContactMode, force: [f64; 2], gap: [f64; 2]) -> f64 {
         let outwards = self.facets.iter().map(|f| dot(f.normal, force) / size(f.normal)).fold(0.0, f64::max);
-        let backwards = match regime {
-            Regime::Stuck => size(gap),
-            Regime::Facet(i) => {
+        let backwards = match mode {
+            ContactMode::Stick => size(gap),
+            ContactMode::Facet(i) => {
                 let d = self.facets[i as usize].flow;
                 let along = -dot(d, gap) / size(d);
                 (size([gap[0] + along * d[0] / size(d), gap[1] + along * d[1] / size(d)])).max(-along)
             }
-            Regime::Corner(k) => {
+            ContactMode::Corner(k) => {
                 let (_, gamma) = self.pair(k, gap);
                 (-gamma[0]).max(-gamma[1])
             }
@@ -245,12 +245,12 @@ mod tests {
     #[test]
     fn regimes_of_coulomb_are_those_of_alart_and_curnier() {
         let p = coulomb(0.5, 0.0);
-        let of = |z: [f64; 2]| p.regime(Regime::Stuck, z, [1.0, 1.0], 1.0, 1e-12);
-        assert_eq!(of([1.0, 0.4]), Regime::Stuck);
-        assert_eq!(of([1.0, 0.6]), Regime::Facet(1));
-        assert_eq!(of([1.0, -0.6]), Regime::Facet(2));
+        let of = |z: [f64; 2]| p.mode(ContactMode::Stick, z, [1.0, 1.0], 1.0, 1e-12);
+        assert_eq!(of([1.0, 0.4]), ContactMode::Stick);
+        assert_eq!(of([1.0, 0.6]), ContactMode::Facet(1));
+        assert_eq!(of([1.0, -0.6]), ContactMode::Facet(2));
         for t in [-3.0, -0.1, 0.0, 0.2, 5.0] {
-            assert_eq!(of([-0.1, t]), Regime::Corner(0));
+            assert_eq!(of([-0.1, t]), ContactMode::Corner(0));
         }
         assert_eq!(p.corners.len(), 1);
     }
@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn opening_is_measured_from_the_dilated_surface() {
         let p = coulomb(0.5, 0.3);
-        let (kept, opening) = p.irreversible(Regime::Corner(0), [1.0, -2.0]);
+        let (kept, opening) = p.irreversible(ContactMode::Corner(0), [1.0, -2.0]);
         assert!((opening - (1.0 - 0.6)).abs() < 1e-15);
         assert!((kept[0] - 0.6).abs() < 1e-15 && (kept[1] + 2.0).abs() < 1e-15);
     }
@@ -269,7 +269,7 @@ mod tests {
         let [left, right] = Facet::friction(0.5, 1.0, 0.0);
         let p = Polygon::new(&[Facet::opening(0.4), left, right, Facet::crushing(10.0)]);
         assert_eq!(p.corners.len(), 4);
-        assert_eq!(p.regime(Regime::Stuck, [12.0, 0.0], [1.0; 2], 1.0, 1e-12), Regime::Facet(3));
-        assert!(matches!(p.regime(Regime::Stuck, [12.0, 20.0], [1.0; 2], 1.0, 1e-12), Regime::Corner(_)));
+        assert_eq!(p.mode(ContactMode::Stick, [12.0, 0.0], [1.0; 2], 1.0, 1e-12), ContactMode::Facet(3));
+        assert!(matches!(p.mode(ContactMode::Stick, [12.0, 20.0], [1.0; 2], 1.0, 1e-12), ContactMode::Corner(_)));
     }
 }

@@ -1,34 +1,53 @@
 //! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
+mod blocks;
 mod border;
-mod claims;
-mod corners;
+mod branch_switching;
+mod control;
+mod control_row;
+mod creeping;
+mod cycle_detector;
 mod deformation;
-mod ends;
+mod derivatives;
+mod drives;
+mod energy;
 mod equations;
+mod events;
+mod factors;
+mod failed_step;
 mod flow;
-mod flowing;
-mod folds;
 mod follow;
+mod following;
 mod frame;
+mod geometry;
 mod inelastic;
+mod iteration;
 mod kinematics;
 pub(super) mod law;
-mod ledger;
+mod limit_point;
 mod line_search;
+mod linearised;
+mod load_to_factor;
+mod loads;
 mod measure;
 mod mechanism;
-mod model;
+mod peak;
 mod pivot;
-mod reach;
+mod plastic_plateau;
 mod response;
 mod rising;
+mod self_check;
 mod softening;
+mod state;
 mod step;
 mod system;
-mod trace;
-mod wandering;
+mod tangent;
+mod termination;
+mod tracer;
+mod tractions;
+mod trial;
+mod unknowns;
 
 use super::continuation::arc_length::ArcLength;
 use serde::{Deserialize, Serialize};
@@ -46,11 +65,11 @@ pub struct NewtonPath {}
 impl PathSolver for NewtonPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
         if let Some(why) = self.refuses(problem, settings) {
-            return trace::stalled(why);
+            return drives::stalled(why);
         }
         let strategy = settings.continuation.clone();
         let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
-        claims::confirmed(problem, settings.finite, trace::trace(problem, settings, strategy, observer))
+        self_check::confirmed(problem, settings.finite, drives::trace(problem, settings, strategy, observer))
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {

@@ -8,20 +8,25 @@
 
 /// Share of the range of displacements that a path must go back for a turn to count.
 const TURN: f64 = 0.02;
+
 /// Difference of two turns that are the same one, as a share of the ranges of displacement and factor.
 const SAME: f64 = 0.01;
+
 /// Difference of two folds that are the same one, as a share of the same ranges.
 const FOLD: f64 = 0.005;
+
 /// Turns in a row that repeat earlier ones.
 const REPEATED: u32 = 2;
+
 /// Way of the fastest body behind the peak, by the displacement that was asked for and a fiftieth of the
 /// scene.
 const LONGEST: f64 = 8.0;
+
 const SLACK: f64 = 0.02;
 
 /// The way of a path behind its peak.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Wandering {
+pub(super) struct CycleDetector {
     /// Ranges of displacement \[m\] and factor so far.
     ranges: Option<[[f64; 2]; 2]>,
     /// Translations of all bodies at the last state \[m\].
@@ -38,7 +43,7 @@ pub(super) struct Wandering {
     folds: Vec<[f64; 2]>,
 }
 
-impl Wandering {
+impl CycleDetector {
     /// Takes a place (displacement, factor) from which no rate goes on: whether the path has been there before.
     pub fn folds_again(&mut self, place: [f64; 2]) -> bool {
         let sizes = self.ranges.map_or([0.0; 2], |ranges| ranges.map(|r| r[1] - r[0]));
@@ -100,7 +105,7 @@ mod tests {
 
     /// Feeds a zigzag between displacements; the index of the state at which it ends.
     fn ended(corners: &[[f64; 2]], asked: f64) -> Option<(usize, String)> {
-        let mut wandering = Wandering::default();
+        let mut wandering = CycleDetector::default();
         let mut index = 0;
         for pair in corners.windows(2) {
             for step in 0..20 {

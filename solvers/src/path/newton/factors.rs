@@ -1,0 +1,29 @@
+//! What one factorisation leaves to the next.
+
+use super::border::Held;
+use super::law::ContactMode;
+use crate::lu::Analysis;
+use std::rc::Rc;
+
+/// Factors with what they are of.
+pub(super) struct Kept {
+    pub modes: Vec<ContactMode>,
+    /// Normals and flows of the laws' facets.
+    pub directions: Vec<[f64; 4]>,
+    pub held: Rc<Held>,
+}
+
+/// What the last factorisation leaves to the next.
+#[derive(Default)]
+pub(super) struct Factorised {
+    /// The last ones, where nothing but modes and laws makes the matrix.
+    pub last: Option<Kept>,
+    pub analysis: Analysis,
+}
+
+impl Factorised {
+    /// Another load grows.
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+}
