@@ -3,8 +3,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use voussoir::core::assembly::stage_loads;
 use voussoir::core::limit::{LimitProblem, LimitQuestion, LimitSolver};
+use voussoir::core::model::stage_loads;
 use voussoir::kinds::run::answer_case;
 use voussoir::solvers::limit::chain::LimitChain;
 use voussoir::solvers::limit::conic::LimitConic;

@@ -3,10 +3,9 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use voussoir::core::assembly::Plane;
-use voussoir::core::interface::{Formulation, InterfaceLaw, TractionPoint};
-use voussoir::core::material::plane::{PlanarPoint, PlanarUpdate};
-use voussoir::core::material::{BulkMaterial, StressPoint};
+use voussoir::core::law::{
+    BulkMaterial, Formulation, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, StressPoint, TractionPoint,
+};
 use voussoir_benches::point::{cohesive, paper_stone, states, strains};
 
 fn stress_updates(c: &mut Criterion) {

@@ -4,7 +4,7 @@
 //! the figure: `cargo run --release -p voussoir-benches --example stress_update_accuracy -- FIGURE.svg`.
 
 use std::time::Instant;
-use voussoir::core::material::{BulkMaterial, StressUpdate};
+use voussoir::core::law::{BulkMaterial, StressUpdate};
 use voussoir::figures::{Series, chart_svg};
 use voussoir_benches::point::{ordinary_stone, paper_stone, states};
 

@@ -1,6 +1,6 @@
 //! Points that benches drive: the crushing stone of Drosopoulos et al. (2008), a mortar joint.
 
-use voussoir::core::material::{Region, StressPoint, StressUpdate};
+use voussoir::core::law::{Region, StressPoint, StressUpdate};
 use voussoir::laws::cohesive::Cohesive;
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 

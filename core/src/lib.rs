@@ -9,25 +9,14 @@
 //! of height h the coordinate s runs along t from −h/2 (end 0) to +h/2 (end 1).
 #![forbid(unsafe_code)]
 
-pub mod assembly;
-pub mod card;
 pub mod certificate;
-pub mod contact;
 pub mod elastic;
-pub mod geometry;
-pub mod interface;
-pub mod issue;
+pub mod law;
 pub mod limit;
-pub mod lu;
-pub mod material;
-pub mod mechanism;
+pub mod linear;
+pub mod model;
 pub mod path;
-pub mod product_proof;
-pub mod scene;
-pub mod schema;
-pub mod sparse;
-pub mod strength;
-pub mod units;
+pub mod plugin;
 
 pub use inventory;
 pub use typetag;

@@ -4,11 +4,8 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::card::{Capability, Card, check_as};
-use voussoir_core::interface::{Formulation, InterfaceLaw, InterfaceResponse, Regime, TractionPoint};
-use voussoir_core::material::UpdateFailure;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{Formulation, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, check_as};
 
 /// A mortared joint with fracture energies.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -199,13 +196,13 @@ impl InterfaceResponse for CohesiveResponse {
             let released = 0.5 * (k_n * opening * opening + k_t * per_damage * per_damage);
             dissipated += released * mean.min(1.0) * (damage - damage_old);
         }
-        let regime = match (grows, slides && slip != slip_old && self.friction * pressure > 0.0) {
-            (false, false) => Regime::Elastic,
-            (true, false) => Regime::Softening,
-            (false, true) => Regime::Sliding,
-            (true, true) => Regime::SofteningSliding,
+        let branch = match (grows, slides && slip != slip_old && self.friction * pressure > 0.0) {
+            (false, false) => UpdateBranch::Elastic,
+            (true, false) => UpdateBranch::Softening,
+            (false, true) => UpdateBranch::Sliding,
+            (true, true) => UpdateBranch::SofteningSliding,
         };
-        Ok(TractionPoint { traction, tangent, regime, stored, dissipated })
+        Ok(TractionPoint { traction, tangent, branch, stored, dissipated })
     }
 }
 

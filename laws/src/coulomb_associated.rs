@@ -3,9 +3,8 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, check_as};
-use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::plugin::{Capability, Card, PluginKind, check_as};
 
 /// Dry friction with associated flow.
 #[derive(Debug, Clone, Serialize, Deserialize)]

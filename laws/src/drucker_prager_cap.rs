@@ -10,10 +10,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use surface::Surface;
 use update::{CapUpdate, Strength};
-use voussoir_core::card::{Capability, Card, check_as};
-use voussoir_core::material::{BulkMaterial, Deformability, Isotropic, StressUpdate};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressUpdate};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
 
 /// The modified Drucker–Prager model with a cap.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -6,12 +6,10 @@ use crate::meridian::{Returned, Trial, state_names};
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::card::{Capability, Card, check_as};
-use voussoir_core::material::{
+use voussoir_core::law::{
     BulkMaterial, Deformability, Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt,
 };
-use voussoir_core::schema::{Parameter, PluginKind, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
 
 /// Associated Drucker–Prager with linear softening.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -8,12 +8,8 @@ use crate::meridian::Trial;
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::material::{
-    BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt,
-};
-use voussoir_core::schema::{Parameter, PluginKind, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, no_further_check};
 
 /// A linear elastic material.
 #[derive(Debug, Clone, Serialize, Deserialize)]

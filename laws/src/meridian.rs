@@ -8,7 +8,7 @@
 //! dσ = 2 G y dev dε + n (dq − y dQ) − 1 dp
 //! ```
 
-use voussoir_core::material::{Isotropic, Region, StressPoint, UpdateFailure, Voigt, von_mises};
+use voussoir_core::law::{Isotropic, Region, StressPoint, UpdateFailure, Voigt, von_mises};
 
 const PLASTIC_STRAIN: [&str; 6] = [
     "plastic_strain_xx [-]",

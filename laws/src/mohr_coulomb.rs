@@ -3,10 +3,8 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, check_as};
-use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::schema::{Parameter, PluginKind, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
 
 /// A joint with strengths.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -1,7 +1,6 @@
 //! Keys that several laws share, described once.
 
-use voussoir_core::schema::{Parameter, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Parameter, Quantity, Range};
 
 pub const FRICTION: Parameter = Parameter::number(
     "friction",

@@ -4,10 +4,8 @@
 //! **State.** None. **Validity.** Stresses inside a rigid block are not defined.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::material::{BulkMaterial, Deformability};
-use voussoir_core::schema::{Parameter, PluginKind, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{BulkMaterial, Deformability};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, no_further_check};
 
 /// ρ, which every material has.
 pub(crate) const DENSITY: Parameter = Parameter::number(

@@ -3,9 +3,8 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::interface::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape, no_further_check};
 
 /// What a closed joint does along itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,9 +7,7 @@
 
 use std::fmt;
 use std::sync::Arc;
-use voussoir_core::interface::InterfaceResponse;
-use voussoir_core::material::plane::PlanarUpdate;
-use voussoir_core::material::{StressUpdate, UpdateFailure};
+use voussoir_core::law::{InterfaceResponse, PlanarUpdate, StressUpdate, UpdateFailure};
 
 /// Greatest number of components.
 pub const COMPONENTS: usize = 6;
@@ -41,7 +39,7 @@ pub struct PointResponse {
     pub across: [f64; 2],
     /// ∂stress/∂strain.
     pub tangent: [[f64; COMPONENTS]; COMPONENTS],
-    /// Region or regime.
+    /// Region, or branch of the update.
     pub region: &'static str,
     /// Plastic work or dissipated energy of the step, per volume or per area.
     pub dissipated: f64,
@@ -170,7 +168,7 @@ impl PointLaw {
                 for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
                     row[..2].copy_from_slice(given);
                 }
-                (out.region, out.dissipated) = (point.regime.name(), point.dissipated);
+                (out.region, out.dissipated) = (point.branch.name(), point.dissipated);
             }
         }
         Ok(out)

@@ -2,14 +2,15 @@
 
 use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
 use std::sync::Arc;
-use voussoir_core::assembly::{Assembly, Stage, StageLoads, Target, stage_loads};
-use voussoir_core::certificate::{Certificate, Claim, ContactForce, OwnFlowClaim, certify, largest_jump};
-use voussoir_core::geometry::{Vec2, turned};
-use voussoir_core::interface::FlowReading;
+use voussoir_core::certificate::{
+    CentroidVelocity, Certificate, Claim, ContactForce, NonAssociatedClaim, certify, jumps, largest_jump, mechanism,
+};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
 };
-use voussoir_core::mechanism::{CentroidVelocity, jumps, mechanism};
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
 use voussoir_core::path::{PathObserver, PathSettings, PathSolver};
 
 /// A choice of solver for the problems of a case.
@@ -47,8 +48,8 @@ pub fn start_of(stage: &Stage) -> f64 {
 fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
     let idle = problem.magnitude(&problem.varying) == 0.0;
     match stage.target {
-        Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Stand(0.0),
-        Target::Factor(factor) if factor < 0.0 => LimitQuestion::Stand(factor),
+        Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Admissible(0.0),
+        Target::Factor(factor) if factor < 0.0 => LimitQuestion::Admissible(factor),
         Target::Factor(factor) => LimitQuestion::Collapse { start: 0.0, max: factor },
         Target::Collapse => LimitQuestion::Collapse { start: start_of(stage), max: stage.factor_max },
     }
@@ -274,13 +275,13 @@ fn proven(
         motion.iter_mut().flatten().for_each(|v| *v /= largest);
     }
     let start = match asked {
-        LimitQuestion::Stand(factor) => factor,
+        LimitQuestion::Admissible(factor) => factor,
         LimitQuestion::Collapse { start, .. } => start,
     };
-    let own = solved.own_flow.as_ref();
+    let own = solved.non_associated.as_ref();
     let associated_motion =
         own.and_then(|own| own.associated_motion.as_ref()).map(|motion| body_velocities(assembly, problem, motion));
-    let reading = if own.is_some() { FlowReading::Own } else { FlowReading::Associated };
+    let reading = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
     let claim = Claim {
         status: solved.status,
         factor: solved.factor,
@@ -290,7 +291,7 @@ fn proven(
         motion: motion.as_deref(),
         ray: ray.as_deref(),
         feasible_interval: solved.feasible_interval,
-        own_flow: own.map(|own| OwnFlowClaim {
+        non_associated: own.map(|own| NonAssociatedClaim {
             proved_lower: own.proved_lower,
             lower_proof: own.lower_proof.as_ref(),
             associated_factor: own.associated_factor,
@@ -317,7 +318,7 @@ fn proven(
         ray: ray.as_deref().map(field_entries),
         motion: motion.map(|motion| motion_entries(assembly, motion)),
         associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
-        lower_proof: solved.own_flow.and_then(|own| own.lower_proof),
+        lower_proof: solved.non_associated.and_then(|own| own.lower_proof),
         certificate,
         counters: solved.counters,
         ..stalled_without(notes)

@@ -4,11 +4,11 @@
 use crate::path::of_body;
 use crate::results::CaseResult;
 use crate::study::Kinematics;
-use voussoir_core::assembly::{Assembly, Stage};
 use voussoir_core::elastic::{Condenser, IsotropicElastic};
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::law::Deformability;
 use voussoir_core::limit::Status;
-use voussoir_core::material::Deformability;
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::{PathProblem, PathState};
 
 /// A block with its mesh; a rigid one is a single cell of its vertices.
@@ -44,8 +44,9 @@ fn end_state(
     finite: bool,
 ) -> Result<PathState, String> {
     let stage = result.stages.len().checked_sub(1).ok_or("no stage was begun")?;
-    let first = problem.drives.iter().position(|d| d.stage == stage).filter(|_| result.status == Status::NoEquilibrium);
-    let drive = first.or(problem.drives.iter().rposition(|d| d.stage <= stage)).ok_or("no load was applied")?;
+    let first =
+        problem.load_steps.iter().position(|d| d.stage == stage).filter(|_| result.status == Status::NoEquilibrium);
+    let load_step = first.or(problem.load_steps.iter().rposition(|d| d.stage <= stage)).ok_or("no load was applied")?;
     let field = crate::verify::contacts(assembly, result.field.as_deref().ok_or("no contact forces")?)?;
     let same = field.len() == problem.contacts.len()
         && field
@@ -66,7 +67,7 @@ fn end_state(
     let factor = result.field_factor.ok_or("no factor of the contact forces")?;
     let force = field.iter().map(|f| f.force).collect();
     let yielded = crate::yielded::read(assembly, problem, &result.yielded)?;
-    Ok(PathState { drive, factor, force, motion, yielded, ..PathState::default() })
+    Ok(PathState { load_step, factor, force, motion, yielded, ..PathState::default() })
 }
 
 /// The blocks of a case at the end of its path, or why there are none. Blocks without a shape are
@@ -84,9 +85,9 @@ pub fn deformed_blocks(
     let problem = PathProblem::new(assembly, stages)?;
     let state = end_state(&problem, assembly, result, finite)?;
     let forces = problem.forces_on_points(&state, finite);
-    let applied = problem.applied(state.drive, state.factor);
+    let applied = problem.applied(state.load_step, state.factor);
     let gravity: Vec2 =
-        problem.drives.iter().zip(applied).map(|(drive, factor)| drive.loading.acceleration * factor).sum();
+        problem.load_steps.iter().zip(applied).map(|(load_step, factor)| load_step.loading.acceleration * factor).sum();
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
     let mut blocks = Vec::new();
     for (block, shape) in assembly.bodies.iter().enumerate() {
@@ -132,8 +133,8 @@ pub fn deformed_blocks(
             plastic_strain = inelastic.by_element(&own.state.equivalent);
         }
         let across = match assembly.plane {
-            voussoir_core::assembly::Plane::Strain => poisson_ratio,
-            voussoir_core::assembly::Plane::Stress => 0.0,
+            voussoir_core::law::Plane::Strain => poisson_ratio,
+            voussoir_core::law::Plane::Stress => 0.0,
         };
         let full = |stress: &[[f64; 3]], own: Option<&Vec<f64>>| -> Vec<[f64; 4]> {
             let zz = |i: usize, [xx, yy, _]: [f64; 3]| own.map_or(across * (xx + yy), |own| own[i]);

@@ -9,9 +9,9 @@
 use crate::results::{CaseResult, EventEntry, FieldEntry};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use voussoir_core::assembly::{Assembly, Bond};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::path::Happening;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Bond};
+use voussoir_core::path::ContactEvent;
 
 /// How a joint as a whole behaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -120,15 +120,15 @@ pub fn joint_events(assembly: &Assembly, result: &CaseResult) -> Vec<JointEvent>
                 slides: false,
             };
             match event.what {
-                Happening::Opens => points.now[at] = Point::Open,
-                Happening::Closes | Happening::Sticks => points.now[at] = Point::Sticks,
-                Happening::SlipsForward => points.now[at] = Point::Slips(true),
-                Happening::SlipsBackward => points.now[at] = Point::Slips(false),
-                Happening::Crushes if !points.crushed => {
+                ContactEvent::Opens => points.now[at] = Point::Open,
+                ContactEvent::Closes | ContactEvent::Sticks => points.now[at] = Point::Sticks,
+                ContactEvent::SlipsForward => points.now[at] = Point::Slips(true),
+                ContactEvent::SlipsBackward => points.now[at] = Point::Slips(false),
+                ContactEvent::Crushes if !points.crushed => {
                     points.crushed = true;
                     changes.push(event_of(None, event.point));
                 }
-                Happening::Crushes | Happening::Unloads | Happening::Softens => {}
+                ContactEvent::Crushes | ContactEvent::Unloads | ContactEvent::Softens => {}
             }
             if !touched.contains(&event.joint) {
                 touched.push(event.joint);

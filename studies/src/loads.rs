@@ -7,12 +7,9 @@
 
 use crate::scenes::{POINT, unknown};
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{ArchLayout, Assembly, PointForce};
-use voussoir_core::contact::CONTACT_TOLERANCE;
-use voussoir_core::geometry::{Vec2, contains, turned};
-use voussoir_core::issue::Issue;
-use voussoir_core::schema::{Need, Parameter, Range, Shape, Variant};
-use voussoir_core::units::Quantity;
+use voussoir_core::model::geometry::{Vec2, contains, turned};
+use voussoir_core::model::{ArchLayout, Assembly, CONTACT_TOLERANCE, PointForce};
+use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};
 
 /// Parts of an evenly spread load on a deformable block.
 const PARTS: usize = 16;
@@ -91,7 +88,7 @@ pub enum Load {
 pub type Placed = (Vec<PointForce>, Vec<Vec2>);
 
 /// The forces and accelerations of a load. `path` is the key of the load in the study.
-pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec<Issue>> {
+pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec<Diagnostic>> {
     let place = Place { assembly, path, held: assembly.rigid_groups().0 };
     match load {
         Load::Point { span_fraction, block, point, force } => {
@@ -133,14 +130,14 @@ pub fn place(load: &Load, assembly: &Assembly, path: &str) -> Result<Placed, Vec
                 return place.fail("positions", "there is no axle");
             }
             let start = place.x_at(*at, "at")?;
-            let (mut placed, mut issues) = (Vec::new(), Vec::new());
+            let (mut placed, mut diagnostics) = (Vec::new(), Vec::new());
             for (i, (position, force)) in positions.iter().zip(forces).enumerate() {
                 match place.on_extrados(start + position, Vec2::new(0.0, -force), &format!("positions.{i}")) {
                     Ok(mut forces) => placed.append(&mut forces),
-                    Err(mut wrong) => issues.append(&mut wrong),
+                    Err(mut wrong) => diagnostics.append(&mut wrong),
                 }
             }
-            if issues.is_empty() { Ok((placed, Vec::new())) } else { Err(issues) }
+            if diagnostics.is_empty() { Ok((placed, Vec::new())) } else { Err(diagnostics) }
         }
         Load::Pressure { block, edge, value } => {
             place.finite(&[("value", &[*value])])?;
@@ -200,28 +197,28 @@ impl Place<'_> {
         if key.is_empty() { self.path.to_string() } else { format!("{}.{key}", self.path) }
     }
 
-    fn fail<T>(&self, key: &str, message: impl Into<String>) -> Result<T, Vec<Issue>> {
-        Err(vec![Issue::new(self.key(key), message)])
+    fn fail<T>(&self, key: &str, message: impl Into<String>) -> Result<T, Vec<Diagnostic>> {
+        Err(vec![Diagnostic::new(self.key(key), message)])
     }
 
-    fn finite(&self, values: &[(&str, &[f64])]) -> Result<(), Vec<Issue>> {
+    fn finite(&self, values: &[(&str, &[f64])]) -> Result<(), Vec<Diagnostic>> {
         let wrong: Vec<_> = values
             .iter()
             .filter(|(_, numbers)| numbers.iter().any(|x| !x.is_finite()))
-            .map(|(key, _)| Issue::new(self.key(key), "must be finite"))
+            .map(|(key, _)| Diagnostic::new(self.key(key), "must be finite"))
             .collect();
         if wrong.is_empty() { Ok(()) } else { Err(wrong) }
     }
 
-    fn arch(&self, key: &str) -> Result<&ArchLayout, Vec<Issue>> {
+    fn arch(&self, key: &str) -> Result<&ArchLayout, Vec<Diagnostic>> {
         self.assembly.arch.as_ref().ok_or_else(|| {
             let message = "counts along the span of an arch, but this scene is not one";
-            vec![Issue::new(self.key(key), message).help("give block and point, or block and edge")]
+            vec![Diagnostic::new(self.key(key), message).help("give block and point, or block and edge")]
         })
     }
 
     /// x of a span fraction, between the intrados ends of the first and last joint.
-    fn x_at(&self, fraction: f64, key: &str) -> Result<f64, Vec<Issue>> {
+    fn x_at(&self, fraction: f64, key: &str) -> Result<f64, Vec<Diagnostic>> {
         let arch = self.arch(key)?;
         self.finite(&[(key, &[fraction])])?;
         let left = self.assembly.joints[0].ends[0].x;
@@ -237,7 +234,7 @@ impl Place<'_> {
     }
 
     /// Index of a block that a load can move.
-    fn movable(&self, body: usize, key: &str) -> Result<usize, Vec<Issue>> {
+    fn movable(&self, body: usize, key: &str) -> Result<usize, Vec<Diagnostic>> {
         let name = &self.assembly.bodies[body].name;
         if self.assembly.bodies[body].fixed {
             return self.fail(key, format!("block \"{name}\" is fixed: a load on it does nothing"));
@@ -249,7 +246,7 @@ impl Place<'_> {
         Ok(body)
     }
 
-    fn block(&self, block: &BlockName) -> Result<usize, Vec<Issue>> {
+    fn block(&self, block: &BlockName) -> Result<usize, Vec<Diagnostic>> {
         let name = block.text();
         let body = self.assembly.body(&name).ok_or_else(|| {
             let names = self.assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.name.as_str());
@@ -258,7 +255,7 @@ impl Place<'_> {
         self.movable(body, "block")
     }
 
-    fn on_block(&self, block: &BlockName, point: Vec2, force: Vec2) -> Result<PointForce, Vec<Issue>> {
+    fn on_block(&self, block: &BlockName, point: Vec2, force: Vec2) -> Result<PointForce, Vec<Diagnostic>> {
         let body = self.block(block)?;
         let tolerance = CONTACT_TOLERANCE * self.assembly.size();
         if !contains(&self.assembly.bodies[body].vertices, point, tolerance) {
@@ -268,7 +265,7 @@ impl Place<'_> {
         Ok(PointForce { body, point, force })
     }
 
-    fn on_edge(&self, block: &BlockName, edge: usize, value: f64) -> Result<Vec<PointForce>, Vec<Issue>> {
+    fn on_edge(&self, block: &BlockName, edge: usize, value: f64) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
         let body = self.block(block)?;
         let vertices = &self.assembly.bodies[body].vertices;
         if edge >= vertices.len() {
@@ -281,7 +278,7 @@ impl Place<'_> {
         Ok(self.spread(body, [a, b], force))
     }
 
-    fn on_extrados(&self, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Issue>> {
+    fn on_extrados(&self, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
         let arch = self.arch(key)?;
         let tolerance = ROUNDING * self.assembly.size();
         let chords = self.chords(arch);
@@ -322,7 +319,7 @@ impl Place<'_> {
         places.map(|t| PointForce { body, point: from + (to - from) * t, force: share }).collect()
     }
 
-    fn strip(&self, from: f64, to: f64, pressure: f64) -> Result<Vec<PointForce>, Vec<Issue>> {
+    fn strip(&self, from: f64, to: f64, pressure: f64) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
         self.finite(&[("pressure", &[pressure])])?;
         let (start, end) = (self.x_at(from, "from")?, self.x_at(to, "to")?);
         if from >= to {

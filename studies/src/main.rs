@@ -49,7 +49,7 @@ enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
     },
-    /// Drive one law at one point through a path of strains and stresses
+    /// LoadStep one law at one point through a path of strains and stresses
     Point {
         /// Study files (TOML) with kind = "point"
         #[arg(required = true)]
@@ -84,7 +84,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let wrong = voussoir::core::card::audit();
+    let wrong = voussoir::core::plugin::audit();
     if !wrong.is_empty() {
         wrong.iter().for_each(|why| eprintln!("voussoir: registry: {why}"));
         return ExitCode::from(3);

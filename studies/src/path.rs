@@ -4,13 +4,14 @@ use crate::answer::{Question, field_entries, stalled, thrust_line};
 use crate::results::{CaseResult, DisplacementEntry, EventEntry, MotionEntry, StageResult};
 use crate::study::Case;
 use std::collections::BTreeMap;
-use voussoir_core::assembly::{Assembly, Target};
-use voussoir_core::certificate::{Certificate, ContactForce, largest_jump};
-use voussoir_core::geometry::{Vec2, turned};
-use voussoir_core::interface::FlowReading;
+use voussoir_core::certificate::{
+    CentroidVelocity, Certificate, ContactForce, Mechanism, PathChecker, flow_residual, jumps, largest_jump, mechanism,
+    mechanism_above, power_residual, ray_residual, tolerance,
+};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{CentroidVelocity, Mechanism, jumps, mechanism, mechanism_above};
-use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Target};
 use voussoir_core::path::{
     ContactLaw, Displaced, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints,
 };
@@ -35,22 +36,22 @@ fn mechanism_of(
 ) -> Option<Mechanism> {
     let deforming = finite || !state.yielded.iter().all(Option::is_none);
     let found = if deforming {
-        mechanism_above(DEFORMATION, assembly, motion, unique, FlowReading::Own)
+        mechanism_above(DEFORMATION, assembly, motion, unique, FlowRule::NonAssociated)
     } else {
-        mechanism(assembly, motion, unique, FlowReading::Own)
+        mechanism(assembly, motion, unique, FlowRule::NonAssociated)
     };
     found.map(|found| crate::yielded::with_crushing(found, assembly, problem, &state.yielded))
 }
 
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
-    watch: Watch,
+    checker: PathChecker,
     observer: &'a mut dyn PathObserver,
 }
 
 impl PathObserver for Watched<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
-        self.watch.state(problem, state) && self.observer.state(problem, state)
+        self.checker.state(problem, state) && self.observer.state(problem, state)
     }
 }
 
@@ -64,9 +65,9 @@ pub fn answer(question: &Question, tag: &str, solver: &dyn PathSolver, observer:
     if let Some(why) = solver.refuses(&problem, question.settings) {
         return failed(tag, format!("{tag}: {why}"));
     }
-    let mut watched = Watched { watch: Watch::new(question.settings.finite), observer };
+    let mut watched = Watched { checker: PathChecker::new(question.settings.finite), observer };
     let solved = solver.trace(&problem, question.settings, &mut watched);
-    result(question, tag, &problem, solved, watched.watch)
+    result(question, tag, &problem, solved, watched.checker)
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {
@@ -133,10 +134,16 @@ fn velocities(
     all
 }
 
-fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAnswer, watch: Watch) -> CaseResult {
+fn result(
+    question: &Question,
+    tag: &str,
+    problem: &PathProblem,
+    solved: PathAnswer,
+    checker: PathChecker,
+) -> CaseResult {
     let assembly = question.assembly;
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
-    for (name, value) in &watch.worst {
+    for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
         if !small(name, *value) {
             certificate.passed = false;
@@ -185,10 +192,10 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
         status = Status::Stalled;
     }
-    let drive = &problem.drives[solved.drive];
-    let stage = drive.stage;
+    let load_step = &problem.load_steps[solved.load_step];
+    let stage = load_step.stage;
     let load_factor = match status {
-        Status::Collapse | Status::LimitPoint if !drive.gravity => solved.factor,
+        Status::Collapse | Status::LimitPoint if !load_step.gravity => solved.factor,
         _ => None,
     };
     let name = |body: usize| assembly.bodies[body].name.clone();
@@ -227,11 +234,11 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         .events
         .iter()
         .map(|event| {
-            let (drive, contact) = (&problem.drives[event.drive], &problem.contacts[event.contact]);
+            let (load_step, contact) = (&problem.load_steps[event.load_step], &problem.contacts[event.contact]);
             EventEntry {
-                stage: question.stages[drive.stage].name.clone(),
+                stage: question.stages[load_step.stage].name.clone(),
                 factor: event.factor,
-                gravity: drive.gravity,
+                gravity: load_step.gravity,
                 joint: contact.joint,
                 point: contact.position.into(),
                 what: event.what,
@@ -244,7 +251,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
     };
     let displacements = displacements(assembly, problem, &solved.state.motion, finite);
     let mut counters = solved.counters;
-    counters.insert("states".into(), watch.states);
+    counters.insert("states".into(), checker.states);
     let open: Vec<ContactForce> = problem
         .contacts
         .iter()
@@ -277,7 +284,7 @@ fn result(question: &Question, tag: &str, problem: &PathProblem, solved: PathAns
         counters,
         stages,
         events,
-        curve: Some(watch.curve),
+        curve: Some(checker.curve),
         notes,
         ..stalled(String::new())
     }
@@ -309,10 +316,10 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         }
     };
     let stage = result.stages.len() - 1;
-    let drive = problem.drives.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
-    let drive = match result.status {
-        Status::NoEquilibrium => problem.drives.iter().position(|d| d.stage == stage).unwrap_or(drive),
-        _ => drive,
+    let load_step = problem.load_steps.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
+    let load_step = match result.status {
+        Status::NoEquilibrium => problem.load_steps.iter().position(|d| d.stage == stage).unwrap_or(load_step),
+        _ => load_step,
     };
     let force = read(result.field.as_deref().ok_or("no field")?)?;
     let displaced = result.displacements.as_ref().ok_or("no displacements")?;
@@ -323,14 +330,14 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         motion[problem.body_of[block]] = of_body(assembly, &problem, block, entry.displacement, finite);
     }
     let factor = result.field_factor.ok_or("no factor of the field")?;
-    let mut state = PathState { drive, factor, force, motion, ..PathState::default() };
+    let mut state = PathState { load_step, factor, force, motion, ..PathState::default() };
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
     state.memory = result.joint_states.clone().unwrap_or_default();
     state.yielded = crate::yielded::read(assembly, &problem, &result.yielded)?;
-    let mut watch = Watch::new(finite);
+    let mut checker = PathChecker::new(finite);
     state.gap = Displaced::new(&problem, &state, finite).gaps();
-    watch.state(&problem, &state);
-    for (name, value) in &watch.worst {
+    checker.state(&problem, &state);
+    for (name, value) in &checker.worst {
         expect(small(name, *value), &format!("{name} is {value:.2e}"));
     }
     if matches!(result.status, Status::Collapse | Status::LimitPoint) && result.load_factor.is_some() {
@@ -350,17 +357,17 @@ pub fn verify(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         let flow = flow_residual(&problem, &state.force, &rates);
         expect(small("path_flow", flow), &format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
         if result.status == Status::Collapse {
-            let power = power_residual(&problem, &problem.drives[drive].loading, &rates);
+            let power = power_residual(&problem, &problem.load_steps[load_step].loading, &rates);
             expect(small("path_power", power), "the mechanism is not scaled to p·q̇ = 1");
         }
         let unique = result.mechanism.as_ref().and_then(|m| m.unique);
         let found = mechanism_of((assembly, &problem), &state, &velocities, unique, finite);
-        let kind = |m: &Option<voussoir_core::mechanism::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
+        let kind = |m: &Option<voussoir_core::certificate::Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
         expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
     }
     if result.status == Status::Unbounded {
         let ray = read(result.ray.as_deref().ok_or("unbounded without a ray")?)?;
-        let residual = ray_residual(&problem, &problem.drives[drive].loading, &ray);
+        let residual = ray_residual(&problem, &problem.load_steps[load_step].loading, &ray);
         expect(small("path_ray", residual), "the ray does not carry the load");
     }
     Ok(wrong)

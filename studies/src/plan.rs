@@ -4,10 +4,10 @@ use crate::answer::{Question, path_solver, start_of};
 use crate::kinds::run::{choice, settings};
 use crate::study::{Case, Study};
 use std::fmt::Write;
-use voussoir_core::assembly::{Bond, Target, stage_loads};
+use voussoir_core::law::Tangential;
 use voussoir_core::limit::LimitProblem;
-use voussoir_core::path::{ContactLaw, DriveEnd, PathProblem};
-use voussoir_core::strength::Tangential;
+use voussoir_core::model::{Bond, Target, stage_loads};
+use voussoir_core::path::{ContactLaw, LoadStepEnd, PathProblem};
 
 /// The plan in words, for the first case; the others differ by their parameters only.
 pub fn plan(study: &Study) -> String {
@@ -106,14 +106,14 @@ fn plan_path(case: &Case, tag: &str, finite: bool, text: &mut String) {
         points - bonded - softening,
     );
     let kinematics = if finite { "finite" } else { "small" };
-    for drive in &problem.drives {
-        let what = if drive.gravity { "gravity" } else { "loads" };
-        let end = match drive.end {
-            DriveEnd::Factor(factor) => format!("to factor {factor}"),
-            DriveEnd::Collapse(most) if most.is_finite() => format!("until collapse, up to factor {most}"),
-            DriveEnd::Collapse(_) => "until collapse".into(),
+    for load_step in &problem.load_steps {
+        let what = if load_step.gravity { "gravity" } else { "loads" };
+        let end = match load_step.end {
+            LoadStepEnd::Factor(factor) => format!("to factor {factor}"),
+            LoadStepEnd::Collapse(most) if most.is_finite() => format!("until collapse, up to factor {most}"),
+            LoadStepEnd::Collapse(_) => "until collapse".into(),
         };
-        let stage = &case.stages[drive.stage].name;
+        let stage = &case.stages[load_step.stage].name;
         let _ = writeln!(text, "  stage \"{stage}\", {what}: {tag}, {kinematics} displacements, {end}");
     }
 }

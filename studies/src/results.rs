@@ -1,11 +1,9 @@
 //! The result of a case, as it stands in `results.json`.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::certificate::Certificate;
-use voussoir_core::limit::{Counters, Status};
-use voussoir_core::mechanism::{Mechanism, MechanismKind};
-use voussoir_core::path::Happening;
-use voussoir_core::product_proof::LowerProof;
+use voussoir_core::certificate::{Certificate, Mechanism, MechanismKind};
+use voussoir_core::limit::{Counters, LowerProof, Status};
+use voussoir_core::path::ContactEvent;
 
 /// All results of a study.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -148,7 +146,7 @@ pub struct EventEntry {
     /// Where \[m\].
     pub point: [f64; 2],
     /// What happened there.
-    pub what: Happening,
+    pub what: ContactEvent,
 }
 
 /// What one stage came to.

@@ -18,8 +18,8 @@ use crate::config::report::{Mistake, sort};
 use case::build_case;
 use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
-use voussoir_core::assembly::{Assembly, Stage};
-use voussoir_core::schema::Shape;
+use voussoir_core::model::{Assembly, Stage};
+use voussoir_core::plugin::Shape;
 
 /// Whether equilibrium is that of the undeformed geometry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -262,9 +262,9 @@ fn kind_table(root: &Node, mistakes: &mut Vec<Mistake>) -> Map<String, Json> {
 /// What the study's kind finds wrong with its axes and its table.
 fn check_outline(root: &Node, outline: &Outline, mistakes: &mut Vec<Mistake>) {
     let Some(kind) = crate::kinds::kind(kind_of(root)) else { return };
-    mistakes.extend(kind.check(outline).into_iter().map(|issue| {
-        let mut mistake = Mistake::new(&root.place(&issue.path), issue.path, issue.message);
-        mistake.help = issue.help;
+    mistakes.extend(kind.check(outline).into_iter().map(|diagnostic| {
+        let mut mistake = Mistake::new(&root.place(&diagnostic.path), diagnostic.path, diagnostic.message);
+        mistake.help = diagnostic.help;
         mistake
     }));
 }

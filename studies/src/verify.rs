@@ -6,14 +6,14 @@
 use crate::answer::{start_of, thrust_line};
 use crate::results::{CaseResult, FieldEntry, MotionEntry, StudyResults};
 use crate::study::{Case, Study};
-use voussoir_core::assembly::{Assembly, Bond, Target, stage_loads};
-use voussoir_core::card::card;
-use voussoir_core::certificate::{Claim, ContactForce, OwnFlowClaim, certify};
-use voussoir_core::geometry::{Vec2, distance_to_segment};
-use voussoir_core::interface::{FlowReading, is_associated};
+use voussoir_core::certificate::{
+    CentroidVelocity, Claim, ContactForce, Mechanism, NonAssociatedClaim, certify, mechanism,
+};
+use voussoir_core::law::{FlowRule, is_associated};
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{CentroidVelocity, Mechanism, mechanism};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::geometry::{Vec2, distance_to_segment};
+use voussoir_core::model::{Assembly, Bond, Target, stage_loads};
+use voussoir_core::plugin::{PluginKind, card};
 
 /// Relative difference up to which recomputed numbers count as equal.
 const EQUAL: f64 = 1e-9;
@@ -134,7 +134,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         motion: motion.as_deref(),
         ray: ray.as_deref(),
         feasible_interval: interval,
-        own_flow: own.then_some(OwnFlowClaim {
+        non_associated: own.then_some(NonAssociatedClaim {
             proved_lower: result.bounds.map(|b| b[0]),
             lower_proof: result.lower_proof.as_ref(),
             associated_factor: result.associated_load_factor,
@@ -173,7 +173,7 @@ fn recompute(case: &Case, result: &CaseResult) -> Result<Vec<String>, String> {
         let idle = loads[last].varying.iter().all(|w| *w == [0.0; 3]);
         expect(idle || close(claim.field_factor, reached), "the field is not at the factor the stage goes to");
     }
-    let reading = if own { FlowReading::Own } else { FlowReading::Associated };
+    let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
     let unique = result.mechanism.as_ref().and_then(|m| m.unique);
     let recomputed = motion.as_ref().and_then(|motion| mechanism(assembly, motion, unique, reading));
     match (&result.mechanism, &recomputed) {

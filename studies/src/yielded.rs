@@ -3,10 +3,10 @@
 
 use crate::results::YieldedEntry;
 use std::sync::Arc;
-use voussoir_core::assembly::{Assembly, Bond};
+use voussoir_core::certificate::{Crushing, Mechanism};
 use voussoir_core::elastic::InelasticState;
-use voussoir_core::interface::FacetMode;
-use voussoir_core::mechanism::{Crushing, Mechanism};
+use voussoir_core::law::FacetMode;
+use voussoir_core::model::{Assembly, Bond};
 use voussoir_core::path::{PathProblem, PathState, Yielded};
 
 /// Equivalent plastic strain under compression from which a Gauss point counts as crushed: a tenth of

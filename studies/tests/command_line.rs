@@ -11,6 +11,14 @@ fn code(output: &Output) -> i32 {
     output.status.code().expect("it ends by itself")
 }
 
+/// A folder of a test's own, below Cargo's for such things.
+fn empty_folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    drop(std::fs::remove_dir_all(&folder));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
 fn study() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/strathmashie_rise.toml")
 }
@@ -32,8 +40,8 @@ fn timeless(dir: &Path) -> serde_json::Value {
 /// change nothing.
 #[test]
 fn run_verify_tamper_and_resume() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    let folder = empty_folder("run_verify_tamper_and_resume");
+    let (one, two) = (folder.join("one"), folder.join("two"));
     let study = study();
     let (study, out_one, out_two) =
         (study.to_str().expect("a path"), one.to_str().expect("a path"), two.to_str().expect("a path"));
@@ -69,11 +77,11 @@ fn run_verify_tamper_and_resume() {
 /// Wrong input: code 2, the message on standard error, results of an earlier run untouched.
 #[test]
 fn wrong_input_overwrites_nothing() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("out");
+    let folder = empty_folder("wrong_input_overwrites_nothing");
+    let out = folder.join("out");
     std::fs::create_dir(&out).expect("a folder");
     std::fs::write(out.join("results.json"), "precious").expect("written");
-    let wrong = folder.path().join("wrong.toml");
+    let wrong = folder.join("wrong.toml");
     std::fs::write(&wrong, text(&study()).replace("friction", "fricton")).expect("written");
     let output = voussoir(&["run", wrong.to_str().expect("a path"), "--out", out.to_str().expect("a path")]);
     assert_eq!(code(&output), 2);
@@ -125,8 +133,8 @@ fn the_program_explains_itself() {
 /// reached; `run` sends such a study on to `point`.
 #[test]
 fn points_are_driven() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("out");
+    let folder = empty_folder("points_are_driven");
+    let out = folder.join("out");
     let out_text = out.to_str().expect("a path");
     let case = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name).display().to_string();
     let names = ["cap_uniaxial", "cap_triaxial", "cap_compaction"].map(|name| format!("point_{name}.toml"));

@@ -1,15 +1,17 @@
 //! What tests share: reading a study from text, answering it, and scenes in several disguises.
 //!
-//! `tests/tests/verification_*.rs` holds other people's answers, `regression_*.rs` our own last
-//! ones, `invariance.rs` what must not matter, `mistakes.rs` the exact text of every error message.
+//! One binary a folder of `tests/tests/`: `verification` holds other people's answers, `regression` our own last
+//! ones, `invariance` what must not matter, `stress` random scenes, `conformance` every plug-in, `files` studies and
+//! results read back, `messages` the exact text of every error, `architecture` the house itself. One file of one:
+//! `cargo test --release -p voussoir-tests --test verification arch::`.
 
 pub mod random;
 pub mod seen;
 pub mod written;
 
-use voussoir::core::assembly::Assembly;
-use voussoir::core::geometry::Vec2;
 use voussoir::core::limit::Status;
+use voussoir::core::model::Assembly;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::PathSettings;
 use voussoir::kinds::run::answer_case;
 use voussoir::results::CaseResult;

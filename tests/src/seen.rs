@@ -1,6 +1,6 @@
 //! What tests keep of a path: its states, with or without the certificate of them all.
 
-use voussoir::core::path::certificate::Watch;
+use voussoir::core::certificate::PathChecker;
 use voussoir::core::path::{PathObserver, PathProblem, PathState};
 
 /// Keeps every state.
@@ -20,13 +20,13 @@ pub struct Seen {
     /// In order.
     pub states: Vec<PathState>,
     /// Small displacements, unless it is made otherwise.
-    pub watch: Watch,
+    pub checker: PathChecker,
 }
 
 impl PathObserver for Seen {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
         self.states.push(state.clone());
-        self.watch.state(problem, state)
+        self.checker.state(problem, state)
     }
 }
 
@@ -34,7 +34,7 @@ impl Seen {
     /// Asserts that what the path solver itself must keep, forces and yielding, is kept to 1e-8 at every state.
     pub fn is_certified(&self) {
         for name in ["path_equilibrium", "path_kinematics", "path_inner_equilibrium", "path_yield", "path_strength"] {
-            let value = self.watch.worst[name];
+            let value = self.checker.worst[name];
             assert!(value <= 1e-8, "{name} is {value:.2e}");
         }
     }

@@ -8,9 +8,8 @@ use super::inelastic::{InelasticBody, Strains};
 use super::mesh::MeshDensity;
 use super::shape::{Place, Placement, Shape, agree, placed};
 use super::stress::{Recovered, recovered};
-use crate::assembly::Plane;
-use crate::geometry::Vec2;
-use crate::material::plane::PlanarUpdate;
+use crate::law::{PlanarUpdate, Plane};
+use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -209,7 +208,7 @@ impl Condenser {
             (0..shape.mesh.nodes.len()).map(|i| Vec2::new(all[(2 * i, 0)], all[(2 * i + 1, 0)])).collect();
         let mut imbalance = [weight.x, weight.y, 0.0];
         for (point, force) in points.iter().zip(forces) {
-            crate::assembly::add_force(&mut imbalance, point - placement.origin, *force, 1.0);
+            crate::model::add_force(&mut imbalance, point - placement.origin, *force, 1.0);
         }
         let local = recovered(&shape.mesh, &shape.reference, shape.hooke, &displacement);
         Ok(local.placed(placement.origin, placement.rotation, placement.size, material.young_modulus, imbalance))

@@ -9,8 +9,8 @@
 //! stresses and two linear ones, t₁ ⊗ t₁ η and t₃ ⊗ t₃ ξ, along the element's mean axes t₁, t₃.
 
 use super::quadrature::{gauss, lagrange, lagrange_slopes, lobatto};
-use crate::assembly::Plane;
-use crate::geometry::Vec2;
+use crate::law::Plane;
+use crate::model::geometry::Vec2;
 use nalgebra::{DMatrix, Matrix2, Matrix3, Matrix5, SMatrix, SVector};
 
 /// Lamé's constants for E = 1, λ as the plane problem sees it.
@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn rigid_motions_and_uniform_strains() {
         let corners = CORNERS.map(Vec2::from);
-        let area = crate::geometry::area_and_centroid(&corners).0;
+        let area = crate::model::geometry::area_and_centroid(&corners).0;
         for (order, plane) in [1, 2, 3].iter().flat_map(|&p| [(p, Plane::Strain), (p, Plane::Stress)]) {
             let (reference, hooke) = (Reference::new(order), Hooke::new(plane, 0.3));
             let k = stiffness(&reference, &corners, hooke);

@@ -34,9 +34,8 @@ use super::element::strain_operators;
 use super::mesh::{Mesh, MeshDensity};
 use super::shape::{Place, Placement, Shape, at_places};
 use super::{IsotropicElastic, Recovered};
-use crate::assembly::Plane;
-use crate::geometry::{Vec2, area_and_centroid};
-use crate::material::plane::{PlanarPoint, PlanarUpdate};
+use crate::law::{PlanarPoint, PlanarUpdate, Plane};
+use crate::model::geometry::{Vec2, area_and_centroid};
 use nalgebra::{DMatrix, Matrix2};
 use std::fmt;
 use std::sync::Arc;
@@ -157,7 +156,7 @@ impl InelasticBody {
             let corners = self.shape.mesh.corners(element).map(place);
             for side in 0..4 {
                 let (a, b) = (corners[side], corners[(side + 1) % 4]);
-                let off = |p: Vec2| crate::geometry::distance_to_segment(p, from, to);
+                let off = |p: Vec2| crate::model::geometry::distance_to_segment(p, from, to);
                 if off(a).max(off(b)) > 1e-7 * self.size {
                     continue;
                 }

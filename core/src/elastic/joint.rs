@@ -2,7 +2,7 @@
 
 use super::mesh::{MeshDensity, edge_breaks};
 use super::quadrature::lobatto;
-use crate::geometry::{Vec2, edges};
+use crate::model::geometry::{Vec2, edges};
 
 /// Breaks closer than this share of the joint are one.
 const SAME: f64 = 1e-9;

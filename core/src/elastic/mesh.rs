@@ -2,7 +2,7 @@
 
 use super::polygon::{is_convex_quadrilateral, triangles};
 use super::quadrature::lobatto;
-use crate::geometry::Vec2;
+use crate::model::geometry::Vec2;
 use std::collections::HashMap;
 
 /// How bodies are meshed.
@@ -202,7 +202,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{area_and_centroid, cross, edges};
+    use crate::model::geometry::{area_and_centroid, cross, edges};
 
     fn polygon(points: &[(f64, f64)]) -> Vec<Vec2> {
         points.iter().map(|&(x, y)| Vec2::new(x, y)).collect()

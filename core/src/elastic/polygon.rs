@@ -1,7 +1,7 @@
 //! From any simple polygon to quadrilaterals: ears are cut off into triangles, each triangle gives
 //! three quadrilaterals around its centroid.
 
-use crate::geometry::{Vec2, cross};
+use crate::model::geometry::{Vec2, cross};
 
 /// Sine of the least angle of a corner that a bilinear map takes; flatter corners are cut.
 const LEAST_CORNER: f64 = 1e-3;
@@ -90,7 +90,7 @@ fn improve(vertices: &[Vec2], triangles: &mut [[usize; 3]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::area_and_centroid;
+    use crate::model::geometry::area_and_centroid;
 
     fn polygon(points: &[(f64, f64)]) -> Vec<Vec2> {
         points.iter().map(|&(x, y)| Vec2::new(x, y)).collect()

@@ -3,9 +3,9 @@
 
 use super::element::{Hooke, Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
 use super::mesh::{Mesh, MeshDensity};
-use crate::assembly::Plane;
-use crate::geometry::{Vec2, area_and_centroid, bounding_box, turned};
-use crate::sparse::{Entries, Factorised};
+use crate::law::Plane;
+use crate::linear::{Entries, SparseLdlt};
+use crate::model::geometry::{Vec2, area_and_centroid, bounding_box, turned};
 use nalgebra::{DMatrix, Matrix2};
 
 /// Shapes and points that differ by less than this share of the size are congruent.
@@ -71,7 +71,7 @@ pub(super) struct Shape {
     pub hooke: Hooke,
     pub mesh: Mesh,
     /// Stiffness with springs of stiffness 1 at `SPRINGS`.
-    factorised: Factorised,
+    factorised: SparseLdlt,
     /// Greatest entry of the stiffness.
     stiffest: f64,
     /// M R: columns translation x, y, rotation about the centroid.
@@ -113,7 +113,7 @@ impl Shape {
         }
         let stiffest = entries.iter().fold(0.0f64, |max, entry| max.max(entry.2.abs()));
         let factorised =
-            Factorised::new(2 * count, 2 * count, &entries).ok_or("the stiffness of a body has no factorisation")?;
+            SparseLdlt::new(2 * count, 2 * count, &entries).ok_or("the stiffness of a body has no factorisation")?;
         let columns = |mass: f64, place: Vec2, i: usize| match i {
             0 => [mass, 0.0, -place.y],
             _ => [0.0, mass, place.x],

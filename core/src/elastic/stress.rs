@@ -2,7 +2,7 @@
 
 use super::element::{Hooke, Reference, stresses};
 use super::mesh::Mesh;
-use crate::geometry::Vec2;
+use crate::model::geometry::Vec2;
 use nalgebra::Matrix2;
 
 /// A deformed mesh with its stresses, in world axes of the undeformed placement.

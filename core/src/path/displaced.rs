@@ -7,8 +7,9 @@
 //! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
 //! ([`Sliding`](super::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
 
-use super::{Attachment, Contact, PathProblem, PathState};
-use crate::geometry::{Vec2, cross, turned};
+use super::problem::{Attachment, Contact, PathProblem};
+use super::state::PathState;
+use crate::model::geometry::{Vec2, cross, turned};
 use nalgebra::DVector;
 
 /// A state with the deformations of its bodies.
@@ -86,13 +87,15 @@ impl<'a> Displaced<'a> {
             let moment = cross(point + moved - problem.bodies[body].pole, force);
             wrench[body] = [wrench[body][0] + force.x, wrench[body][1] + force.y, wrench[body][2] + moment];
         };
-        for (drive, factor) in problem.drives.iter().zip(problem.applied(self.state.drive, self.state.factor)) {
-            for &(body, slot, point, force) in &drive.loading.forces {
+        for (load_step, factor) in
+            problem.load_steps.iter().zip(problem.applied(self.state.load_step, self.state.factor))
+        {
+            for &(body, slot, point, force) in &load_step.loading.forces {
                 add(body, self.displacement(body, slot, point), point, force * factor);
             }
             for (index, body) in problem.bodies.iter().enumerate() {
                 let [x, y, _] = self.state.motion[index];
-                add(index, Vec2::new(x, y), body.pole, drive.loading.acceleration * (body.mass * factor));
+                add(index, Vec2::new(x, y), body.pole, load_step.loading.acceleration * (body.mass * factor));
             }
         }
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {

@@ -1,14 +1,12 @@
-//! Building the path problem: groups of bodies, contact points, flexibilities, drives.
+//! Building the path problem: groups of bodies, contact points, flexibilities, load steps.
 
-use super::Sliding;
-use super::sliding::{face, sliding};
-use crate::assembly::{Assembly, Bond, Stage, Target, root};
+use super::sliding::{Sliding, face, sliding};
+use super::state::PathState;
 use crate::elastic::{Condenser, InelasticBody, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
-use crate::geometry::{Vec2, cross, turned};
-use crate::interface::{Facet, Formulation, InterfaceResponse};
+use crate::law::{Deformability, Facet, Formulation, InterfaceResponse, PlanarUpdate};
 use crate::limit::Counters;
-use crate::material::Deformability;
-use crate::material::plane::PlanarUpdate;
+use crate::model::geometry::{Vec2, cross, turned};
+use crate::model::{Assembly, Bond, Stage, Target, root};
 use nalgebra::DMatrix;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -90,9 +88,9 @@ pub struct Loading {
     pub settlements: Vec<(usize, [f64; 3])>,
 }
 
-/// How far a drive goes.
+/// How far a load step goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DriveEnd {
+pub enum LoadStepEnd {
     /// To this factor.
     Factor(f64),
     /// Until no more can be carried, up to this factor (may be ∞).
@@ -101,7 +99,7 @@ pub enum DriveEnd {
 
 /// One load history in the sequence: `λ × loading` on top of all earlier ones.
 #[derive(Debug, Clone)]
-pub struct Drive {
+pub struct LoadStep {
     /// Index of the stage.
     pub stage: usize,
     /// Whether it is the stage's change of gravity (factor from 0 to 1) or its loads.
@@ -111,7 +109,7 @@ pub struct Drive {
     /// λ at its start.
     pub start: f64,
     /// Where it ends.
-    pub end: DriveEnd,
+    pub end: LoadStepEnd,
 }
 
 /// Everything a path solver needs.
@@ -129,16 +127,16 @@ pub struct PathProblem {
     /// points the gap holds the compliance of the joint too: it is part of the law.
     pub responses: Vec<Option<Arc<dyn InterfaceResponse>>>,
     /// Load histories in order.
-    pub drives: Vec<Drive>,
+    pub load_steps: Vec<LoadStep>,
     /// Length scale \[m\].
     pub length: f64,
     /// Work done to build it.
     pub counters: Counters,
 }
 
-/// Stiffness of the bedding between meshes that do not match, relative to that of a block as high as
+/// Stiffness of the springs between meshes that do not match, relative to that of a block as high as
 /// the joint.
-const BEDDING: f64 = 1e5;
+const REGULARISATION: f64 = 1e5;
 
 /// Young's modulus of a deformable block.
 fn modulus(assembly: &Assembly, block: usize) -> Option<f64> {
@@ -196,7 +194,7 @@ impl PathProblem {
             facets: Vec::new(),
             responses: Vec::new(),
             contacts: Vec::new(),
-            drives: Vec::new(),
+            load_steps: Vec::new(),
             length: assembly.size(),
             counters: Counters::new(),
             bodies,
@@ -211,13 +209,13 @@ impl PathProblem {
             problem.responses.push(response);
         }
         problem.contact_points(assembly, &elastic)?;
-        problem.drives(stages, &elastic)?;
+        problem.load_steps(stages, &elastic)?;
         problem.condense(assembly, &elastic)?;
         Ok(problem)
     }
 
     fn contact_points(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
-        let mut crowded = BTreeSet::new();
+        let mut nonmatching = BTreeSet::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
             let sides = [joint.minus, joint.plus];
             if self.body_of[joint.minus] == self.body_of[joint.plus] {
@@ -248,7 +246,7 @@ impl PathProblem {
             let height = joint.height();
             let matching = meshes.windows(2).all(|pair| pair[0].len() == breaks.len() && pair[1].len() == breaks.len());
             if !matching {
-                crowded.insert(index);
+                nonmatching.insert(index);
             }
             let face = |side: usize| face(&assembly.bodies[side].vertices, joint.ends, 1e-9 * self.length);
             let faces = (!any_elastic).then(|| sides.map(face));
@@ -285,37 +283,37 @@ impl PathProblem {
                 }
             }
         }
-        self.bed(assembly, crowded);
+        self.regularise_nonmatching_joints(assembly, nonmatching);
         Ok(())
     }
 
     /// Where two meshes do not match, or joints meet at a corner, more points than nodes meet and the
-    /// flexibility is singular: a bedding far stiffer than the blocks shares the forces. It is part of
+    /// flexibility is singular: springs far stiffer than the blocks shares the forces. It is part of
     /// the model, proportional to area (a uniform pressure stays uniform), and moves no limit load.
-    fn bed(&mut self, assembly: &Assembly, mut crowded: BTreeSet<usize>) {
+    fn regularise_nonmatching_joints(&mut self, assembly: &Assembly, mut nonmatching: BTreeSet<usize>) {
         let grid = 1e-7 * self.length;
         let mut met: HashMap<[i64; 2], usize> = HashMap::new();
         for contact in &self.contacts {
             let key = [contact.position.x, contact.position.y].map(|x| (x / grid).round() as i64);
             match met.get(&key) {
-                Some(&other) if other != contact.joint => crowded.extend([other, contact.joint]),
+                Some(&other) if other != contact.joint => nonmatching.extend([other, contact.joint]),
                 _ => _ = met.insert(key, contact.joint),
             }
         }
         let follows_gaps: Vec<bool> = (0..self.contacts.len()).map(|c| self.response(c).is_some()).collect();
         let contacts = self.contacts.iter_mut().zip(follows_gaps);
-        let stiff = |c: &Contact| crowded.contains(&c.joint) && c.compliance == [0.0; 2];
+        let stiff = |c: &Contact| nonmatching.contains(&c.joint) && c.compliance == [0.0; 2];
         for (contact, _) in contacts.filter(|(c, follows_gap)| stiff(c) && !follows_gap) {
             let joint = &assembly.joints[contact.joint];
             let sides = [joint.minus, joint.plus].into_iter();
             let softest = sides.filter_map(|side| modulus(assembly, side)).fold(f64::INFINITY, f64::min);
             if softest.is_finite() {
-                contact.compliance = [joint.height() / (BEDDING * softest * contact.area); 2];
+                contact.compliance = [joint.height() / (REGULARISATION * softest * contact.area); 2];
             }
         }
     }
 
-    fn drives(&mut self, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+    fn load_steps(&mut self, stages: &[Stage], elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
         // What turns about a point has its pole there, so that the point's displacement is the pole's
         // however far the body turns.
         for settlement in stages.iter().flat_map(|stage| &stage.settlements).rev() {
@@ -326,12 +324,12 @@ impl PathProblem {
             let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);
             if change != Vec2::zeros() {
                 gravity += change;
-                self.drives.push(Drive {
+                self.load_steps.push(LoadStep {
                     stage: index,
                     gravity: true,
                     loading: Loading { acceleration: change, ..Loading::default() },
                     start: 0.0,
-                    end: DriveEnd::Factor(1.0),
+                    end: LoadStepEnd::Factor(1.0),
                 });
             }
             let mut loading = Loading { acceleration: stage.accelerations.iter().sum(), ..Loading::default() };
@@ -358,19 +356,19 @@ impl PathProblem {
             if idle {
                 continue;
             }
-            let drive = |start, end, loading| Drive { stage: index, gravity: false, loading, start, end };
+            let load_step = |start, end, loading| LoadStep { stage: index, gravity: false, loading, start, end };
             match stage.target {
-                Target::Factor(factor) => self.drives.push(drive(0.0, DriveEnd::Factor(factor), loading)),
+                Target::Factor(factor) => self.load_steps.push(load_step(0.0, LoadStepEnd::Factor(factor), loading)),
                 Target::Collapse => {
                     let start = 0.0f64.clamp(stage.factor_min, stage.factor_max);
                     if start != 0.0 {
-                        self.drives.push(drive(0.0, DriveEnd::Factor(start), loading.clone()));
+                        self.load_steps.push(load_step(0.0, LoadStepEnd::Factor(start), loading.clone()));
                     }
-                    self.drives.push(drive(start, DriveEnd::Collapse(stage.factor_max), loading));
+                    self.load_steps.push(load_step(start, LoadStepEnd::Collapse(stage.factor_max), loading));
                 }
             }
         }
-        if self.drives.is_empty() {
+        if self.load_steps.is_empty() {
             return Err("no stage has a load".into());
         }
         Ok(())
@@ -435,14 +433,14 @@ impl PathProblem {
         }
     }
 
-    /// How much of each drive's loading is applied at a factor of one of them.
-    pub fn applied(&self, drive: usize, factor: f64) -> Vec<f64> {
-        let reached = |(index, d): (usize, &Drive)| match (index.cmp(&drive), d.end) {
-            (std::cmp::Ordering::Less, DriveEnd::Factor(end) | DriveEnd::Collapse(end)) => end - d.start,
+    /// How much of each load step's loading is applied at a factor of one of them.
+    pub fn applied(&self, load_step: usize, factor: f64) -> Vec<f64> {
+        let reached = |(index, d): (usize, &LoadStep)| match (index.cmp(&load_step), d.end) {
+            (std::cmp::Ordering::Less, LoadStepEnd::Factor(end) | LoadStepEnd::Collapse(end)) => end - d.start,
             (std::cmp::Ordering::Equal, _) => factor - d.start,
             (std::cmp::Ordering::Greater, _) => 0.0,
         };
-        self.drives.iter().enumerate().map(reached).collect()
+        self.load_steps.iter().enumerate().map(reached).collect()
     }
 
     /// Wrench of a loading on each body about its pole, undeformed positions \[N, N m\].
@@ -516,7 +514,7 @@ impl PathProblem {
     /// Contact forces and loads of a state on the points of every body, in axes that turn with the
     /// body where displacements are `finite` \[N\]: there a contact's frame has the mean rotation of
     /// its two bodies.
-    pub fn forces_on_points(&self, state: &super::PathState, finite: bool) -> Vec<Vec<Vec2>> {
+    pub fn forces_on_points(&self, state: &PathState, finite: bool) -> Vec<Vec<Vec2>> {
         let mut forces: Vec<Vec<Vec2>> = self.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
         let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
         let angle = |body: usize| state.motion[body][2];
@@ -530,8 +528,8 @@ impl PathProblem {
                 }
             }
         }
-        for (drive, factor) in self.drives.iter().zip(self.applied(state.drive, state.factor)) {
-            for (body, slot, _, f) in &drive.loading.forces {
+        for (load_step, factor) in self.load_steps.iter().zip(self.applied(state.load_step, state.factor)) {
+            for (body, slot, _, f) in &load_step.loading.forces {
                 if let Some(slot) = slot {
                     forces[*body][*slot] += turn(-angle(*body), *f) * factor;
                 }

@@ -1,10 +1,10 @@
 //! Contact points with laws of tractions from gaps: the law recomputed from recorded states, motions
 //! that leave its forces alone, and whether the points stand close enough for its fracture energy.
 
-use super::{PathProblem, PathState};
-use crate::assembly::{Assembly, Plane};
-use crate::interface::TractionPoint;
-use crate::material::Deformability;
+use super::problem::PathProblem;
+use super::state::PathState;
+use crate::law::{Deformability, Plane, TractionPoint};
+use crate::model::Assembly;
 
 /// Contact points over the length of a cohesive zone below which a joint counts as coarse (Turon,
 /// Dávila, Camanho & Costa 2007, Engng Fract. Mech. 74: three elements and more).

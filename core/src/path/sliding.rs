@@ -21,7 +21,7 @@
 //! Source: the gap function of node-to-segment contact (Wriggers 2006, Computational Contact Mechanics,
 //! ch. 4), of which β = 0 and 1 are the two passes.
 
-use crate::geometry::Vec2;
+use crate::model::geometry::Vec2;
 
 /// Slip up to which a point is paired with β = ½, as a share of its joint.
 const LARGEST_SLIP: f64 = 0.05;

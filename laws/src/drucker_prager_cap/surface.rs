@@ -26,7 +26,7 @@
 //! Sorensen 1983.)
 
 use crate::meridian::Returned;
-use voussoir_core::material::{Isotropic, Region, UpdateFailure};
+use voussoir_core::law::{Isotropic, Region, UpdateFailure};
 
 const ITERATIONS: usize = 200;
 

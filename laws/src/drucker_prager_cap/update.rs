@@ -2,7 +2,7 @@
 
 use super::surface::{Piece, Surface, Table};
 use crate::meridian::{Trial, state_names};
-use voussoir_core::material::{StressPoint, StressUpdate, UpdateFailure, Voigt};
+use voussoir_core::law::{StressPoint, StressUpdate, UpdateFailure, Voigt};
 
 /// Index of ε_v in the state.
 const COMPACTION: usize = 6;

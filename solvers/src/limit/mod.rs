@@ -11,10 +11,10 @@ mod recovery;
 pub mod sequential;
 mod systems;
 
-use voussoir_core::assembly::Wrenches;
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status, Velocity,
 };
+use voussoir_core::model::Wrenches;
 
 /// Whether a fixed load can be carried.
 #[derive(Debug, Clone)]
@@ -103,7 +103,7 @@ fn combined(fixed: &Wrenches, varying: &Wrenches, factor: f64) -> Wrenches {
 /// Answers a question with an engine: every status with its proof.
 pub fn answer(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn Engine) -> LimitAnswer {
     let (start, max) = match question {
-        LimitQuestion::Stand(factor) => (factor, factor),
+        LimitQuestion::Admissible(factor) => (factor, factor),
         LimitQuestion::Collapse { start, max } => (start, max),
     };
     let mut answer = LimitAnswer {
@@ -115,7 +115,7 @@ pub fn answer(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn 
         unique: None,
         ray: None,
         feasible_interval: None,
-        own_flow: None,
+        non_associated: None,
         counters: Counters::new(),
         notes: Vec::new(),
     };

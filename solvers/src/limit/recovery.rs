@@ -3,7 +3,7 @@
 use super::driven;
 use super::systems::Systems;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
-use voussoir_core::sparse::{Entries, Factorised};
+use voussoir_core::linear::{Entries, SparseLdlt};
 
 type Row = Vec<(usize, f64)>;
 
@@ -21,7 +21,7 @@ fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f6
             entries.push((j, n + i, v));
         }
     }
-    let factorised = Factorised::new(n + m, n, &entries)?;
+    let factorised = SparseLdlt::new(n + m, n, &entries)?;
     let mut z = start;
     let mut best: Option<(Vec<f64>, f64)> = None;
     for _ in 0..12 {

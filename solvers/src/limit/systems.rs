@@ -6,10 +6,9 @@
 
 use super::least::dictionary::{Dictionary, Equations};
 use super::{force_scale, force_unit};
-use voussoir_core::assembly::Wrenches;
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::{FacetMode, Tangential};
 use voussoir_core::limit::LimitProblem;
-use voussoir_core::strength::Tangential;
+use voussoir_core::model::Wrenches;
 
 /// Entries of the equations beyond which dense dictionaries are not built.
 pub const LARGEST: usize = 1_500_000;

@@ -4,7 +4,7 @@
 //! facet), r = corner A (a pair of facets). Its walls are linear in (r, Δg): slack b A − a·r of other
 //! facets, multipliers γ of its own. The cells cover the plane of z = r − ρ Δg once.
 
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// What a contact point does in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

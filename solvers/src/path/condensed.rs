@@ -16,7 +16,7 @@
 //! refinement leave the accuracy of the equations before condensation.
 
 use super::rows::Rows;
-use crate::lu::{Analysis, Entries, SparseLu};
+use voussoir_core::linear::{Analysis, Entries, SparseLu};
 
 /// Own equations of a point must be at least this strong, relative to the others in its rows.
 const STRONG: f64 = 1e-3;
@@ -39,7 +39,7 @@ impl Point {
     }
 }
 
-/// Factorised equations, with the equations themselves for residuals.
+/// SparseLdlt equations, with the equations themselves for residuals.
 pub(in crate::path) struct Condensed {
     rows: Rows,
     points: Vec<Point>,

@@ -1,7 +1,7 @@
 //! Events of a contact point: what it does, and what happens between two such states.
 
-use voussoir_core::interface::{Facet, FacetMode};
-use voussoir_core::path::Happening;
+use voussoir_core::law::{Facet, FacetMode};
+use voussoir_core::path::ContactEvent;
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,17 +28,17 @@ impl ContactStatus {
 }
 
 /// What happens where a point goes over from one status to another.
-pub(super) fn transition(before: ContactStatus, after: ContactStatus) -> Option<Happening> {
+pub(super) fn transition(before: ContactStatus, after: ContactStatus) -> Option<ContactEvent> {
     use ContactStatus::{Crushes, Open, Slides, Softens, Sticks};
     Some(match (before, after) {
         (before, after) if before == after => return None,
-        (_, Open) => Happening::Opens,
-        (_, Softens) => Happening::Softens,
-        (_, Crushes) => Happening::Crushes,
-        (_, Slides { forward: true }) => Happening::SlipsForward,
-        (_, Slides { forward: false }) => Happening::SlipsBackward,
-        (Open, Sticks) => Happening::Closes,
-        (Crushes | Softens, Sticks) => Happening::Unloads,
-        (_, Sticks) => Happening::Sticks,
+        (_, Open) => ContactEvent::Opens,
+        (_, Softens) => ContactEvent::Softens,
+        (_, Crushes) => ContactEvent::Crushes,
+        (_, Slides { forward: true }) => ContactEvent::SlipsForward,
+        (_, Slides { forward: false }) => ContactEvent::SlipsBackward,
+        (Open, Sticks) => ContactEvent::Closes,
+        (Crushes | Softens, Sticks) => ContactEvent::Unloads,
+        (_, Sticks) => ContactEvent::Sticks,
     })
 }

@@ -1,6 +1,6 @@
 //! A sparse matrix by its rows, for products with dense vectors.
 
-use crate::lu::Entries;
+use voussoir_core::linear::Entries;
 
 /// Rows of (column, value); repeated entries stay apart and add up in products.
 #[derive(Debug, Clone, Default)]

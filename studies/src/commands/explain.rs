@@ -2,8 +2,7 @@
 
 use super::{FINE, NO_ACCESS, WRONG_INPUT, files, say};
 use std::path::Path;
-use voussoir::core::card::{Card, cards, cards_of, nearest};
-use voussoir::core::schema::{Need, PluginKind, Shape};
+use voussoir::core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, nearest};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {
@@ -72,7 +71,7 @@ fn print_card(card: &Card) {
         };
         say(format!("  {}{unit}  {} ({need})", parameter.name, parameter.doc));
     }
-    let words = |all: &[voussoir::core::card::Capability]| {
+    let words = |all: &[voussoir::core::plugin::Capability]| {
         all.iter().map(|capability| capability.describe()).collect::<Vec<_>>().join(", ")
     };
     if !card.provides.is_empty() {

@@ -5,9 +5,9 @@ use crate::config::document::{Node, Origin, Table, Value, parse_value};
 use crate::config::overlay::join;
 use crate::config::report::{Mistake, any_of, suggest};
 use serde_json::{Map, Value as Json};
-use voussoir_core::card::{Card, candidate, candidates};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape, Variant};
-use voussoir_core::units::{Quantity, STANDARD_GRAVITY};
+use voussoir_core::plugin::{
+    Card, Need, Parameter, PluginKind, Quantity, STANDARD_GRAVITY, Shape, Variant, candidate, candidates,
+};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -342,7 +342,7 @@ impl<'a> Checker<'a> {
             let known = skip.contains(&entry.key.as_str()) || parameters.iter().any(|p| p.name == entry.key);
             if !known {
                 let names: Vec<_> = skip.iter().copied().chain(parameters.iter().map(|p| p.name)).collect();
-                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                let near = voussoir_core::plugin::nearest(&entry.key, names.iter().copied());
                 misspelt.extend(near.filter(|name| table.get(name).is_none()));
                 let elsewhere = others.iter().find(|other| other.parameters.iter().any(|p| p.name == entry.key));
                 let help = match (near, elsewhere) {
@@ -417,11 +417,11 @@ impl<'a> Checker<'a> {
             let path = join(key, &entry.key);
             if others.is_empty() {
                 let mut names: Vec<_> = std::iter::once(tag_key).chain(parameters.iter().map(|p| p.name)).collect();
-                let near = voussoir_core::card::nearest(&entry.key, names.iter().copied());
+                let near = voussoir_core::plugin::nearest(&entry.key, names.iter().copied());
                 misspelt.extend(near);
                 if near.is_none() {
                     let all = registered.iter().flat_map(|card| card.parameters).map(|p| p.name);
-                    if let Some(name) = voussoir_core::card::nearest(&entry.key, all) {
+                    if let Some(name) = voussoir_core::plugin::nearest(&entry.key, all) {
                         names = vec![name];
                     }
                 }

@@ -234,7 +234,7 @@ fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node
     for entry in &table.entries {
         let names = ["list", "from", "to", "step", "count"];
         if !names.contains(&entry.key.as_str()) {
-            let help = match voussoir_core::card::nearest(&entry.key, names) {
+            let help = match voussoir_core::plugin::nearest(&entry.key, names) {
                 Some(_) => suggest(&entry.key, &names, "keys here"),
                 None => FORMS.into(),
             };

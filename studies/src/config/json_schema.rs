@@ -3,9 +3,7 @@
 use crate::config::check::{common_parameters, common_words};
 use crate::config::document::{Origin, parse_value};
 use serde_json::{Map, Value as Json, json};
-use voussoir_core::card::{Card, candidates};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, candidates};
 
 /// The schema of study files.
 pub fn json_schema() -> Json {

@@ -68,7 +68,7 @@ pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
 
 /// Advice for a wrong name: the nearest right one, or the list of all.
 pub fn suggest(wrong: &str, names: &[&str], what: &str) -> String {
-    match voussoir_core::card::nearest(wrong, names.iter().copied()) {
+    match voussoir_core::plugin::nearest(wrong, names.iter().copied()) {
         Some(name) => format!("did you mean \"{name}\"?"),
         None if names.is_empty() => format!("there are no {what}"),
         None => format!("{what}: {}", names.join(", ")),

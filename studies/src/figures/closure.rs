@@ -6,9 +6,9 @@
 
 use super::displaced::Placement;
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::assembly::{Assembly, root};
-use voussoir_core::geometry::{Vec2, turned};
-use voussoir_core::mechanism::Mechanism;
+use voussoir_core::certificate::Mechanism;
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, root};
 
 /// With more unknowns or more equations than this the gaps stay: they are a matter of looks.
 const GREATEST: usize = 150;

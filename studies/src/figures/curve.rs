@@ -5,8 +5,8 @@ use super::format::{case_title, format_force, parameters_text, unit_load};
 use crate::history::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
-use voussoir_core::assembly::{Assembly, Stage};
 use voussoir_core::limit::Status;
+use voussoir_core::model::{Assembly, Stage};
 
 /// More curves are not drawn in one chart.
 const TOGETHER: usize = 7;

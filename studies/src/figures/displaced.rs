@@ -1,8 +1,8 @@
 //! Where blocks come to lie when a mechanism's velocities go on for a while.
 
 use crate::results::MotionEntry;
-use voussoir_core::assembly::Assembly;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::Vec2;
 
 /// A finite rigid motion: rotation by an angle about a centre, then a shift.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,9 +7,9 @@ use super::marks::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
 use super::sheet::Sheet;
 use super::thrust::{resultants, strut_lines, thrust_pieces};
 use crate::results::CaseResult;
-use voussoir_core::assembly::{Assembly, Stage};
-use voussoir_core::geometry::{Vec2, bounding_box, turned};
 use voussoir_core::limit::Status;
+use voussoir_core::model::geometry::{Vec2, bounding_box, turned};
+use voussoir_core::model::{Assembly, Stage};
 
 /// Rings of more voussoirs get two faces instead of outlines.
 const MANY: usize = 300;

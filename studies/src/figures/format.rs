@@ -1,12 +1,11 @@
 //! How numbers, units and results are written in words, for figures, tables and reports alike.
 
 use crate::results::CaseResult;
-use voussoir_core::assembly::Stage;
-use voussoir_core::card::cards;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::certificate::MechanismKind;
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::MechanismKind;
-use voussoir_core::schema::{Parameter, Shape};
+use voussoir_core::model::Stage;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::plugin::{Parameter, Shape, cards};
 
 /// `x` with so many significant digits; powers of ten only below 1e-4 and from 1e7.
 pub fn format_number(x: f64, digits: usize) -> String {

@@ -4,8 +4,8 @@ use super::format::{format_force, format_number};
 use super::lettering::{Area, Spot};
 use super::marks::LOAD;
 use super::sheet::Sheet;
-use voussoir_core::assembly::{Assembly, PointForce, Stage};
-use voussoir_core::geometry::{Vec2, contains};
+use voussoir_core::model::geometry::{Vec2, contains};
+use voussoir_core::model::{Assembly, PointForce, Stage};
 
 /// More forces than this share one label.
 const SINGLE: usize = 3;

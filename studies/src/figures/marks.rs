@@ -2,9 +2,9 @@
 
 use super::lettering::{Area, Spot};
 use super::sheet::Sheet;
-use voussoir_core::assembly::{Assembly, Joint};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::mechanism::Mechanism;
+use voussoir_core::certificate::Mechanism;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Joint};
 
 /// Fill of free blocks.
 pub const STONE: &str = "#e9dfcb";

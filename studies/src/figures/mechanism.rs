@@ -8,9 +8,9 @@ use super::marks::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use super::sheet::Sheet;
 use crate::results::CaseResult;
 use crate::yielded::CRUSHED;
-use voussoir_core::assembly::Assembly;
 use voussoir_core::elastic::Mesh;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::Vec2;
 
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
 pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {

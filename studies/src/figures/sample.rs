@@ -3,12 +3,12 @@
 
 use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
 use std::sync::Arc;
-use voussoir_core::assembly::*;
-use voussoir_core::certificate::Certificate;
+use voussoir_core::certificate::{Certificate, Hinge, Mechanism, MechanismKind, Side, Sliding};
 use voussoir_core::elastic::MeshDensity;
-use voussoir_core::geometry::{Vec2, cross, turned};
+use voussoir_core::law::Plane;
 use voussoir_core::limit::Status;
-use voussoir_core::mechanism::{Hinge, Mechanism, MechanismKind, Side, Sliding};
+use voussoir_core::model::geometry::{Vec2, cross, turned};
+use voussoir_core::model::*;
 use voussoir_laws::coulomb::Coulomb;
 use voussoir_laws::rigid::Rigid;
 

@@ -5,7 +5,7 @@ use super::lettering::{Area, Spot, text_width, wrapped};
 use super::marks::Symbol;
 use svg::Document;
 use svg::node::element::{Circle, Definitions, Line, Path, Pattern, Polygon, Rectangle, Text};
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
 
 /// Size of ordinary text \[px\].
 pub const TEXT: f64 = 13.0;

@@ -6,9 +6,9 @@ use super::sweep::{study_chart, sweep_chart};
 use super::*;
 use crate::results::{CaseResult, StudyResults};
 use crate::writers::{StudyOutput, writers};
-use voussoir_core::assembly::{Assembly, PointForce, Stage};
-use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::Status;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, PointForce, Stage};
 
 struct Scene {
     name: &'static str,

@@ -1,8 +1,8 @@
 //! Thrust lines and struts: joint resultants, and the corners that forces have inside blocks.
 
 use crate::results::FieldEntry;
-use voussoir_core::assembly::Assembly;
-use voussoir_core::geometry::{Vec2, contains, cross};
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::{Vec2, contains, cross};
 
 /// The resultant that a joint passes to its plus body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ pub fn resultants(assembly: &Assembly, field: &[FieldEntry]) -> Vec<Option<Resul
         }
     }
     let strongest = sums.iter().map(|(n, t, _)| n.hypot(*t)).fold(0.0, f64::max);
-    let resultant = |joint: &voussoir_core::assembly::Joint, (normal, shear, moment): (f64, f64, Vec2)| {
+    let resultant = |joint: &voussoir_core::model::Joint, (normal, shear, moment): (f64, f64, Vec2)| {
         if normal.abs() <= 1e-9 * strongest {
             return None;
         }

@@ -6,10 +6,8 @@ use super::{KindEntry, Observer, StudyKind};
 use crate::config::report::suggest;
 use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
 use crate::study::{Outline, Study, VARIANT};
-use voussoir_core::card::{Card, no_further_check};
-use voussoir_core::issue::Issue;
 use voussoir_core::limit::Status;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape, no_further_check};
 
 struct Compare;
 
@@ -50,15 +48,16 @@ voussoir_core::inventory::submit! {
 }
 
 /// Mistakes that every kind that compares looks for: fewer than two voices, names of none.
-pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Issue> {
-    let mut issues = Vec::new();
+pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Diagnostic> {
+    let mut diagnostics = Vec::new();
     if outline.variants.len() < 2 {
         let message =
             format!("\"{kind}\" sets variants beside each other, but the study has {}", outline.variants.len());
-        issues.push(
-            Issue::new("kind", message).help("give at least two [[variants]], each with a law or a solver of its own"),
+        diagnostics.push(
+            Diagnostic::new("kind", message)
+                .help("give at least two [[variants]], each with a law or a solver of its own"),
         );
-        return issues;
+        return diagnostics;
     }
     for key in keys {
         if let Some(name) = outline.table.get(*key).and_then(|value| value.as_str())
@@ -66,10 +65,10 @@ pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<
         {
             let names: Vec<&str> = outline.variants.iter().map(String::as_str).collect();
             let message = format!("there is no variant \"{name}\"");
-            issues.push(Issue::new(format!("{kind}.{key}"), message).help(suggest(name, &names, "variants")));
+            diagnostics.push(Diagnostic::new(format!("{kind}.{key}"), message).help(suggest(name, &names, "variants")));
         }
     }
-    issues
+    diagnostics
 }
 
 /// The variants beside each other; `reference` is the index of the one that others are divided by.
@@ -118,7 +117,7 @@ impl StudyKind for Compare {
         answer_cases(study, wanted, jobs, observer)
     }
 
-    fn check(&self, outline: &Outline) -> Vec<Issue> {
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
         check_voices("compare", outline, &["reference"])
     }
 

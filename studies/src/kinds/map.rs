@@ -7,9 +7,7 @@ use super::{KindEntry, Observer, StudyKind};
 use crate::figures::format::key_with_unit;
 use crate::results::{CaseResult, Comparison, MapAxes};
 use crate::study::{Outline, Study};
-use voussoir_core::card::{Card, no_further_check};
-use voussoir_core::issue::Issue;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape, no_further_check};
 
 struct Map;
 
@@ -64,19 +62,21 @@ impl StudyKind for Map {
         answer_cases(study, wanted, jobs, observer)
     }
 
-    fn check(&self, outline: &Outline) -> Vec<Issue> {
-        let mut issues = check_voices("map", outline, &["reference", "contours", "regions"]);
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
+        let mut diagnostics = check_voices("map", outline, &["reference", "contours", "regions"]);
         if outline.axes.len() != 2 {
             let message = format!("\"map\" needs two axes, but [sweep] has {}", outline.axes.len());
-            issues.push(Issue::new("kind", message).help("the first axis is drawn along x, the second along y"));
+            diagnostics
+                .push(Diagnostic::new("kind", message).help("the first axis is drawn along x, the second along y"));
         }
         for (keys, _) in outline.axes.iter().filter(|(_, numbers)| !numbers) {
             let key = keys.first().map_or("", String::as_str);
             let path = format!("sweep.\"{key}\"");
-            issues
-                .push(Issue::new(path, "takes texts, which are no coordinates").help("sweep a number without a unit"));
+            diagnostics.push(
+                Diagnostic::new(path, "takes texts, which are no coordinates").help("sweep a number without a unit"),
+            );
         }
-        issues
+        diagnostics
     }
 
     fn compare(&self, study: &Study, cases: &[CaseResult]) -> Option<Comparison> {

@@ -7,7 +7,7 @@ pub mod run;
 
 use crate::results::{CaseResult, Comparison};
 use crate::study::{Outline, Study};
-use voussoir_core::issue::Issue;
+use voussoir_core::plugin::Diagnostic;
 
 /// Where the path of a case has come to.
 #[derive(Debug, Clone, Copy)]
@@ -43,7 +43,7 @@ pub trait StudyKind: Sync {
     fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult>;
 
     /// Mistakes in a study's axes and in the table of this kind, beyond those of single keys.
-    fn check(&self, outline: &Outline) -> Vec<Issue> {
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
         let _ = outline;
         Vec::new()
     }

@@ -11,8 +11,7 @@ pub use study::{PointCase, PointStudy, is_point, load, schema};
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
-use voussoir_core::card::{Card, no_further_check};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Card, PluginKind, no_further_check};
 use voussoir_solvers::point::{Control, DrivenPoint, PointLaw};
 
 voussoir_core::inventory::submit! {
@@ -168,7 +167,7 @@ fn record(result: &mut PointResult, point: &DrivenPoint, segment: usize, dissipa
     let invariants = |stress: [f64; 6]| {
         let p = -(stress[0] + stress[1] + stress[2]) / 3.0;
         let deviator: [f64; 6] = std::array::from_fn(|i| if i < 3 { stress[i] + p } else { stress[i] });
-        [p, voussoir_core::material::von_mises(&deviator)]
+        [p, voussoir_core::law::von_mises(&deviator)]
     };
     match point.law() {
         PointLaw::Space(..) => row.extend(invariants(response.stress)),

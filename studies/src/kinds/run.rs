@@ -7,10 +7,9 @@ use crate::study::{Case, Kinematics, Study};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
-use voussoir_core::card::{Card, card, no_further_check};
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::path::{Continuation, PathObserver, PathProblem, PathSettings, PathSolver, PathState, Unobserved};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Card, PluginKind, card, no_further_check};
 
 struct Run;
 
@@ -68,11 +67,11 @@ struct Followed<'a> {
 impl PathObserver for Followed<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
         self.states += 1;
-        let drive = &problem.drives[state.drive];
+        let load_step = &problem.load_steps[state.load_step];
         self.observer.on_path(&OnPath {
             case: self.case.id,
-            stage: &self.case.stages[drive.stage].name,
-            gravity: drive.gravity,
+            stage: &self.case.stages[load_step.stage].name,
+            gravity: load_step.gravity,
             factor: state.factor,
             states: self.states,
         });

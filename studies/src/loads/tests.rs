@@ -3,7 +3,7 @@
 use super::*;
 use crate::scenes::tests::catalogue;
 use serde_json::{Value, json};
-use voussoir_core::scene::Scene;
+use voussoir_core::model::Scene;
 
 fn arch(span: f64, rise: f64, voussoirs: usize, ends: &str, material: &str) -> Assembly {
     let scene = json!({
@@ -13,7 +13,7 @@ fn arch(span: f64, rise: f64, voussoirs: usize, ends: &str, material: &str) -> A
     serde_json::from_value::<Box<dyn Scene>>(scene).unwrap().build(&catalogue()).unwrap()
 }
 
-fn placed(value: Value, assembly: &Assembly) -> Result<Placed, Vec<Issue>> {
+fn placed(value: Value, assembly: &Assembly) -> Result<Placed, Vec<Diagnostic>> {
     place(&serde_json::from_value(value).unwrap(), assembly, "stages.1.loads.0")
 }
 
@@ -32,7 +32,7 @@ fn the_quarter_span_load_of_strathmashie_lies_on_the_chord_of_its_voussoir() {
     let vertices = &arch.bodies[force.body].vertices;
     let (left, right) = (vertices[3], vertices[2]);
     assert!(left.x < force.point.x && force.point.x < right.x);
-    assert!(voussoir_core::geometry::cross(right - left, force.point - left).abs() < 1e-15);
+    assert!(voussoir_core::model::geometry::cross(right - left, force.point - left).abs() < 1e-15);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn pressure_on_all_edges_of_a_block_is_in_equilibrium_and_pushes_inwards() {
     for edge in 0..4 {
         let (forces, _) =
             placed(json!({ "kind": "pressure", "block": 2, "edge": edge, "value": 10.0 }), &arch).unwrap();
-        voussoir_core::assembly::add_force(&mut wrench, forces[0].point, forces[0].force, 1.0);
+        voussoir_core::model::add_force(&mut wrench, forces[0].point, forces[0].force, 1.0);
         if edge == 2 {
             assert!(forces[0].force.y < 0.0);
         }

@@ -5,14 +5,9 @@ use super::mesh::{MESH, Mesh, density, mistakes};
 use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
 use super::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint};
-use voussoir_core::card::{Card, check_as};
-use voussoir_core::contact::find_joints;
-use voussoir_core::geometry::bounding_box;
-use voussoir_core::issue::Issue;
-use voussoir_core::scene::Scene;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::model::geometry::bounding_box;
+use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
 
 /// How the ring meets its supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,35 +52,35 @@ pub struct Arch {
 
 impl Arch {
     /// The ring, or every mistake in the geometry, with paths from the scene's table.
-    pub fn ring(&self) -> Result<Ring, Vec<Issue>> {
-        let mut issues = Vec::new();
-        issues.extend(out_of_range("width", self.width, Range::POSITIVE));
-        issues.extend(mistakes(self.mesh.as_ref()));
+    pub fn ring(&self) -> Result<Ring, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(mistakes(self.mesh.as_ref()));
         if self.voussoirs.is_some_and(|n| n > MAX_VOUSSOIRS) {
-            issues.push(Issue::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));
-            return Err(issues);
+            diagnostics.push(Diagnostic::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));
+            return Err(diagnostics);
         }
         match self.profile.ring(self.thickness, self.voussoirs, self.springing) {
             Ok(ring) => {
-                issues.extend(self.overlap(&ring));
-                if issues.is_empty() { Ok(ring) } else { Err(issues) }
+                diagnostics.extend(self.overlap(&ring));
+                if diagnostics.is_empty() { Ok(ring) } else { Err(diagnostics) }
             }
             Err(mut wrong) => {
-                issues.append(&mut wrong);
-                Err(issues)
+                diagnostics.append(&mut wrong);
+                Err(diagnostics)
             }
         }
     }
 
     /// A ring given by points may run into itself, as nearly a full circle does.
-    fn overlap(&self, ring: &Ring) -> Option<Issue> {
+    fn overlap(&self, ring: &Ring) -> Option<Diagnostic> {
         let bodies: Vec<_> = (0..ring.voussoirs()).map(|k| voussoir(ring, k, 0)).collect();
         let (low, high) = bounding_box(ring.intrados.iter().chain(&ring.extrados));
         let (_, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Bonded, Gap::default()));
         let worst = overlaps.into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
         let [a, b] = worst.bodies;
         let key = if self.springing.is_some() { "springing" } else { "profile" };
-        Some(Issue::new(
+        Some(Diagnostic::new(
             key,
             format!("voussoirs {a} and {b} overlap by {:.3e} m: the ring runs into itself", worst.depth),
         ))
@@ -102,13 +97,13 @@ fn voussoir(ring: &Ring, k: usize, material: usize) -> Body {
 
 #[typetag::serde(name = "arch")]
 impl Scene for Arch {
-    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Issue>> {
-        let mut issues = Vec::new();
-        let material = take(material(catalogue, &self.material, "material"), &mut issues);
-        let law = take(law(catalogue, &self.joint, "joint"), &mut issues);
-        let ring = self.ring().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let material = take(material(catalogue, &self.material, "material"), &mut diagnostics);
+        let law = take(law(catalogue, &self.joint, "joint"), &mut diagnostics);
+        let ring = self.ring().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(material), Some(law), Some(ring)) = (material, law, ring) else {
-            return Err(from_root(issues));
+            return Err(from_root(diagnostics));
         };
         let count = ring.voussoirs();
         let support = |name: &str| Body { name: name.into(), vertices: Vec::new(), material, fixed: true };
@@ -184,7 +179,7 @@ mod tests {
     use crate::scenes::tests::catalogue;
     use serde_json::{Value, json};
 
-    fn arch(extra: Value) -> Result<Assembly, Vec<Issue>> {
+    fn arch(extra: Value) -> Result<Assembly, Vec<Diagnostic>> {
         let mut scene = json!({
             "scene": "arch", "profile": { "shape": "segmental", "span": 9.42, "rise": 2.99 }, "thickness": 0.6,
             "width": 5.81, "voussoirs": 15, "material": "stone", "joint": "dry",
@@ -232,7 +227,7 @@ mod tests {
             "mesh": { "elements": [0, 4], "order": 4, "grading": 0.5 },
             "profile": { "shape": "pointed", "span": 4.0, "rise": 1.0 },
         }));
-        let mut paths: Vec<_> = wrong.unwrap_err().into_iter().map(|issue| issue.path).collect();
+        let mut paths: Vec<_> = wrong.unwrap_err().into_iter().map(|diagnostic| diagnostic.path).collect();
         paths.sort();
         let keys = [
             "joint",

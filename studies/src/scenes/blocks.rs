@@ -6,14 +6,9 @@ use super::{
     JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take, unknown,
 };
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Gap, Joint};
-use voussoir_core::card::{Card, check_as};
-use voussoir_core::contact::{Interpenetration, find_joints};
-use voussoir_core::geometry::{Vec2, area_and_centroid, bounding_box, cross, crosses_itself};
-use voussoir_core::issue::Issue;
-use voussoir_core::scene::Scene;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cross, crosses_itself};
+use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Interpenetration, Joint, Scene, find_joints};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
 
 /// One block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -105,79 +100,82 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
 }
 
 /// Openings are ≥ 0, and a table goes along the joint.
-fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Issue> {
+fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Diagnostic> {
     let table = match gap {
         Gap::Uniform(gap) => return out_of_range(path, *gap, Range::NON_NEGATIVE).into_iter().collect(),
         Gap::Table(table) => table,
     };
-    let mut issues = Vec::new();
+    let mut diagnostics = Vec::new();
     if table.is_empty() {
-        issues.push(Issue::new(path, "the table has no row [s, gap]"));
+        diagnostics.push(Diagnostic::new(path, "the table has no row [s, gap]"));
     }
     for (i, [s, gap]) in table.iter().enumerate() {
-        issues.extend(out_of_range(&format!("{path}.{i}.0"), *s, Range::ANY));
-        issues.extend(out_of_range(&format!("{path}.{i}.1"), *gap, Range::NON_NEGATIVE));
+        diagnostics.extend(out_of_range(&format!("{path}.{i}.0"), *s, Range::ANY));
+        diagnostics.extend(out_of_range(&format!("{path}.{i}.1"), *gap, Range::NON_NEGATIVE));
         if i > 0 && *s <= table[i - 1][0] {
             let message = format!("{s} does not come after {}: s grows along the joint", table[i - 1][0]);
-            issues.push(Issue::new(format!("{path}.{i}.0"), message));
+            diagnostics.push(Diagnostic::new(format!("{path}.{i}.0"), message));
         }
     }
-    issues
+    diagnostics
 }
 
 impl Blocks {
     /// Polygons, and every mistake that needs no catalogue, with paths from the scene's table.
-    fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Issue>) {
-        let mut issues = Vec::new();
-        issues.extend(out_of_range("width", self.width, Range::POSITIVE));
-        issues.extend(mistakes(self.mesh.as_ref()));
+    fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Diagnostic>) {
+        let mut diagnostics = Vec::new();
+        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(mistakes(self.mesh.as_ref()));
         if self.blocks.is_empty() {
-            issues.push(Issue::new("blocks", "there is no block"));
+            diagnostics.push(Diagnostic::new("blocks", "there is no block"));
         } else if self.blocks.iter().all(|block| !block.fixed) {
-            issues.push(Issue::new("blocks", "nothing is fixed").help("give fixed = true to the blocks that are held"));
+            diagnostics.push(
+                Diagnostic::new("blocks", "nothing is fixed").help("give fixed = true to the blocks that are held"),
+            );
         } else if self.blocks.iter().all(|block| block.fixed) {
-            issues.push(Issue::new("blocks", "every block is fixed: nothing can move"));
+            diagnostics.push(Diagnostic::new("blocks", "every block is fixed: nothing can move"));
         }
         for (i, block) in self.blocks.iter().enumerate() {
             let key = format!("blocks.{i}.name");
             if block.name.trim().is_empty() {
-                issues.push(Issue::new(&key, "is empty"));
+                diagnostics.push(Diagnostic::new(&key, "is empty"));
             }
             if let Some(first) = self.blocks[..i].iter().position(|other| other.name == block.name) {
                 let message = format!("\"{}\" is already the name of block {first} of the list", block.name);
-                issues.push(Issue::new(&key, message));
+                diagnostics.push(Diagnostic::new(&key, message));
             }
             if !block.fixed && matches!(block.name.as_str(), "left" | "right") {
                 let message = format!("\"{}\" is the name of a support, but this block is not fixed", block.name);
-                issues.push(Issue::new(&key, message));
+                diagnostics.push(Diagnostic::new(&key, message));
             }
         }
         let shapes = self.blocks.iter().enumerate().map(|(i, block)| {
-            let wrong =
-                |message| Issue::new(format!("blocks.{i}.vertices"), format!("block \"{}\": {message}", block.name));
-            take(polygon(&block.vertices).map_err(wrong), &mut issues)
+            let wrong = |message| {
+                Diagnostic::new(format!("blocks.{i}.vertices"), format!("block \"{}\": {message}", block.name))
+            };
+            take(polygon(&block.vertices).map_err(wrong), &mut diagnostics)
         });
         let shapes = shapes.collect();
-        self.check_pairs(&mut issues);
-        (shapes, issues)
+        self.check_pairs(&mut diagnostics);
+        (shapes, diagnostics)
     }
 
-    fn check_pairs(&self, issues: &mut Vec<Issue>) {
+    fn check_pairs(&self, diagnostics: &mut Vec<Diagnostic>) {
         for (i, pair) in self.pairs.iter().enumerate() {
             for (end, name) in pair.between.iter().enumerate() {
                 if self.position(name).is_none() {
                     let names = self.blocks.iter().map(|block| block.name.as_str());
-                    issues.push(unknown(&format!("pairs.{i}.between.{end}"), "block", name, names));
+                    diagnostics.push(unknown(&format!("pairs.{i}.between.{end}"), "block", name, names));
                 }
             }
-            issues.extend(gap_mistakes(&format!("pairs.{i}.gap"), &pair.gap));
+            diagnostics.extend(gap_mistakes(&format!("pairs.{i}.gap"), &pair.gap));
             let key = format!("pairs.{i}.between");
             if pair.between[0] == pair.between[1] {
-                issues.push(Issue::new(&key, "names one block twice"));
+                diagnostics.push(Diagnostic::new(&key, "names one block twice"));
             }
             let same = |other: &Pair| pair.is_between(&other.between[0], &other.between[1]);
             if let Some(first) = self.pairs[..i].iter().position(same) {
-                issues.push(Issue::new(&key, format!("is already pair {first} of the list")));
+                diagnostics.push(Diagnostic::new(&key, format!("is already pair {first} of the list")));
             }
         }
     }
@@ -193,7 +191,7 @@ impl Blocks {
     }
 
     /// The name of the law between two blocks, and the key that gives it.
-    fn law_name(&self, a: usize, b: usize) -> Result<(&str, String), Issue> {
+    fn law_name(&self, a: usize, b: usize) -> Result<(&str, String), Diagnostic> {
         if let Some((i, pair)) = self.pair(a, b)
             && let Some(name) = &pair.joint
         {
@@ -207,23 +205,25 @@ impl Blocks {
                     one.0, other.0
                 );
                 let help = format!("decide by pairs = [{{ between = [\"{first}\", \"{second}\"], joint = … }}]");
-                Err(Issue::new(other.1, message).help(help))
+                Err(Diagnostic::new(other.1, message).help(help))
             }
             [Some(one), _] | [None, Some(one)] => Ok(one),
             [None, None] => match &self.joint {
                 Some(name) => Ok((name, "joint".into())),
-                None => Err(Issue::new("joint", "is missing: the interface law of joints for which none is named")),
+                None => {
+                    Err(Diagnostic::new("joint", "is missing: the interface law of joints for which none is named"))
+                }
             },
         }
     }
 
     fn validate(&self) -> Vec<(String, String)> {
-        let (shapes, mut issues) = self.shapes();
-        if issues.is_empty() {
+        let (shapes, mut diagnostics) = self.shapes();
+        if diagnostics.is_empty() {
             let bodies = self.bodies(shapes, &vec![0; self.blocks.len()]);
-            issues.extend(self.joints(&bodies, |_, _| Bond::Bonded).err().into_iter().flatten());
+            diagnostics.extend(self.joints(&bodies, |_, _| Bond::Bonded).err().into_iter().flatten());
         }
-        pairs_of(issues)
+        pairs_of(diagnostics)
     }
 
     fn bodies(&self, shapes: Vec<Option<Vec<Vec2>>>, materials: &[usize]) -> Vec<Body> {
@@ -237,11 +237,11 @@ impl Blocks {
     }
 
     /// Joints of sound bodies; overlaps, and pairs that share no joint, are mistakes.
-    fn joints(&self, bodies: &[Body], bond: impl Fn(usize, usize) -> Bond) -> Result<Vec<Joint>, Vec<Issue>> {
+    fn joints(&self, bodies: &[Body], bond: impl Fn(usize, usize) -> Bond) -> Result<Vec<Joint>, Vec<Diagnostic>> {
         let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
         let gap = |a, b| self.pair(a, b).map_or(Gap::default(), |(_, pair)| pair.gap.clone());
         let (joints, overlaps) = find_joints(bodies, (high - low).norm(), |a, b| (bond(a, b), gap(a, b)));
-        let mut issues: Vec<_> = overlaps.iter().map(|overlap| self.overlap(overlap)).collect();
+        let mut diagnostics: Vec<_> = overlaps.iter().map(|overlap| self.overlap(overlap)).collect();
         for (i, pair) in self.pairs.iter().enumerate() {
             let [Some(a), Some(b)] = [0, 1].map(|end| self.position(&pair.between[end])) else {
                 continue;
@@ -250,17 +250,17 @@ impl Blocks {
             if !overlap && !joints.iter().any(|joint| [joint.minus, joint.plus] == [a.min(b), a.max(b)]) {
                 let reason = if bodies[a].fixed && bodies[b].fixed { "are both fixed" } else { "share no joint" };
                 let message = format!("blocks \"{}\" and \"{}\" {reason}", pair.between[0], pair.between[1]);
-                issues.push(Issue::new(format!("pairs.{i}.between"), message));
+                diagnostics.push(Diagnostic::new(format!("pairs.{i}.between"), message));
             }
         }
-        if issues.is_empty() { Ok(joints) } else { Err(issues) }
+        if diagnostics.is_empty() { Ok(joints) } else { Err(diagnostics) }
     }
 
-    fn overlap(&self, overlap: &Interpenetration) -> Issue {
+    fn overlap(&self, overlap: &Interpenetration) -> Diagnostic {
         let [a, b] = overlap.bodies;
         let (first, second) = (&self.blocks[a].name, &self.blocks[b].name);
         let message = format!("blocks \"{first}\" and \"{second}\" overlap, {:.3e} m deep", overlap.depth);
-        Issue::new(format!("blocks.{b}.vertices"), message)
+        Diagnostic::new(format!("blocks.{b}.vertices"), message)
     }
 }
 
@@ -273,11 +273,11 @@ impl Pair {
 
 #[typetag::serde(name = "blocks")]
 impl Scene for Blocks {
-    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Issue>> {
-        let (shapes, mut issues) = self.shapes();
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
+        let (shapes, mut diagnostics) = self.shapes();
         let mut missing = false;
         let material_of = |(i, block): (usize, &Block)| match (&block.material, &self.material) {
-            (Some(name), _) => take(material(catalogue, name, &format!("blocks.{i}.material")), &mut issues),
+            (Some(name), _) => take(material(catalogue, name, &format!("blocks.{i}.material")), &mut diagnostics),
             (None, Some(name)) => catalogue.material(name),
             (None, None) => {
                 missing = true;
@@ -286,23 +286,23 @@ impl Scene for Blocks {
         };
         let materials: Option<Vec<_>> = self.blocks.iter().enumerate().map(material_of).collect();
         if missing {
-            issues.push(Issue::new("material", "is missing: the material of blocks that name none"));
+            diagnostics.push(Diagnostic::new("material", "is missing: the material of blocks that name none"));
         }
         // Names are checked whether or not a joint uses them.
         if let Some(name) = &self.material {
-            issues.extend(material(catalogue, name, "material").err());
+            diagnostics.extend(material(catalogue, name, "material").err());
         }
         if let Some(name) = &self.joint {
-            issues.extend(law(catalogue, name, "joint").err());
+            diagnostics.extend(law(catalogue, name, "joint").err());
         }
         for (i, name) in self.blocks.iter().enumerate().filter_map(|(i, block)| Some((i, block.joint.as_ref()?))) {
-            issues.extend(law(catalogue, name, &format!("blocks.{i}.joint")).err());
+            diagnostics.extend(law(catalogue, name, &format!("blocks.{i}.joint")).err());
         }
         for (i, name) in self.pairs.iter().enumerate().filter_map(|(i, pair)| Some((i, pair.joint.as_ref()?))) {
-            issues.extend(law(catalogue, name, &format!("pairs.{i}.joint")).err());
+            diagnostics.extend(law(catalogue, name, &format!("pairs.{i}.joint")).err());
         }
-        let Some(materials) = materials.filter(|_| issues.is_empty()) else {
-            return Err(from_root(issues));
+        let Some(materials) = materials.filter(|_| diagnostics.is_empty()) else {
+            return Err(from_root(diagnostics));
         };
         let bodies = self.bodies(shapes, &materials);
         let mut joints = self.joints(&bodies, |_, _| Bond::Bonded).map_err(from_root)?;
@@ -310,12 +310,12 @@ impl Scene for Blocks {
             let index = self.law_name(joint.minus, joint.plus).and_then(|(name, key)| law(catalogue, name, &key));
             match index {
                 Ok(index) => joint.bond = Bond::Law(index),
-                Err(issue) if issues.contains(&issue) => {}
-                Err(issue) => issues.push(issue),
+                Err(diagnostic) if diagnostics.contains(&diagnostic) => {}
+                Err(diagnostic) => diagnostics.push(diagnostic),
             }
         }
-        if !issues.is_empty() {
-            return Err(from_root(issues));
+        if !diagnostics.is_empty() {
+            return Err(from_root(diagnostics));
         }
         let (width, plane, mesh) = (self.width, self.plane.into(), density(self.mesh));
         Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None })
@@ -396,7 +396,7 @@ mod tests {
     use crate::scenes::tests::catalogue;
     use serde_json::{Value, json};
 
-    fn build(blocks: Value, extra: Value) -> Result<Assembly, Vec<Issue>> {
+    fn build(blocks: Value, extra: Value) -> Result<Assembly, Vec<Diagnostic>> {
         let mut scene =
             json!({ "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry", "blocks": blocks });
         for (key, value) in extra.as_object().unwrap() {

@@ -6,7 +6,7 @@
 //! by the angle φ of its outward normal (sin φ, cos φ), which is 0 at a smooth crown.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use voussoir_core::geometry::{Vec2, cross};
+use voussoir_core::model::geometry::{Vec2, cross};
 
 /// Right half of an intrados. Lengths in m, angles in radians.
 #[derive(Debug, Clone, PartialEq)]

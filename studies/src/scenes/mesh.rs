@@ -3,9 +3,7 @@
 use super::out_of_range;
 use serde::{Deserialize, Serialize};
 use voussoir_core::elastic::MeshDensity;
-use voussoir_core::issue::Issue;
-use voussoir_core::schema::{Need, Parameter, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape};
 
 /// Mesh of each deformable block.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -66,26 +64,27 @@ pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
 }
 
 /// Mistakes in a scene's mesh, with paths from the scene's table.
-pub(super) fn mistakes(mesh: Option<&Mesh>) -> Vec<Issue> {
+pub(super) fn mistakes(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
     let Some(mesh) = mesh else {
         return Vec::new();
     };
-    let mut issues = Vec::new();
+    let mut diagnostics = Vec::new();
     for (i, &count) in mesh.elements.iter().enumerate().filter(|&(_, n)| !(1..=MAX_ELEMENTS).contains(n)) {
-        issues.push(Issue::new(format!("mesh.elements.{i}"), format!("{count} must be from 1 to {MAX_ELEMENTS}")));
+        diagnostics
+            .push(Diagnostic::new(format!("mesh.elements.{i}"), format!("{count} must be from 1 to {MAX_ELEMENTS}")));
     }
     if !(1..=MAX_ORDER).contains(&mesh.order) {
-        issues.push(Issue::new("mesh.order", format!("{} must be from 1 to {MAX_ORDER}", mesh.order)));
+        diagnostics.push(Diagnostic::new("mesh.order", format!("{} must be from 1 to {MAX_ORDER}", mesh.order)));
     }
     match mesh.grading {
-        Grading::Both(grading) => issues.extend(out_of_range("mesh.grading", grading, GRADING)),
+        Grading::Both(grading) => diagnostics.extend(out_of_range("mesh.grading", grading, GRADING)),
         Grading::Each(each) => {
             for (i, grading) in each.into_iter().enumerate() {
-                issues.extend(out_of_range(&format!("mesh.grading.{i}"), grading, GRADING));
+                diagnostics.extend(out_of_range(&format!("mesh.grading.{i}"), grading, GRADING));
             }
         }
     }
-    issues
+    diagnostics
 }
 
 const KEYS: &[Parameter] = &[

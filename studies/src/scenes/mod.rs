@@ -1,11 +1,9 @@
 //! Scenes: geometry that becomes an assembly of blocks, one file each; file = tag.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{Catalogue, Plane};
-use voussoir_core::card::nearest;
-use voussoir_core::issue::Issue;
-use voussoir_core::schema::{Need, Parameter, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::Plane;
+use voussoir_core::model::Catalogue;
+use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, nearest};
 
 pub mod arch;
 pub mod blocks;
@@ -62,58 +60,60 @@ pub(crate) const POINT: Shape = Shape::List { of: &LENGTH, min: 2, max: 2 };
 const LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
 
 /// Index of a material, or a mistake at `path`.
-fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Issue> {
+fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
     catalogue
         .material(name)
         .ok_or_else(|| unknown(path, "material", name, catalogue.materials.iter().map(|(name, _)| name.as_str())))
 }
 
 /// Index of an interface law, or a mistake at `path`.
-fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Issue> {
+fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
     catalogue
         .law(name)
         .ok_or_else(|| unknown(path, "joint law", name, catalogue.laws.iter().map(|(name, _)| name.as_str())))
 }
 
 /// "There is no such thing", with the nearest right name.
-pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Issue {
-    let issue = Issue::new(path, format!("there is no {kind} called \"{name}\""));
+pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(path, format!("there is no {kind} called \"{name}\""));
     match nearest(name, names) {
-        Some(near) => issue.help(format!("did you mean \"{near}\"?")),
-        None => issue,
+        Some(near) => diagnostic.help(format!("did you mean \"{near}\"?")),
+        None => diagnostic,
     }
 }
 
-/// An issue at a number that breaks a range; `None` where it does not.
-fn out_of_range(path: &str, value: f64, range: Range) -> Option<Issue> {
-    (!range.contains(value)).then(|| Issue::new(path, format!("{value} must be {}", range.describe())))
+/// A diagnostic at a number that breaks a range; `None` where it does not.
+fn out_of_range(path: &str, value: f64, range: Range) -> Option<Diagnostic> {
+    (!range.contains(value)).then(|| Diagnostic::new(path, format!("{value} must be {}", range.describe())))
 }
 
 /// The value, or its mistake added to the list.
-fn take<T>(result: Result<T, Issue>, issues: &mut Vec<Issue>) -> Option<T> {
-    result.map_err(|issue| issues.push(issue)).ok()
+fn take<T>(result: Result<T, Diagnostic>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {
+    result.map_err(|diagnostic| diagnostics.push(diagnostic)).ok()
 }
 
 /// Issues with paths from the scene's table, as a card's check gives them.
-fn pairs_of(issues: Vec<Issue>) -> Vec<(String, String)> {
-    let words = |issue: Issue| match issue.help {
-        Some(help) => (issue.path, format!("{}; {help}", issue.message)),
-        None => (issue.path, issue.message),
+fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
+    let words = |diagnostic: Diagnostic| match diagnostic.help {
+        Some(help) => (diagnostic.path, format!("{}; {help}", diagnostic.message)),
+        None => (diagnostic.path, diagnostic.message),
     };
-    issues.into_iter().map(words).collect()
+    diagnostics.into_iter().map(words).collect()
 }
 
 /// Issues with paths from the scene's table, now from the study's root.
-fn from_root(issues: Vec<Issue>) -> Vec<Issue> {
-    issues.into_iter().map(|issue| Issue { path: format!("scene.{}", issue.path), ..issue }).collect()
+fn from_root(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    diagnostics
+        .into_iter()
+        .map(|diagnostic| Diagnostic { path: format!("scene.{}", diagnostic.path), ..diagnostic })
+        .collect()
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use std::sync::Arc;
-    use voussoir_core::assembly::Catalogue;
-    use voussoir_core::interface::InterfaceLaw;
-    use voussoir_core::material::BulkMaterial;
+    use voussoir_core::law::{BulkMaterial, InterfaceLaw};
+    use voussoir_core::model::Catalogue;
 
     /// A catalogue with `stone` (rigid) and `elastic` (elastic), and the laws `dry` and `wet`.
     pub(crate) fn catalogue() -> Catalogue {

@@ -9,10 +9,8 @@
 use super::curve::Curve;
 use super::out_of_range;
 use serde::{Deserialize, Serialize};
-use voussoir_core::geometry::{Vec2, area_and_centroid, bounding_box, crosses_itself};
-use voussoir_core::issue::Issue;
-use voussoir_core::schema::{Need, Parameter, Range, Shape, Variant};
-use voussoir_core::units::Quantity;
+use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, crosses_itself};
+use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};
 
 /// `profile = { shape = …, … }`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -188,31 +186,31 @@ impl Profile {
         thickness: Option<f64>,
         voussoirs: Option<usize>,
         springing: Option<Springing>,
-    ) -> Result<Ring, Vec<Issue>> {
+    ) -> Result<Ring, Vec<Diagnostic>> {
         if let Profile::Points { intrados, extrados } = self {
             return ring_of_points(intrados, extrados, thickness, voussoirs, springing);
         }
-        let mut issues = Vec::new();
+        let mut diagnostics = Vec::new();
         match thickness {
-            None => issues.push(Issue::new("thickness", "is missing: the thickness of the ring [m]")),
-            Some(thickness) => issues.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
+            None => diagnostics.push(Diagnostic::new("thickness", "is missing: the thickness of the ring [m]")),
+            Some(thickness) => diagnostics.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
         }
         match voussoirs {
-            None => issues.push(Issue::new("voussoirs", "is missing: the number of voussoirs")),
-            Some(0) => issues.push(Issue::new("voussoirs", "there must be at least one")),
+            None => diagnostics.push(Diagnostic::new("voussoirs", "is missing: the number of voussoirs")),
+            Some(0) => diagnostics.push(Diagnostic::new("voussoirs", "there must be at least one")),
             Some(_) => {}
         }
         if let Some(springing) = springing {
             let sides = springing.sides();
             let sides = if sides[0] == sides[1] { &sides[..1] } else { &sides[..] };
-            issues.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
+            diagnostics.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
         }
-        let curve = self.curve().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+        let curve = self.curve().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(curve), Some(thickness), Some(voussoirs)) = (curve, thickness, voussoirs) else {
-            return Err(issues);
+            return Err(diagnostics);
         };
-        if !issues.is_empty() {
-            return Err(issues);
+        if !diagnostics.is_empty() {
+            return Err(diagnostics);
         }
         let mut ring = ring_on(&curve, thickness, voussoirs);
         if let Some(springing) = springing {
@@ -223,7 +221,7 @@ impl Profile {
     }
 
     /// The intrados, unless it cannot exist.
-    fn curve(&self) -> Result<Curve, Vec<Issue>> {
+    fn curve(&self) -> Result<Curve, Vec<Diagnostic>> {
         let (span, rise) = match *self {
             Profile::Segmental { span, rise }
             | Profile::Elliptical { span, rise }
@@ -233,15 +231,15 @@ impl Profile {
             | Profile::ThreeCentred { span, rise, .. } => (span, rise),
             Profile::Points { .. } => unreachable!("a list of points is no curve"),
         };
-        let mut issues = Vec::new();
-        issues.extend(out_of_range("profile.span", span, Range::POSITIVE));
-        issues.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
-        if issues.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
+        let mut diagnostics = Vec::new();
+        diagnostics.extend(out_of_range("profile.span", span, Range::POSITIVE));
+        diagnostics.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
+        if diagnostics.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
             let message = format!("{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span");
-            issues.push(Issue::new("profile.rise", message));
+            diagnostics.push(Diagnostic::new("profile.rise", message));
         }
-        if !issues.is_empty() {
-            return Err(issues);
+        if !diagnostics.is_empty() {
+            return Err(diagnostics);
         }
         match *self {
             Profile::Segmental { .. } => Ok(Curve::segmental(span, rise)),
@@ -249,7 +247,7 @@ impl Profile {
             Profile::Parabolic { .. } => Ok(Curve::parabolic(span, rise)),
             Profile::Catenary { .. } => Ok(Curve::catenary(span, rise)),
             Profile::Pointed { .. } if rise < span / 2.0 => Err(vec![
-                Issue::new(
+                Diagnostic::new(
                     "profile.rise",
                     format!("{rise} m is too low for a pointed arch: at least half the span, {} m", span / 2.0),
                 )
@@ -264,11 +262,11 @@ impl Profile {
 
 /// With rise < span/2 the side radius lies between 0 and the crown radius exactly where the crown
 /// radius exceeds that of the segmental arc; with more rise the crown arc would turn beyond the upright.
-fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Issue> {
+fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Diagnostic> {
     if rise >= span / 2.0 {
         let message =
             format!("{rise} m is too high for a three-centred arch: less than half the span, {} m", span / 2.0);
-        return Err(Issue::new("profile.rise", message));
+        return Err(Diagnostic::new("profile.rise", message));
     }
     let least = (span * span / 4.0 + rise * rise) / (2.0 * rise);
     let curve = Curve::three_centred(span, rise, crown);
@@ -276,7 +274,7 @@ fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Issue> {
         Curve::ThreeCentred { side, .. } if crown > least && side > 0.0 && side < crown && crown.is_finite() => {
             Ok(curve)
         }
-        _ => Err(Issue::new(
+        _ => Err(Diagnostic::new(
             "profile.crown_radius",
             format!("{crown} m must be more than {least} m, the radius of the segmental arc of this span and rise"),
         )),
@@ -302,42 +300,47 @@ fn mirrored(p: Vec2) -> Vec2 {
 }
 
 /// Moves the end vertices of the extrados along the offset curve onto the support planes.
-fn move_springings(ring: &mut Ring, curve: &Curve, thickness: f64, springing: Springing) -> Result<(), Vec<Issue>> {
+fn move_springings(
+    ring: &mut Ring,
+    curve: &Curve,
+    thickness: f64,
+    springing: Springing,
+) -> Result<(), Vec<Diagnostic>> {
     let last = ring.voussoirs();
-    let mut issues = Vec::new();
+    let mut diagnostics = Vec::new();
     for (side, (degrees, key)) in springing.sides().into_iter().enumerate() {
         match curve.offset_on_plane(thickness, degrees.to_radians()) {
             Some(point) if side == 0 => ring.extrados[0] = mirrored(point),
             Some(point) => ring.extrados[last] = point,
-            None if issues.is_empty() || key != "springing" => issues.push(Issue::new(
+            None if diagnostics.is_empty() || key != "springing" => diagnostics.push(Diagnostic::new(
                 key,
                 format!("a plane at {degrees} deg through the springing does not meet the extrados on its side of the crown, outside of the opening"),
             )),
             None => {}
         }
     }
-    if issues.is_empty() { Ok(()) } else { Err(issues) }
+    if diagnostics.is_empty() { Ok(()) } else { Err(diagnostics) }
 }
 
 /// Every voussoir must have an area and not cross itself.
-fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<Issue>> {
+fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<Diagnostic>> {
     let last = ring.voussoirs() - 1;
     let sound = |k: usize| is_sound(&ring.voussoir(k));
-    let mut issues = Vec::new();
+    let mut diagnostics = Vec::new();
     for k in (0..=last).filter(|&k| !sound(k)) {
-        issues.push(match springing {
+        diagnostics.push(match springing {
             Some(springing) if k == 0 || k == last => {
                 let (degrees, key) = springing.sides()[usize::from(k == last)];
                 let message =
                     format!("a springing at {degrees} deg cuts voussoir {k} away: it has no area or crosses itself");
-                Issue::new(key, message)
+                Diagnostic::new(key, message)
             }
-            _ => Issue::new("voussoirs", format!("voussoir {k} has no area or crosses itself"))
+            _ => Diagnostic::new("voussoirs", format!("voussoir {k} has no area or crosses itself"))
                 .help("use more voussoirs"),
         });
     }
-    issues.dedup_by(|a, b| a.path == b.path);
-    if issues.is_empty() { Ok(()) } else { Err(issues) }
+    diagnostics.dedup_by(|a, b| a.path == b.path);
+    if diagnostics.is_empty() { Ok(()) } else { Err(diagnostics) }
 }
 
 /// Whether an anticlockwise polygon has an area beyond rounding and does not cross itself.
@@ -352,34 +355,36 @@ fn ring_of_points(
     thickness: Option<f64>,
     voussoirs: Option<usize>,
     springing: Option<Springing>,
-) -> Result<Ring, Vec<Issue>> {
-    let mut issues = Vec::new();
+) -> Result<Ring, Vec<Diagnostic>> {
+    let mut diagnostics = Vec::new();
     if thickness.is_some() {
-        issues.push(Issue::new("thickness", "the points of the profile already fix it").help("remove this key"));
+        diagnostics
+            .push(Diagnostic::new("thickness", "the points of the profile already fix it").help("remove this key"));
     }
     if springing.is_some() {
-        issues.push(Issue::new("springing", "the points of the profile already fix it").help("remove this key"));
+        diagnostics
+            .push(Diagnostic::new("springing", "the points of the profile already fix it").help("remove this key"));
     }
     if intrados.len() != extrados.len() {
         let message = format!("{} points, but the intrados has {}", extrados.len(), intrados.len());
-        issues.push(Issue::new("profile.extrados", message).help("give both ends of every joint"));
+        diagnostics.push(Diagnostic::new("profile.extrados", message).help("give both ends of every joint"));
     }
     if intrados.len() < 2 {
-        issues.push(Issue::new("profile.intrados", "at least two points: the springings"));
+        diagnostics.push(Diagnostic::new("profile.intrados", "at least two points: the springings"));
     }
     if let Some(voussoirs) = voussoirs
         && voussoirs + 1 != intrados.len()
     {
         let message = format!("{voussoirs}, but {} points make {}", intrados.len(), intrados.len().saturating_sub(1));
-        issues.push(Issue::new("voussoirs", message).help("remove this key"));
+        diagnostics.push(Diagnostic::new("voussoirs", message).help("remove this key"));
     }
     for (key, points) in [("intrados", intrados), ("extrados", extrados)] {
         for (i, point) in points.iter().enumerate().filter(|(_, p)| !p.iter().all(|x| x.is_finite())) {
-            issues.push(Issue::new(format!("profile.{key}.{i}"), format!("{point:?} is not finite")));
+            diagnostics.push(Diagnostic::new(format!("profile.{key}.{i}"), format!("{point:?} is not finite")));
         }
     }
-    if !issues.is_empty() {
-        return Err(issues);
+    if !diagnostics.is_empty() {
+        return Err(diagnostics);
     }
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&[x, y]| Vec2::new(x, y)).collect::<Vec<_>>();
     let (intrados, extrados) = (vectors(intrados), vectors(extrados));
@@ -387,14 +392,15 @@ fn ring_of_points(
     let crown = intrados.iter().fold(f64::NEG_INFINITY, |top, p| top.max(p.y));
     let ring = Ring { span: last.x - first.x, rise: crown - (first.y + last.y) / 2.0, intrados, extrados };
     if ring.span <= 0.0 {
-        issues.push(Issue::new("profile.intrados", "the last point must lie to the right of the first"));
+        diagnostics.push(Diagnostic::new("profile.intrados", "the last point must lie to the right of the first"));
     }
     for k in (0..ring.voussoirs()).filter(|&k| !is_sound(&ring.voussoir(k))) {
         let message =
             format!("voussoir {k}, between points {k} and {}, has no area, crosses itself or is turned over", k + 1);
-        issues.push(Issue::new(format!("profile.intrados.{k}"), message).help("list both from left to right"));
+        diagnostics
+            .push(Diagnostic::new(format!("profile.intrados.{k}"), message).help("list both from left to right"));
     }
-    if issues.is_empty() { Ok(ring) } else { Err(issues) }
+    if diagnostics.is_empty() { Ok(ring) } else { Err(diagnostics) }
 }
 
 #[cfg(test)]

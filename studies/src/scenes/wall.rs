@@ -4,14 +4,9 @@
 use super::mesh::{MESH, Mesh, density, mistakes};
 use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::{Assembly, Body, Bond, Catalogue, Gap};
-use voussoir_core::card::{Card, check_as};
-use voussoir_core::contact::find_joints;
-use voussoir_core::geometry::{Vec2, bounding_box};
-use voussoir_core::issue::Issue;
-use voussoir_core::scene::Scene;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::model::geometry::{Vec2, bounding_box};
+use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Scene, find_joints};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
 
 /// How courses are staggered.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,32 +67,32 @@ type Course = Vec<[f64; 2]>;
 
 impl Wall {
     /// Widths in brick lengths, from the bottom; each mistake with a path from the scene's table.
-    fn widths(&self, issues: &mut Vec<Issue>) -> Vec<Vec<f64>> {
+    fn widths(&self, diagnostics: &mut Vec<Diagnostic>) -> Vec<Vec<f64>> {
         if let Some(rows) = &self.rows {
             for (key, given) in [("courses", self.courses), ("bricks", self.bricks)] {
                 if given.is_some() {
-                    issues.push(Issue::new(key, "given besides rows; give one of the two"));
+                    diagnostics.push(Diagnostic::new(key, "given besides rows; give one of the two"));
                 }
             }
             if rows.is_empty() {
-                issues.push(Issue::new("rows", "there is no row"));
+                diagnostics.push(Diagnostic::new("rows", "there is no row"));
             }
             for (i, row) in rows.iter().enumerate() {
                 if !row.iter().any(|&width| width > 0.0) {
-                    issues.push(Issue::new(format!("rows.{i}"), "there is no brick in this row"));
+                    diagnostics.push(Diagnostic::new(format!("rows.{i}"), "there is no brick in this row"));
                 }
                 for (j, width) in row.iter().enumerate().filter(|(_, w)| !w.is_finite() || w.abs() <= SNAP) {
                     let message = format!("{width} is no width: > 0 a brick, < 0 an opening");
-                    issues.push(Issue::new(format!("rows.{i}.{j}"), message));
+                    diagnostics.push(Diagnostic::new(format!("rows.{i}.{j}"), message));
                 }
             }
             return rows.clone();
         }
         for (key, given) in [("courses", self.courses), ("bricks", self.bricks)] {
             match given {
-                None => issues.push(Issue::new(key, "is missing; give courses and bricks, or rows")),
+                None => diagnostics.push(Diagnostic::new(key, "is missing; give courses and bricks, or rows")),
                 Some(count) if !(1..=MAX_BRICKS).contains(&count) => {
-                    issues.push(Issue::new(key, format!("{count} must be from 1 to {MAX_BRICKS}")));
+                    diagnostics.push(Diagnostic::new(key, format!("{count} must be from 1 to {MAX_BRICKS}")));
                 }
                 Some(_) => {}
             }
@@ -105,7 +100,7 @@ impl Wall {
         let (Some(courses), Some(bricks)) = (self.courses, self.bricks) else {
             return Vec::new();
         };
-        if !issues.is_empty() {
+        if !diagnostics.is_empty() {
             return Vec::new();
         }
         let odd: Vec<_> = std::iter::once(0.5).chain(vec![1.0; bricks - 1]).chain([0.5]).collect();
@@ -113,48 +108,48 @@ impl Wall {
     }
 
     /// Sides of the bricks, course by course from the bottom.
-    fn courses(&self) -> Result<Vec<Course>, Vec<Issue>> {
-        let mut issues = Vec::new();
-        issues.extend(out_of_range("width", self.width, Range::POSITIVE));
-        issues.extend(mistakes(self.mesh.as_ref()));
+    fn courses(&self) -> Result<Vec<Course>, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(mistakes(self.mesh.as_ref()));
         for (i, &side) in self.brick.iter().enumerate() {
-            issues.extend(out_of_range(&format!("brick.{i}"), side, Range::POSITIVE));
+            diagnostics.extend(out_of_range(&format!("brick.{i}"), side, Range::POSITIVE));
         }
-        let widths = self.widths(&mut issues);
-        if !issues.is_empty() {
-            return Err(issues);
+        let widths = self.widths(&mut diagnostics);
+        if !diagnostics.is_empty() {
+            return Err(diagnostics);
         }
         let mut courses: Vec<_> = widths.iter().map(|row| course(row, self.brick[0])).collect();
         for (i, opening) in self.openings.iter().enumerate() {
             if let Err(mut wrong) = self.cut(&mut courses, opening, &format!("openings.{i}")) {
-                issues.append(&mut wrong);
+                diagnostics.append(&mut wrong);
             }
         }
-        if issues.is_empty() && courses.iter().all(|course| course.is_empty()) {
-            issues.push(Issue::new("openings", "no brick is left"));
+        if diagnostics.is_empty() && courses.iter().all(|course| course.is_empty()) {
+            diagnostics.push(Diagnostic::new("openings", "no brick is left"));
         }
-        if issues.is_empty() { Ok(courses) } else { Err(issues) }
+        if diagnostics.is_empty() { Ok(courses) } else { Err(diagnostics) }
     }
 
-    fn cut(&self, courses: &mut [Course], opening: &Opening, path: &str) -> Result<(), Vec<Issue>> {
+    fn cut(&self, courses: &mut [Course], opening: &Opening, path: &str) -> Result<(), Vec<Diagnostic>> {
         let ([left, bottom], [right, top]) = (opening.from, opening.to);
         if !(opening.from.iter().chain(&opening.to).all(|x| x.is_finite()) && left < right && bottom < top) {
-            return Err(vec![Issue::new(path, "from must be the lower left corner, to the upper right one")]);
+            return Err(vec![Diagnostic::new(path, "from must be the lower left corner, to the upper right one")]);
         }
         let height = self.brick[1];
-        let mut issues = Vec::new();
+        let mut diagnostics = Vec::new();
         let mut bed = |key: &str, y: f64| {
             let number = (y / height).round();
             if (y / height - number).abs() > SNAP {
                 let message = format!("y = {y} m lies between bed joints, which are {height} m apart");
                 let near = format!("the nearest is y = {}", number * height);
-                issues.push(Issue::new(format!("{path}.{key}.1"), message).help(near));
+                diagnostics.push(Diagnostic::new(format!("{path}.{key}.1"), message).help(near));
             }
             number.clamp(0.0, courses.len() as f64) as usize
         };
         let (first, last) = (bed("from", bottom), bed("to", top));
-        if !issues.is_empty() {
-            return Err(issues);
+        if !diagnostics.is_empty() {
+            return Err(diagnostics);
         }
         let snap = SNAP * self.brick[0];
         let mut any = false;
@@ -174,7 +169,7 @@ impl Wall {
                 }
             }
         }
-        if any { Ok(()) } else { Err(vec![Issue::new(path, "the opening cuts no brick")]) }
+        if any { Ok(()) } else { Err(vec![Diagnostic::new(path, "the opening cuts no brick")]) }
     }
 
     fn validate(&self) -> Vec<(String, String)> {
@@ -203,13 +198,13 @@ fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<Vec2> {
 
 #[typetag::serde(name = "wall")]
 impl Scene for Wall {
-    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Issue>> {
-        let mut issues = Vec::new();
-        let material = take(material(catalogue, &self.material, "material"), &mut issues);
-        let law = take(law(catalogue, &self.joint, "joint"), &mut issues);
-        let courses = self.courses().map_err(|mut wrong| issues.append(&mut wrong)).ok();
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let material = take(material(catalogue, &self.material, "material"), &mut diagnostics);
+        let law = take(law(catalogue, &self.joint, "joint"), &mut diagnostics);
+        let courses = self.courses().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(material), Some(law), Some(courses)) = (material, law, courses) else {
-            return Err(from_root(issues));
+            return Err(from_root(diagnostics));
         };
         let [length, height] = self.brick;
         let end = courses.iter().flatten().fold(0.0, |end: f64, brick| end.max(brick[1]));
@@ -299,7 +294,7 @@ mod tests {
     use crate::scenes::tests::catalogue;
     use serde_json::{Value, json};
 
-    fn wall(extra: Value) -> Result<Assembly, Vec<Issue>> {
+    fn wall(extra: Value) -> Result<Assembly, Vec<Diagnostic>> {
         let mut scene =
             json!({ "scene": "wall", "width": 1.0, "material": "stone", "joint": "dry", "brick": [0.4, 0.175] });
         for (key, value) in extra.as_object().unwrap() {

@@ -11,14 +11,10 @@ use crate::config::report::{Mistake, suggest};
 use crate::loads::{Load, place};
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
-use voussoir_core::assembly::{Assembly, Catalogue, Joint, Settlement, Stage, Target};
-use voussoir_core::card::{card, cards_of};
-use voussoir_core::geometry::Vec2;
-use voussoir_core::interface::InterfaceLaw;
-use voussoir_core::issue::Issue;
-use voussoir_core::material::BulkMaterial;
-use voussoir_core::scene::Scene;
-use voussoir_core::schema::PluginKind;
+use voussoir_core::law::{BulkMaterial, InterfaceLaw};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Catalogue, Joint, Scene, Settlement, Stage, Target};
+use voussoir_core::plugin::{Diagnostic, PluginKind, card, cards_of};
 
 /// The mistakes of one case, gathered while it is built.
 pub(super) struct Builder<'a> {
@@ -31,10 +27,10 @@ impl Builder<'_> {
         self.mistakes.push(Mistake::new(&self.root.place(key), key, message).help(help));
     }
 
-    fn issues(&mut self, issues: Vec<Issue>) {
-        for issue in issues {
-            let mut mistake = Mistake::new(&self.root.place(&issue.path), issue.path, issue.message);
-            mistake.help = issue.help;
+    fn diagnostics(&mut self, diagnostics: Vec<Diagnostic>) {
+        for diagnostic in diagnostics {
+            let mut mistake = Mistake::new(&self.root.place(&diagnostic.path), diagnostic.path, diagnostic.message);
+            mistake.help = diagnostic.help;
             self.mistakes.push(mistake);
         }
     }
@@ -63,7 +59,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Mist
     // A key that is written wrongly is not missing as well.
     let mut misspelt = Vec::new();
     for entry in table.entries.iter().filter(|entry| !names.contains(&entry.key.as_str())) {
-        misspelt.extend(voussoir_core::card::nearest(&entry.key, names.iter().copied()));
+        misspelt.extend(voussoir_core::plugin::nearest(&entry.key, names.iter().copied()));
         let help = suggest(&entry.key, &names, "keys here");
         checker.mistakes.push(Mistake::new(&entry.origin, &entry.key, "is not a key of a study").help(help));
     }
@@ -144,7 +140,7 @@ fn assembly(builder: &mut Builder<'_>, resolved: &Map<String, Json>, catalogue: 
             return None;
         }
     };
-    scene.build(catalogue).map_err(|issues| builder.issues(issues)).ok()
+    scene.build(catalogue).map_err(|diagnostics| builder.diagnostics(diagnostics)).ok()
 }
 
 fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Assembly>) -> Option<Vec<Stage>> {
@@ -211,7 +207,7 @@ fn build_stages(builder: &mut Builder<'_>, stages: &Json, assembly: Option<&Asse
                     forces.extend(placed);
                     accelerations.extend(accelerated);
                 }
-                Err(issues) => builder.issues(issues),
+                Err(diagnostics) => builder.diagnostics(diagnostics),
             }
         }
         if collapse

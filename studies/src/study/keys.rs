@@ -1,8 +1,7 @@
 //! The keys of a study file.
 
 use crate::loads::LOAD;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
     Parameter { name, doc, shape, need }

@@ -4,9 +4,8 @@ use super::case::Builder;
 use super::{Kinematics, SolverChoice};
 use crate::config::overlay::join;
 use serde_json::{Map, Value as Json};
-use voussoir_core::assembly::{Assembly, Bond};
-use voussoir_core::card::{Capability, Card, candidate, candidates, card, cards_of};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::{Assembly, Bond};
+use voussoir_core::plugin::{Capability, Card, PluginKind, candidate, candidates, card, cards_of};
 
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
     candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()

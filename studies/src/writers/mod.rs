@@ -15,7 +15,7 @@ pub mod vtu;
 
 use crate::results::StudyResults;
 use crate::study::Kinematics;
-use voussoir_core::assembly::{Assembly, Stage};
+use voussoir_core::model::{Assembly, Stage};
 
 /// What writers are given: the results and what they were computed from.
 #[derive(Debug, Clone, Copy)]
@@ -70,8 +70,8 @@ pub fn writers() -> Vec<&'static WriterEntry> {
 macro_rules! register {
     ($tag:literal, $writer:expr, $summary:literal, $page:literal) => {
         voussoir_core::inventory::submit! {
-            voussoir_core::card::Card {
-                kind: voussoir_core::schema::PluginKind::Writer,
+            voussoir_core::plugin::Card {
+                kind: voussoir_core::plugin::PluginKind::Writer,
                 tag: $tag,
                 summary: $summary,
                 parameters: &[],
@@ -80,7 +80,7 @@ macro_rules! register {
                 sources: &[],
                 file: file!(),
                 page: $page,
-                check: voussoir_core::card::no_further_check,
+                check: voussoir_core::plugin::no_further_check,
             }
         }
         voussoir_core::inventory::submit! {

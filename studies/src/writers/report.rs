@@ -12,8 +12,8 @@ use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::history::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
-use voussoir_core::assembly::Assembly;
 use voussoir_core::limit::Status;
+use voussoir_core::model::Assembly;
 
 /// More cases than this are not drawn.
 const DRAWN: usize = 40;

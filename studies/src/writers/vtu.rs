@@ -82,7 +82,7 @@ pub fn vtu_text(blocks: &[DeformedBlock], factor: f64) -> String {
          format=\"ascii\">{factor:e}</DataArray>\n    </FieldData>\n    <Piece NumberOfPoints=\"{points}\" \
          NumberOfCells=\"{cells}\">\n      <Points>\n"
     );
-    let three = |v: &voussoir_core::geometry::Vec2| format!("{:e} {:e} 0", v.x, v.y);
+    let three = |v: &voussoir_core::model::geometry::Vec2| format!("{:e} {:e} 0", v.x, v.y);
     array(&mut text, "Points", "Float64", 3, blocks.iter().flat_map(|b| b.nodes.iter().map(three)));
     text.push_str("      </Points>\n      <Cells>\n");
     let words = |list: &mut dyn Iterator<Item = usize>| list.map(|i| i.to_string()).collect::<Vec<_>>().join(" ");

@@ -4,11 +4,9 @@
 use super::super::element::{Hooke, stiffness_of_strains};
 use super::super::shape::{SPRINGS, at_places, placed};
 use super::{InelasticBody, InelasticState, IsotropicElastic};
-use crate::geometry::Vec2;
-use crate::lu::SparseLu;
-use crate::material::Region;
-use crate::material::plane::PlanarPoint;
-use crate::sparse::Entries;
+use crate::law::{PlanarPoint, Region};
+use crate::linear::{Entries, SparseLu};
+use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 

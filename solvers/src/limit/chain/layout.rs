@@ -1,8 +1,8 @@
 //! Chains of bodies and the joint forces as affine forms of their redundants.
 
 use nalgebra::Vector3;
-use voussoir_core::assembly::Wrenches;
 use voussoir_core::limit::LimitProblem;
+use voussoir_core::model::Wrenches;
 
 /// A row of bodies, each touching the next.
 #[derive(Debug, Clone)]

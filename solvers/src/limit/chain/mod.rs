@@ -17,10 +17,9 @@ use layout::{Chain, Forms, chains};
 use optimum::centre;
 use serde::{Deserialize, Serialize};
 use simplex::{Outcome, Program, Solved};
-use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::Wrenches;
+use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
 /// Limit analysis of chains.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

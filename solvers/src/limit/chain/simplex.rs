@@ -4,8 +4,8 @@
 use super::layout::{Chain, Forms};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use std::cmp::Ordering;
+use voussoir_core::law::StressBlock;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
-use voussoir_core::strength::StressBlock;
 
 /// Violation of a linear row that counts, in units of the force scale.
 const ROW_TOLERANCE: f64 = 1e-13;

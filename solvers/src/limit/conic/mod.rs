@@ -9,10 +9,9 @@ use interior_point::{Pair, Word, solve};
 use polish::{balanced, polish};
 use serde::{Deserialize, Serialize};
 use system::{Loads, System};
-use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::Wrenches;
+use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;

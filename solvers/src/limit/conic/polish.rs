@@ -6,7 +6,7 @@
 
 use super::interior_point::Pair;
 use super::system::{Row, System};
-use voussoir_core::sparse::{Entries, Factorised};
+use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Regularisation; the second is tried where the first leaves no pivot.
 const DELTAS: [f64; 2] = [1e-8, 1e-6];
@@ -58,7 +58,7 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
 /// does not settle. Its slacks are its own, its motion is the solver's; the certificate decides.
 pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
     let (n, delta) = (system.variables, DELTAS[0]);
-    let factorised = Factorised::new(n + system.equations.len(), n, &saddle(system, &[], delta))?;
+    let factorised = SparseLdlt::new(n + system.equations.len(), n, &saddle(system, &[], delta))?;
     let mut pair = approximate.clone();
     for _ in 0..4 {
         let mut right = vec![0.0; n];
@@ -157,7 +157,7 @@ impl Newton<'_> {
         let system = self.system;
         let (n, e) = (system.variables, system.equations.len());
         let curved = self.active.iter().any(|item| matches!(item, Item::Block(_)));
-        let mut factorised: Option<Factorised> = None;
+        let mut factorised: Option<SparseLdlt> = None;
         let (mut factorisations, mut iterations) = (0, 0);
         let mut best = (f64::INFINITY, self.pair.clone());
         let mut without_gain = 0;
@@ -177,7 +177,7 @@ impl Newton<'_> {
                 break;
             }
             if factorised.is_none() || (curved && iterations < 12) {
-                factorised = Some(Factorised::new(residual.len(), n, &self.matrix(&gradients))?);
+                factorised = Some(SparseLdlt::new(residual.len(), n, &self.matrix(&gradients))?);
                 factorisations += 1;
             }
             let step = factorised.as_ref()?.solve(&residual)?;
@@ -239,7 +239,7 @@ fn has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64, delta: 
     let support: Vec<Item> = active.iter().copied().filter(|item| multiplier(pair, *item) > 1e-10 * scale).collect();
     let rows = gradients(system, &support, &pair.x);
     let (n, m) = (system.variables, system.equations.len() + rows.len());
-    let factorised = Factorised::new(n + m, n, &saddle(system, &rows, delta))?;
+    let factorised = SparseLdlt::new(n + m, n, &saddle(system, &rows, delta))?;
     // A fixed, irregular start: no symmetry of the scene is orthogonal to it.
     let mut v: Vec<f64> = (0..m).map(|i| 1.0 + 0.37 * ((i as f64 * 0.754_877_666 + 0.1).fract() - 0.5)).collect();
     let mut least = f64::INFINITY;

@@ -1,8 +1,8 @@
 //! The program of one optimisation in scaled, sparse form.
 
-use voussoir_core::assembly::Wrenches;
+use voussoir_core::law::{StressBlock, Tangential};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
-use voussoir_core::strength::{StressBlock, Tangential};
+use voussoir_core::model::Wrenches;
 
 /// A sparse row of coefficients.
 pub type Row = Vec<(usize, f64)>;

@@ -15,12 +15,9 @@ use descent::{Descent, State};
 use dictionary::Feasibility;
 use products::Bound;
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
-use voussoir_core::product_proof::{LowerProof, LowerProofKind};
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, Status};
+use voussoir_core::model::Wrenches;
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, no_further_check};
 
 /// Work of the search where it is not given.
 const SEARCH_LIMIT: f64 = 4.0;
@@ -215,13 +212,13 @@ impl LimitSolver for LimitLeast {
         let mut answer = associated(problem, question);
         let mut own = associated_bound(&answer);
         let LimitQuestion::Collapse { start, max } = question else {
-            answer.own_flow = Some(own);
+            answer.non_associated = Some(own);
             return answer;
         };
         if settled_by_association(problem, question, &answer) {
             own.proved_lower = own.associated_factor;
             own.lower_proof = own.proved_lower.map(|_| LowerProof::by(LowerProofKind::Associated));
-            answer.own_flow = Some(own);
+            answer.non_associated = Some(own);
             return answer;
         }
         let base: Wrenches = combined(&problem.fixed, &problem.varying, start);
@@ -408,7 +405,7 @@ impl Lower {
 /// The answer with the best state and the proved bound.
 fn finish(
     mut answer: LimitAnswer,
-    mut own: voussoir_core::limit::OwnFlow,
+    mut own: voussoir_core::limit::NonAssociated,
     best: Option<(f64, FlowState)>,
     lower: f64,
     (start, max, unit): (f64, f64, f64),
@@ -430,7 +427,7 @@ fn finish(
             answer.motion = Some(state.motion);
             answer.unique = None;
             answer.ray = None;
-            answer.own_flow = Some(own);
+            answer.non_associated = Some(own);
         }
         _ if answer.status == Status::Collapse => {
             // Nothing but the associated answer: an upper bound, and flagged as such.
@@ -443,7 +440,7 @@ fn finish(
             answer.notes.push(format!(
                 "no limit state with the laws' own flow was found; none lies below {proved:.9} (proved)"
             ));
-            answer.own_flow = Some(own);
+            answer.non_associated = Some(own);
         }
     }
     answer

@@ -14,9 +14,8 @@ use crate::limit::systems::Systems;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SupportedConeT};
 use std::collections::{BTreeMap, HashMap};
-use voussoir_core::limit::LimitProblem;
-use voussoir_core::product_proof::{FIRST, LAST, ProductStep};
-use voussoir_core::sparse::{Entries, Factorised};
+use voussoir_core::limit::{FIRST, LAST, LimitProblem, ProductStep};
+use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Linear form: (index, coefficient).
 type Form = Vec<(usize, f64)>;
@@ -402,7 +401,7 @@ impl Program {
                 entries.push((k, first + j, sign * v * size));
             }
         }
-        let factorised = Factorised::new(first + n, first, &entries)?;
+        let factorised = SparseLdlt::new(first + n, first, &entries)?;
         for _ in 0..8 {
             let r = self.residual(&z);
             let worst = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));

@@ -6,12 +6,11 @@ use super::systems::{LARGEST, Systems};
 use super::{Greatest, associated, combined, conic};
 use crate::limit::Engine;
 use serde::{Deserialize, Serialize};
-use voussoir_core::assembly::Wrenches;
-use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::limit::{
-    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, OwnFlow, Status, Velocity,
+    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, NonAssociated, Status, Velocity,
 };
-use voussoir_core::schema::PluginKind;
+use voussoir_core::model::Wrenches;
+use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
@@ -301,9 +300,9 @@ pub fn settled_by_association(problem: &LimitProblem, question: LimitQuestion, a
 }
 
 /// What an associated answer says of flow by the laws themselves.
-pub fn associated_bound(answer: &LimitAnswer) -> OwnFlow {
+pub fn associated_bound(answer: &LimitAnswer) -> NonAssociated {
     let collapse = answer.status == Status::Collapse;
-    OwnFlow {
+    NonAssociated {
         proved_lower: None,
         lower_proof: None,
         associated_factor: answer.factor.filter(|_| collapse),
@@ -316,7 +315,7 @@ impl LimitSolver for LimitSequential {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
         let mut answer = associated(problem, question);
         let own = associated_bound(&answer);
-        answer.own_flow = Some(own);
+        answer.non_associated = Some(own);
         if settled_by_association(problem, question, &answer) {
             return answer;
         }

@@ -3,10 +3,8 @@
 
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Card, no_further_check};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::schema::{Parameter, PluginKind, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range, no_further_check};
 
 /// c = √(motion² + ψ² Δλ²).
 #[derive(Debug, Clone, Serialize, Deserialize)]

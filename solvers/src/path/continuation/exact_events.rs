@@ -2,9 +2,8 @@
 #![doc = include_str!("exact_events.md")]
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Card, no_further_check};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Card, PluginKind, no_further_check};
 
 /// The path is piecewise linear: the solver knows how far each piece goes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -3,9 +3,8 @@
 
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Card, no_further_check};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Card, PluginKind, no_further_check};
 
 /// c = |Δλ|.
 #[derive(Debug, Clone, Serialize, Deserialize)]

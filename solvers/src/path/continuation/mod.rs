@@ -10,14 +10,13 @@ pub mod dissipation;
 pub mod exact_events;
 pub mod load_control;
 
-use voussoir_core::schema::{Parameter, Range};
-use voussoir_core::units::Quantity;
+use voussoir_core::plugin::{Parameter, Quantity, Range};
 
 const FIRST_STEP: Parameter = Parameter::number(
     "first_step",
     Quantity::Ratio,
     Range::POSITIVE,
-    "first step of a drive, as a share of the load's own size taken up elastically",
+    "first step of a load step, as a share of the load's own size taken up elastically",
 )
 .default("0.1");
 

@@ -11,10 +11,10 @@
 
 use super::rate::Piece;
 use super::system::{Load, System};
-use crate::lu::Entries;
 use crate::path::condensed::Condensed;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
+use voussoir_core::linear::Entries;
 
 /// Added to the flexibility of stuck points, relative to its mean, and taken out again by
 /// refinement: forces that equilibrium and flexibility leave open are shared evenly.
@@ -38,7 +38,7 @@ pub struct Base {
     pub careful: bool,
     equations: Condensed,
     columns: BTreeMap<usize, [Column; 2]>,
-    drive: Option<(usize, Vec<f64>)>,
+    load_rate: Option<(usize, Vec<f64>)>,
 }
 
 /// d⊥, unit.
@@ -92,21 +92,21 @@ impl Base {
             entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
         let equations = Condensed::new(system.size(), nc, &entries, &sharing)?;
-        Some(Base { pieces, careful, equations, columns: BTreeMap::new(), drive: None })
+        Some(Base { pieces, careful, equations, columns: BTreeMap::new(), load_rate: None })
     }
 
     /// x for λ̇ = 1 with every piece as factorised.
-    pub fn drive(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
-        if self.drive.as_ref().is_none_or(|(i, _)| *i != index) {
+    pub fn load_rate(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
+        if self.load_rate.as_ref().is_none_or(|(i, _)| *i != index) {
             let right = self.right(system, load);
-            self.drive = Some((index, self.equations.solve(&right, REFINEMENTS)?));
+            self.load_rate = Some((index, self.equations.solve(&right, REFINEMENTS)?));
         }
-        self.drive.as_ref().map(|(_, x)| x)
+        self.load_rate.as_ref().map(|(_, x)| x)
     }
 
     /// Another load comes.
-    pub fn forget_drive(&mut self) {
-        self.drive = None;
+    pub fn forget_load_rate(&mut self) {
+        self.load_rate = None;
     }
 
     fn right(&self, system: &System, load: &Load) -> Vec<f64> {
@@ -169,7 +169,7 @@ impl Base {
     }
 
     /// (ṙ, ġ) at `points`, 4 rows each, per ε of `points` (2 columns each) and, last, per λ̇.
-    /// Responses and drive must be known.
+    /// Responses and load rate must be known.
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
@@ -191,7 +191,7 @@ impl Base {
                 }
             }
         }
-        if let Some((_, x)) = &self.drive {
+        if let Some((_, x)) = &self.load_rate {
             for (row, &c) in points.iter().enumerate() {
                 let here = at(x, c);
                 (0..2).for_each(|t| out[(4 * row + t, 2 * n)] = here[t]);

@@ -155,12 +155,12 @@ impl Tracer<'_> {
             let base = self.base.as_mut()?;
             let base_careful = base.careful;
             let solves = &mut self.counts.solves;
-            let local = Local::new((&self.system, &self.points), base, (self.drive, load), &open, &pieces, solves)?;
+            let local = Local::new((&self.system, &self.points), base, (self.load_step, load), &open, &pieces, solves)?;
             let guess: Vec<Piece> = open.iter().map(|c| pieces[*c]).collect();
             let rate = local.rate.corrected(guess.clone(), &mut self.counts.trials);
             let rate = rate.or_else(|| local.rate.at_constant_load(&guess))?;
             open.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
-            let x = local.combine(base, (self.drive, load), &rate)?;
+            let x = local.combine(base, (self.load_step, load), &rate)?;
             let mut rates = self.refined(&local, Rates::new(&self.system, x, rate.factor, load), load, &pieces);
             self.counts.solves += rates.refinements;
             if rates.factor == 0.0 {
@@ -221,7 +221,7 @@ impl Tracer<'_> {
         let base = self.base.as_mut()?;
         let pieces: Vec<Piece> = self.points.iter().map(|p| p.settled().unwrap_or(p.piece)).collect();
         let solves = &mut self.counts.solves;
-        let mut local = Local::new((&self.system, &self.points), base, (self.drive, load), verge, &pieces, solves)?;
+        let mut local = Local::new((&self.system, &self.points), base, (self.load_step, load), verge, &pieces, solves)?;
         local.rate.from_nothing = self.x.iter().all(|v| *v == 0.0);
         let verdict = local.rate.solve(!self.associated, &mut self.counts.trials);
         let (rate, falling) = match verdict {
@@ -249,7 +249,7 @@ impl Tracer<'_> {
                 )));
             }
         };
-        let x = local.combine(base, (self.drive, load), &rate)?;
+        let x = local.combine(base, (self.load_step, load), &rate)?;
         let mut pieces = pieces;
         verge.iter().zip(&rate.pieces).for_each(|(c, piece)| pieces[*c] = *piece);
         let rates = self.refined(&local, Rates::new(&self.system, x, rate.factor, load), load, &pieces);
@@ -311,7 +311,7 @@ impl Tracer<'_> {
         }
         self.counts.factorisations += 1;
         let Some(mut base) = Base::new(&self.system, pieces.to_vec(), self.careful) else { return rates };
-        let Some(direct) = base.drive(&self.system, self.drive, load) else { return rates };
+        let Some(direct) = base.load_rate(&self.system, self.load_step, load) else { return rates };
         let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
         // Where the matrix is singular the sense of its solution is rounding.
         let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
@@ -407,7 +407,7 @@ impl Tracer<'_> {
         for round in 0..80 {
             self.counts.factorisations += 1;
             let mut base = Base::new(&self.system, pieces.clone(), self.careful)?;
-            let x = base.drive(&self.system, self.drive, load)?.clone();
+            let x = base.load_rate(&self.system, self.load_step, load)?.clone();
             let rates = Rates::new(&self.system, x, 1.0, load);
             let mut changes = self.leaving(&rates, verge, &pieces)?;
             if changes.is_empty() {

@@ -4,13 +4,13 @@
 //! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron);
 //! the work of gravity on the elastic displacements vanishes, since their mean does.
 
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Contact, Loading, PathProblem, PathState};
 
 /// Displacements of all points that loads act on, and the energy stored, at one state.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
-    /// Σ F·u of each drive's loading per unit of its factor.
+    /// Σ F·u of each load step's loading per unit of its factor.
     pub conjugate: Vec<f64>,
     /// Σ of contact forces on settled supports times the settlement, per unit of the factor.
     pub reaction: Vec<f64>,
@@ -73,8 +73,8 @@ pub fn snapshot(problem: &PathProblem, state: &PathState) -> Snapshot {
         sum
     };
     Snapshot {
-        conjugate: problem.drives.iter().map(|d| conjugate(&d.loading)).collect(),
-        reaction: problem.drives.iter().map(|d| reaction(&d.loading)).collect(),
+        conjugate: problem.load_steps.iter().map(|d| conjugate(&d.loading)).collect(),
+        reaction: problem.load_steps.iter().map(|d| reaction(&d.loading)).collect(),
         stored,
     }
 }

@@ -20,7 +20,7 @@ use crate::path::newton::law::Polygon;
 use crate::path::shuffle::Shuffle;
 use crate::path::walk::{Met, Standing, Walk};
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// ε, relative to the points' own stiffness.
 const SHIFT: f64 = 1e-9;
@@ -111,8 +111,8 @@ impl RateProblem<'_> {
         let laws: Vec<Law> = self.points.iter().map(Law::new).collect();
         let unit: Vec<f64> = (0..n).map(|i| self.points[i / 2].stiffness.sqrt()).collect();
         let s = DMatrix::from_fn(n, n, |i, j| self.s[(i, j)] / (unit[i] * unit[j]) - if i == j { SHIFT } else { 0.0 });
-        let drive = DVector::from_fn(n, |i, _| self.drive[i] * factor / unit[i]);
-        let size = drive.amax().max(1e-300);
+        let load_rate = DVector::from_fn(n, |i, _| self.load_rate[i] * factor / unit[i]);
+        let size = load_rate.amax().max(1e-300);
         let mut random = Shuffle::new(0x51_7CC1 + 7919 * number);
         let (mut force, mut gap) = (DVector::zeros(n), DVector::zeros(n));
         let mut cells = Vec::with_capacity(laws.len());
@@ -130,7 +130,7 @@ impl RateProblem<'_> {
                 gap[2 * k + i] = place.2[i] * size;
             });
         }
-        let error = &force - &s * &gap - &drive;
+        let error = &force - &s * &gap - &load_rate;
         let rows_of = |k: usize, cell: usize| -> [DVector<f64>; 2] {
             let e = |i: usize| DVector::from_fn(n, |j, _| f64::from(u8::from(j == 2 * k + i)));
             match laws[k].cells.cells[cell].0 {

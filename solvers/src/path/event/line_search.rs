@@ -38,7 +38,7 @@ impl RateProblem<'_> {
         let laws: Vec<Law> = self.points.iter().map(Law::new).collect();
         // F in the unit of each point, and the pieces there.
         let natural = |gaps: &DVector<f64>| -> (f64, Vec<Piece>) {
-            let forces = &self.s * gaps + &self.drive;
+            let forces = &self.s * gaps + &self.load_rate;
             let (mut sum, mut pieces) = (0.0, Vec::with_capacity(laws.len()));
             for (k, law) in laws.iter().enumerate() {
                 let stiffness = self.points[k].stiffness;
@@ -54,7 +54,8 @@ impl RateProblem<'_> {
         for (k, point) in self.points.iter().enumerate() {
             (0..2).for_each(|i| s[(2 * k + i, 2 * k + i)] -= SHIFT * point.stiffness);
         }
-        let softer = RateProblem { points: self.points.clone(), s, drive: self.drive.clone(), from_nothing: false };
+        let softer =
+            RateProblem { points: self.points.clone(), s, load_rate: self.load_rate.clone(), from_nothing: false };
         let mut gaps = match softer.attempt(guess, 1.0) {
             Some(attempt) if !attempt.singular => attempt.gaps,
             _ => DVector::zeros(2 * self.points.len()),

@@ -36,7 +36,7 @@ impl<'a> Local<'a> {
     pub fn new(
         (system, all): (&'a System, &[Point]),
         base: &mut Base,
-        (drive, load): (usize, &Load),
+        (load_step, load): (usize, &Load),
         open: &[usize],
         pieces: &[Piece],
         solves: &mut u64,
@@ -46,7 +46,7 @@ impl<'a> Local<'a> {
         points.extend(changed.filter(|c| !open.contains(c)));
         let (n, m) = (points.len(), open.len());
         base.respond(system, &points, solves)?;
-        base.drive(system, drive, load)?;
+        base.load_rate(system, load_step, load)?;
         let response = base.local(system, &points, load);
         // Rows that fix ε: ġ of the open points, the piece of the others.
         let piece = |(k, c): (usize, &usize)| rows(system, *c, if k < m { Piece::Stick } else { pieces[*c] });
@@ -64,14 +64,14 @@ impl<'a> Local<'a> {
         let rate = RateProblem {
             points: Tracer::verges(system, all, open),
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
-            drive: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
+            load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
         };
         Some(Local { rate, system, points, open: m, response, epsilon })
     }
 
     /// All unknowns of a solution. `None` where the response to the load is not known.
-    pub fn combine(&self, base: &mut Base, (drive, load): (usize, &Load), rate: &Rate) -> Option<Vec<f64>> {
+    pub fn combine(&self, base: &mut Base, (load_step, load): (usize, &Load), rate: &Rate) -> Option<Vec<f64>> {
         let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
         gaps.push(rate.factor);
         let epsilon = &self.epsilon * DVector::from_vec(gaps);
@@ -80,8 +80,8 @@ impl<'a> Local<'a> {
         } else {
             base.combine(&self.points, epsilon.as_slice(), base.nothing())
         };
-        let drive = base.drive(self.system, drive, load)?;
-        x.iter_mut().zip(drive).for_each(|(x, d)| *x += rate.factor * d);
+        let load_rate = base.load_rate(self.system, load_step, load)?;
+        x.iter_mut().zip(load_rate).for_each(|(x, d)| *x += rate.factor * d);
         Some(x)
     }
 

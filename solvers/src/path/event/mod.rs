@@ -22,9 +22,8 @@ mod trace;
 mod unique;
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
 /// The exact path of piecewise linear problems.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -14,7 +14,7 @@ use super::rate::{Piece, Rate, RateProblem, Verdict};
 use super::system::PointFacet;
 use crate::path::complementarity::{Complementarity, Known};
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
 
 /// Relative tolerance of what pivoting finds.
 const PIVOTING: f64 = 1e-7;
@@ -72,7 +72,7 @@ impl RateProblem<'_> {
         let m = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
         let q = DVector::from_fn(n, |i, _| {
             let (k, a) = (facets[i].0, self.facet(facets[i]).normal);
-            -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) / unit[i]
+            -(a[0] * self.load_rate[2 * k] + a[1] * self.load_rate[2 * k + 1]) / unit[i]
         });
         Some(Pairs { facets, unit, m, q })
     }
@@ -279,7 +279,7 @@ mod tests {
             let problem = RateProblem {
                 points: (0..count).map(point).collect(),
                 s: &root * root.transpose() + DMatrix::identity(2 * count, 2 * count) * 0.01,
-                drive: DVector::from_fn(2 * count, |_, _| shuffle.next()),
+                load_rate: DVector::from_fn(2 * count, |_, _| shuffle.next()),
                 from_nothing: false,
             };
             let all = problem.enumerated(&mut 0);

@@ -2,7 +2,7 @@
 
 use super::rate::{Piece, Verge, corner, dilatancy};
 use super::system::{PointFacet, System};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
 
 /// What is kept of a contact point between events.
 #[derive(Debug, Clone)]

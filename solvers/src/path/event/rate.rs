@@ -18,7 +18,7 @@
 use super::pairs::Pivoted;
 use super::system::{PointFacet, dot};
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
 
 /// What a contact point does in a rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -221,7 +221,7 @@ const EXAMINATIONS: u64 = 1;
 /// Guesses from which a piecewise linear path is followed.
 const STARTS: u64 = 8;
 
-/// The rate problem: ṙ = `s` ġ + `drive` λ̇ over the points.
+/// The rate problem: ṙ = `s` ġ + `load_rate` λ̇ over the points.
 #[derive(Debug)]
 pub struct RateProblem<'a> {
     /// Points at the verge of a change.
@@ -229,7 +229,7 @@ pub struct RateProblem<'a> {
     /// S.
     pub s: DMatrix<f64>,
     /// s.
-    pub drive: DVector<f64>,
+    pub load_rate: DVector<f64>,
     /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
     /// associated does not prove that the load cannot be carried.
     pub from_nothing: bool,
@@ -289,7 +289,7 @@ impl RateProblem<'_> {
             let matrix = self.matrix(&flows, &rows);
             let right = DVector::from_fn(n, |i, _| {
                 let (k, a) = &rows[i];
-                -(a[0] * self.drive[2 * k] + a[1] * self.drive[2 * k + 1]) * factor
+                -(a[0] * self.load_rate[2 * k] + a[1] * self.load_rate[2 * k + 1]) * factor
             });
             if n > LARGE {
                 let lu = matrix.lu();
@@ -327,7 +327,7 @@ impl RateProblem<'_> {
             gaps[2 * k] += f[0] * c;
             gaps[2 * k + 1] += f[1] * c;
         }
-        let forces = &self.s * &gaps + &self.drive * if singular { 0.0 } else { factor };
+        let forces = &self.s * &gaps + &self.load_rate * if singular { 0.0 } else { factor };
         let unknowns = scaled.iter().zip(flows).map(|(v, (k, _))| v / self.points[*k].stiffness.sqrt()).collect();
         Some(Attempt { unknowns, gaps, forces, singular })
     }
@@ -340,7 +340,7 @@ impl RateProblem<'_> {
             // A mechanism moves without forces: their size is that of what stiffness could do.
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
-            1e-4 * self.drive.amax()
+            1e-4 * self.load_rate.amax()
         });
         let sizes = [force_size.max(1e-300), gap_size];
         let mut at = 0;
@@ -368,13 +368,13 @@ impl RateProblem<'_> {
     /// load causes at points that do not move (exact where all else sticks or flows associated). At
     /// a constant load a path goes on in the sense in which the load does work, not back.
     fn power(&self, gaps: &[[f64; 2]]) -> f64 {
-        -gaps.iter().flatten().zip(&self.drive).map(|(gap, force)| gap * force).sum::<f64>()
+        -gaps.iter().flatten().zip(&self.load_rate).map(|(gap, force)| gap * force).sum::<f64>()
     }
 
     /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
     fn leads_on(&self, rate: &Rate) -> bool {
         let gaps = rate.gaps.iter().flatten();
-        let size = gaps.zip(&self.drive).map(|(gap, force)| (gap * force).abs()).sum::<f64>();
+        let size = gaps.zip(&self.load_rate).map(|(gap, force)| (gap * force).abs()).sum::<f64>();
         rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
     }
 
@@ -481,7 +481,8 @@ impl RateProblem<'_> {
             let facets: Vec<Vec<PointFacet>> =
                 self.points.iter().map(|p| p.facets.iter().map(turned).collect()).collect();
             let points = self.points.iter().zip(&facets).map(|(p, facets)| Verge { facets, ..p.clone() }).collect();
-            let problem = RateProblem { points, s: self.s.clone(), drive: self.drive.clone(), from_nothing: false };
+            let problem =
+                RateProblem { points, s: self.s.clone(), load_rate: self.load_rate.clone(), from_nothing: false };
             match problem.corrected(pieces.clone(), counters) {
                 Some(rate) if own == 1.0 => return Some(rate),
                 Some(rate) => pieces = rate.pieces,

@@ -5,8 +5,8 @@ use super::point::{Point, opening};
 use super::rate::Piece;
 use super::system::dot;
 use super::trace::Tracer;
-use voussoir_core::interface::FacetMode;
-use voussoir_core::path::{Happening, PathEvent};
+use voussoir_core::law::FacetMode;
+use voussoir_core::path::{ContactEvent, PathEvent};
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
 const SAME: f64 = 1e-12;
@@ -123,16 +123,16 @@ impl Tracer<'_> {
         };
         let mut happened = Vec::new();
         if !was_open && point.open() {
-            happened.push(Happening::Opens);
+            happened.push(ContactEvent::Opens);
         }
         // What began to flow in this step began at its start.
         if let Piece::Facet(f) = point.piece
             && was_hit
         {
             happened.extend(match facets[f].mode {
-                FacetMode::Sliding if facets[f].flow[1] > 0.0 => Some(Happening::SlipsBackward),
-                FacetMode::Sliding => Some(Happening::SlipsForward),
-                FacetMode::Crushing => Some(Happening::Crushes),
+                FacetMode::Sliding if facets[f].flow[1] > 0.0 => Some(ContactEvent::SlipsBackward),
+                FacetMode::Sliding => Some(ContactEvent::SlipsForward),
+                FacetMode::Crushing => Some(ContactEvent::Crushes),
                 FacetMode::Opening => None,
             });
         }
@@ -145,12 +145,12 @@ impl Tracer<'_> {
                 dot(facet.normal, rate) > -1e-11 * size || facet.slack(force) <= SAME
             });
             if had > 0 && point.active.is_empty() && !was_hit && point.noted {
-                happened.push(Happening::Sticks);
+                happened.push(ContactEvent::Sticks);
             }
         }
         point.noted |= !happened.is_empty();
-        let (drive, factor, contact) = (self.drive, before, c);
-        self.events.extend(happened.into_iter().map(|what| PathEvent { drive, factor, contact, what }));
+        let (load_step, factor, contact) = (self.load_step, before, c);
+        self.events.extend(happened.into_iter().map(|what| PathEvent { load_step, factor, contact, what }));
     }
 
     /// Contact points that arrive at a facet, or (`usize::MAX`) close.
@@ -167,10 +167,10 @@ impl Tracer<'_> {
                 point.piece = Piece::Stick;
                 point.noted = true;
                 self.events.push(PathEvent {
-                    drive: self.drive,
+                    load_step: self.load_step,
                     factor: self.factor,
                     contact: c,
-                    what: Happening::Closes,
+                    what: ContactEvent::Closes,
                 });
             } else {
                 if !point.active.contains(&f) {

@@ -4,7 +4,7 @@
 //! Unknowns x = (r, q): (r_n, r_t) of every contact point, then (u_x, u_y, θ L) of every free body.
 
 use crate::path::rows::Rows;
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::{ContactLaw, Loading, PathProblem};
 
 /// A facet at a contact point: slack s = bound − a·r, flow ġ = −γ d.
@@ -82,7 +82,7 @@ impl System {
             };
             wrenches.iter().zip(&problem.bodies).map(own).sum()
         };
-        let loads: Vec<f64> = problem.drives.iter().map(|drive| magnitude(&drive.loading)).collect();
+        let loads: Vec<f64> = problem.load_steps.iter().map(|load_step| magnitude(&load_step.loading)).collect();
         let largest = loads.iter().copied().fold(0.0, f64::max);
         let force_unit = loads.iter().copied().find(|m| *m > 0.0).unwrap_or(if largest > 0.0 { largest } else { 1.0 });
         let mut free = Vec::with_capacity(problem.bodies.len());

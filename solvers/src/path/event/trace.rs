@@ -1,4 +1,4 @@
-//! Following the path: from drive to drive and from event to event, and how it ended.
+//! Following the path: from load step to load step and from event to event, and how it ended.
 
 use super::base::Base;
 use super::direction::{Direction, Next};
@@ -7,9 +7,11 @@ use super::point::Point;
 use super::redundants::{Followed, Sections};
 use super::system::{Load, System};
 use super::unique::unique;
+use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::certificate::flow_residual;
-use voussoir_core::path::{Drive, DriveEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{
+    LoadStep, LoadStepEnd, PathAnswer, PathEvent, PathObserver, PathProblem, PathSettings, PathState,
+};
 
 /// Rate problems put to the whole system, at most, before the force method is tried again.
 const MOST_RESTS: u32 = 32;
@@ -28,7 +30,7 @@ pub struct Tracer<'a> {
     pub(super) careful: bool,
     /// All unknowns at the present state.
     pub(super) x: Vec<f64>,
-    pub(super) drive: usize,
+    pub(super) load_step: usize,
     pub(super) factor: f64,
     pub(super) work: f64,
     pub(super) dissipated: f64,
@@ -38,7 +40,7 @@ pub struct Tracer<'a> {
     pub(super) notes: Vec<String>,
     limit_point: Option<PathState>,
     pub(super) associated: bool,
-    /// Gaps that each drive's loading opens per unit of its factor \[m\], where it opens any.
+    /// Gaps that each load step's loading opens per unit of its factor \[m\], where it opens any.
     loading_gaps: Vec<Option<Vec<[f64; 2]>>>,
 }
 
@@ -61,19 +63,19 @@ impl<'a> Tracer<'a> {
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
         let system = System::new(problem);
         let points = (0..system.contacts).map(|c| Point::untouched(&system, c)).collect();
-        let opened = |drive: &Drive| {
-            let gaps = problem.loading_gaps(&drive.loading);
+        let opened = |load_step: &LoadStep| {
+            let gaps = problem.loading_gaps(&load_step.loading);
             gaps.iter().flatten().any(|g| *g != 0.0).then_some(gaps)
         };
-        let associated = problem.facets.iter().all(|f| voussoir_core::interface::is_associated(f));
+        let associated = problem.facets.iter().all(|f| voussoir_core::law::is_associated(f));
         Tracer {
             x: vec![0.0; system.size()],
-            loading_gaps: problem.drives.iter().map(opened).collect(),
+            loading_gaps: problem.load_steps.iter().map(opened).collect(),
             points,
             base: None,
             sections: Sections::new(&system, problem),
             careful: false,
-            drive: 0,
+            load_step: 0,
             factor: 0.0,
             work: 0.0,
             dissipated: 0.0,
@@ -94,29 +96,29 @@ impl<'a> Tracer<'a> {
         [self.x[2 * c], self.x[2 * c + 1]]
     }
 
-    /// Follows all drives.
+    /// Follows all load steps.
     pub fn run(mut self) -> PathAnswer {
         let greatest_events = 400 + 40 * self.system.contacts;
-        for drive in 0..self.problem.drives.len() {
-            self.drive = drive;
-            let end = self.problem.drives[drive].end;
-            self.factor = self.problem.drives[drive].start;
+        for load_step in 0..self.problem.load_steps.len() {
+            self.load_step = load_step;
+            let end = self.problem.load_steps[load_step].end;
+            self.factor = self.problem.load_steps[load_step].start;
             let sense = match end {
-                DriveEnd::Factor(f) if f < self.factor => -1.0,
+                LoadStepEnd::Factor(f) if f < self.factor => -1.0,
                 _ => 1.0,
             };
-            let mut load = self.system.load(self.problem, &self.problem.drives[drive].loading);
+            let mut load = self.system.load(self.problem, &self.problem.load_steps[load_step].loading);
             load.wrench.iter_mut().flatten().for_each(|v| *v *= sense);
             load.gap.iter_mut().flatten().for_each(|v| *v *= sense);
             if let Some(base) = &mut self.base {
-                base.forget_drive();
+                base.forget_load_rate();
             }
             self.careful = false;
             if self.last.is_none() && !self.record() {
                 return self.finish(Status::Stalled, None, None, Some("stopped by its observer".into()));
             }
             let target = match end {
-                DriveEnd::Factor(f) | DriveEnd::Collapse(f) => f,
+                LoadStepEnd::Factor(f) | LoadStepEnd::Collapse(f) => f,
             };
             let mut steps = 0;
             // Rate problems that are put to the whole system before the few equations are asked again.
@@ -168,7 +170,7 @@ impl<'a> Tracer<'a> {
                     ));
                 }
                 let left = (target - self.factor) * sense;
-                let behind = (self.factor - self.problem.drives[drive].start) * sense;
+                let behind = (self.factor - self.problem.load_steps[load_step].start) * sense;
                 let bound = match direction.factor {
                     f if f > 0.0 => left / f,
                     f if f < 0.0 => behind.max(0.0) / -f,
@@ -233,8 +235,9 @@ impl<'a> Tracer<'a> {
 
     fn motion(&self) -> Vec<[f64; 3]> {
         let mut motion = self.bodies(&self.x);
-        for (drive, factor) in self.problem.drives.iter().zip(self.problem.applied(self.drive, self.factor)) {
-            for (body, settlement) in &drive.loading.settlements {
+        for (load_step, factor) in self.problem.load_steps.iter().zip(self.problem.applied(self.load_step, self.factor))
+        {
+            for (body, settlement) in &load_step.loading.settlements {
                 (0..3).for_each(|i| motion[*body][i] += factor * settlement[i]);
             }
         }
@@ -242,14 +245,14 @@ impl<'a> Tracer<'a> {
     }
 
     fn displacement(&self) -> f64 {
-        load_displacement(self.problem, &self.problem.drives[self.drive].loading, &self.motion())
+        load_displacement(self.problem, &self.problem.load_steps[self.load_step].loading, &self.motion())
     }
 
     /// Gaps at the present state in scaled units.
     fn gaps_at(&self) -> Vec<[f64; 2]> {
         let mut gap = self.system.gaps(&self.x);
         gap.iter_mut().zip(&self.system.gap).for_each(|(g, initial)| g[0] += initial);
-        for (opened, factor) in self.loading_gaps.iter().zip(self.problem.applied(self.drive, self.factor)) {
+        for (opened, factor) in self.loading_gaps.iter().zip(self.problem.applied(self.load_step, self.factor)) {
             if let (Some(opened), true) = (opened, factor != 0.0) {
                 let factor = factor / self.system.displacement_unit;
                 gap.iter_mut().flatten().zip(opened.iter().flatten()).for_each(|(g, o)| *g += factor * o);
@@ -264,14 +267,14 @@ impl<'a> Tracer<'a> {
         gap.iter_mut().flatten().for_each(|g| *g *= self.system.displacement_unit);
         let motion = self.motion();
         PathState {
-            drive: self.drive,
+            load_step: self.load_step,
             factor: self.factor,
             force: (0..self.system.contacts).map(|c| self.force(c).map(|f| f * self.system.force_unit)).collect(),
             gap,
             stored: self.last.as_ref().map_or(0.0, |(s, _)| s.stored),
             dissipated: self.dissipated,
             work: self.work,
-            displacement: load_displacement(self.problem, &self.problem.drives[self.drive].loading, &motion),
+            displacement: load_displacement(self.problem, &self.problem.load_steps[self.load_step].loading, &motion),
             motion,
             memory: Vec::new(),
             yielded: Vec::new(),
@@ -283,7 +286,7 @@ impl<'a> Tracer<'a> {
         let mut state = self.state();
         let mut now = snapshot(self.problem, &state);
         now.stored += self.stored_by_opening();
-        let applied = self.problem.applied(self.drive, self.factor);
+        let applied = self.problem.applied(self.load_step, self.factor);
         if let Some((before, earlier)) = &self.last {
             self.work += work(before, &now, [earlier, &applied]);
         }
@@ -315,7 +318,7 @@ impl<'a> Tracer<'a> {
             this.notes.push("behind the limit point λ falls without end".into());
             return this.ended();
         }
-        let gravity = self.problem.drives[self.drive].gravity;
+        let gravity = self.problem.load_steps[self.load_step].gravity;
         let status = if gravity { Status::NoEquilibrium } else { Status::Collapse };
         let factor = (!gravity).then_some(self.factor);
         let limit = self.limit_point.is_some();
@@ -365,7 +368,7 @@ impl<'a> Tracer<'a> {
         let factor = if status == Status::LimitPoint { Some(state.factor) } else { factor };
         PathAnswer {
             status,
-            drive: state.drive,
+            load_step: state.load_step,
             factor,
             state,
             last,

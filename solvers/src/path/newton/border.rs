@@ -15,10 +15,10 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use crate::lu::Analysis;
 use crate::path::condensed::{Condensed, pair};
 use crate::path::rows::Rows;
 use std::rc::Rc;
+use voussoir_core::linear::Analysis;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;

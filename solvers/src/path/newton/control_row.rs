@@ -8,7 +8,7 @@ use super::measure::increment_between;
 use super::response::dissipation_gradient;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use voussoir_core::geometry::turned;
+use voussoir_core::model::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
 /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.

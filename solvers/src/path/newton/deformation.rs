@@ -5,7 +5,7 @@ use super::derivatives::{Gradient, Hessian};
 use super::geometry::{Geometry, Side};
 use super::loads::Loads;
 use nalgebra::{DMatrix, Matrix2};
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::model::geometry::{Vec2, turned};
 
 /// C of a body: of one that yields, its linearisation's.
 fn flexibility<'b>(

@@ -7,7 +7,7 @@ use super::measure::load_displacement;
 use super::response::{dissipated_by_tractions, stored_by_tractions};
 use super::state::State;
 use super::system::StepSystem;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::PathState;
 
 /// Energies so far \[J\].
@@ -65,7 +65,7 @@ impl EnergyBalance {
     }
 
     /// The state as others read it.
-    pub fn recorded(&self, system: &StepSystem, drive: usize, state: &State, gradient: &Gradient) -> PathState {
+    pub fn recorded(&self, system: &StepSystem, load_step: usize, state: &State, gradient: &Gradient) -> PathState {
         let mut stored = gradient.stored + stored_by_tractions(system, state);
         for contact in 0..state.gap.len() {
             let Some(law) = system.law(contact) else { continue };
@@ -76,7 +76,7 @@ impl EnergyBalance {
             }
         }
         PathState {
-            drive,
+            load_step,
             factor: state.factor,
             force: state.force.clone(),
             gap: state.gap.clone(),

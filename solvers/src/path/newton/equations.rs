@@ -2,8 +2,8 @@
 
 use super::law::{ContactMode, Polygon};
 use super::unknowns::Unknowns;
-use crate::lu::Entries;
 use crate::path::rows::Rows;
+use voussoir_core::linear::Entries;
 
 /// What is added to the factorised matrix, relative to its units: refinement takes it out again.
 pub(super) const REGULARISATION: f64 = 1e-9;

@@ -4,7 +4,7 @@ use super::law::ContactMode;
 use super::state::State;
 use super::system::StepSystem;
 use crate::path::events::{ContactStatus, transition};
-use voussoir_core::interface::{Regime, TractionPoint};
+use voussoir_core::law::{TractionPoint, UpdateBranch};
 use voussoir_core::path::PathEvent;
 
 /// Status of a point in a mode of its facets.
@@ -20,16 +20,16 @@ fn of_mode(system: &StepSystem, contact: usize, mode: ContactMode, gap: [f64; 2]
 
 /// Status of a point whose law gives tractions from gaps.
 fn of_tractions(point: &TractionPoint, gap: [f64; 2], slip: f64) -> ContactStatus {
-    match point.regime {
+    match point.branch {
         _ if gap[0] > 0.0 && point.traction == [0.0; 2] && point.tangent == [[0.0; 2]; 2] => ContactStatus::Open,
-        Regime::Softening | Regime::SofteningSliding => ContactStatus::Softens,
-        Regime::Sliding => ContactStatus::Slides { forward: slip > 0.0 },
+        UpdateBranch::Softening | UpdateBranch::SofteningSliding => ContactStatus::Softens,
+        UpdateBranch::Sliding => ContactStatus::Slides { forward: slip > 0.0 },
         _ => ContactStatus::Sticks,
     }
 }
 
 /// Events of a step, in the order of the contact points.
-pub(super) fn events(system: &StepSystem, drive: usize, start: &State, state: &State) -> Vec<PathEvent> {
+pub(super) fn events(system: &StepSystem, load_step: usize, start: &State, state: &State) -> Vec<PathEvent> {
     let of_point = |contact: usize| {
         let what = if system.laws.responses.is(contact) {
             let slip = state.gap[contact][1] - start.gap[contact][1];
@@ -42,7 +42,7 @@ pub(super) fn events(system: &StepSystem, drive: usize, start: &State, state: &S
             let status = |of: &State| of_mode(system, contact, of.mode[contact], gap);
             transition(status(start), status(state))
         }?;
-        Some(PathEvent { drive, factor: state.factor, contact, what })
+        Some(PathEvent { load_step, factor: state.factor, contact, what })
     };
     (0..state.gap.len()).filter_map(of_point).collect()
 }

@@ -2,8 +2,8 @@
 
 use super::border::Held;
 use super::law::ContactMode;
-use crate::lu::Analysis;
 use std::rc::Rc;
+use voussoir_core::linear::Analysis;
 
 /// Factors with what they are of.
 pub(super) struct Kept {

@@ -6,7 +6,7 @@ use super::law::Polygon;
 use super::state::State;
 use super::step::solve_step;
 use super::system::StepSystem;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 
 /// Takes slip to be associated; the laws as they were.
 pub(super) fn take_associated(system: &mut StepSystem) -> Vec<Polygon> {

@@ -1,4 +1,4 @@
-//! Following a drive by its strategy, as a state machine: a step ends as accepted, cut back, at a corner, over a
+//! Following a load step by its strategy, as a state machine: a step ends as accepted, cut back, at a corner, over a
 //! peak, or the path ends.
 
 use super::control::Control;
@@ -17,9 +17,9 @@ use super::termination::{ends_in_ray, no_step, stops};
 use super::tracer::{Outcome, Tracer, commit, end_path};
 use super::trial::{StepPlan, Trial, attempt, plan};
 use voussoir_core::limit::Status;
-use voussoir_core::path::Drive;
+use voussoir_core::path::LoadStep;
 
-/// Greatest number of steps of a drive.
+/// Greatest number of steps of a load step.
 const MOST_STEPS: u64 = 5000;
 
 /// Contact points up to which every change of mode counts for the length of the next step; of more the
@@ -53,8 +53,8 @@ enum StepEnd {
 }
 
 /// By the strategy, up to a factor or the end of the path.
-pub(super) fn follow(tracer: &mut Tracer, drive: &Drive, target: f64) -> Outcome {
-    let mut following = match Following::begin(tracer, drive, target) {
+pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> Outcome {
+    let mut following = match Following::begin(tracer, load_step, target) {
         Ok(following) => following,
         Err(outcome) => return outcome,
     };
@@ -175,7 +175,7 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
     accept(tracer, following, step)
 }
 
-/// Takes a step over; how the drive ends with it, if so.
+/// Takes a step over; how the load step ends with it, if so.
 fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<Outcome> {
     let Step { trial: Trial { next, iterations, reaches, .. }, tangent, accuracy, falls } = step;
     let (direction, target, finite) = (following.direction, following.target, tracer.system.finite());
@@ -205,7 +205,7 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
     if !finite && !tracer.state.yields() && ends_in_ray(tracer, &following.branch.tangent, direction, target) {
         return Some(Outcome::Ended);
     }
-    if stops(tracer, following.drive, direction) {
+    if stops(tracer, following.load_step, direction) {
         return Some(Outcome::Ended);
     }
     let growth = match (changes, iterations) {

@@ -1,4 +1,4 @@
-//! A drive that is followed by its strategy: predictor, length of the next step, and what has been tried.
+//! A load step that is followed by its strategy: predictor, length of the next step, and what has been tried.
 
 use super::control::Control;
 use super::control_row::work_along;
@@ -9,16 +9,16 @@ use super::state::Tangent;
 use super::tangent::tangent_at;
 use super::tracer::{Outcome, Tracer, end_path};
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Drive, DriveEnd, Increment};
+use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 
 /// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
 /// scene's size.
 const LARGEST_FINITE_STEP: f64 = 0.002;
 
-/// Length of the first step on another branch, relative to that of the drive.
+/// Length of the first step on another branch, relative to that of the load step.
 const BRANCH: f64 = 0.1;
 
-/// What bounds and shapes the steps of a drive.
+/// What bounds and shapes the steps of a load step.
 pub(super) struct StepLimits {
     /// Length of the first step.
     pub first: f64,
@@ -45,9 +45,9 @@ pub(super) struct Tried {
     pub search: Option<u64>,
 }
 
-/// A drive that is followed.
+/// A load step that is followed.
 pub(super) struct Following<'d> {
-    pub drive: &'d Drive,
+    pub load_step: &'d LoadStep,
     pub target: f64,
     /// Sense of λ.
     pub direction: f64,
@@ -66,9 +66,9 @@ pub(super) struct Following<'d> {
 }
 
 impl<'d> Following<'d> {
-    /// At the beginning of a drive, or how it ends there.
-    pub fn begin(tracer: &mut Tracer, drive: &'d Drive, target: f64) -> Result<Self, Outcome> {
-        let direction = if target < drive.start { -1.0 } else { 1.0 };
+    /// At the beginning of a load step, or how it ends there.
+    pub fn begin(tracer: &mut Tracer, load_step: &'d LoadStep, target: f64) -> Result<Self, Outcome> {
+        let direction = if target < load_step.start { -1.0 } else { 1.0 };
         if target == tracer.state.factor {
             return Err(Outcome::Reached);
         }
@@ -89,7 +89,7 @@ impl<'d> Following<'d> {
         }
         let units = tracer.system.units();
         let mut length = tracer.strategy.first_step() * one;
-        if matches!(drive.end, DriveEnd::Factor(_)) {
+        if matches!(load_step.end, LoadStepEnd::Factor(_)) {
             // A load history: never coarser than a sixteenth of it.
             length = length.min(one * (target - tracer.state.factor).abs() / units.factor / 16.0);
         }
@@ -105,7 +105,7 @@ impl<'d> Following<'d> {
             linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
         };
         Ok(Following {
-            drive,
+            load_step,
             target,
             direction,
             limits,

@@ -18,11 +18,11 @@ use super::border::{Bordered, Held};
 use super::equations::Equations;
 use super::law::ContactMode;
 use super::system::StepSystem;
-use crate::lu::Analysis;
 use crate::path::condensed::Condensed;
 use crate::path::rows::Rows;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
+use voussoir_core::linear::Analysis;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
@@ -87,7 +87,7 @@ impl Frame {
     }
 
     /// Right-hand sides of the rows that belong to no contact point.
-    pub fn drive(&mut self, right: &[f64]) {
+    pub fn load_rate(&mut self, right: &[f64]) {
         self.right[2 * self.points..].copy_from_slice(&right[2 * self.points..]);
         self.base = None;
     }

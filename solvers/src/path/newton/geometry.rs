@@ -2,7 +2,7 @@
 
 use super::loads::Loads;
 use nalgebra::Matrix2;
-use voussoir_core::geometry::{Vec2, turned};
+use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::PathProblem;
 
 /// A contact point on an elastic body.

@@ -23,7 +23,7 @@ use super::deformation::{add_elastic_gradient, add_elastic_hessian};
 use super::derivatives::{Gradient, Hessian};
 use super::geometry::Geometry;
 use super::loads::Loads;
-use voussoir_core::geometry::turned;
+use voussoir_core::model::geometry::turned;
 
 /// First derivatives of Π at contact forces and motions; `blocks` are the bodies that yield.
 pub(super) fn gradient(

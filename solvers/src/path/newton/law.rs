@@ -8,7 +8,7 @@
 //! facets, flow not along the normal); De Saxcé & Feng 1998 (the same law as a bi-potential).
 
 use crate::path::cells::{Cell, Cells};
-use voussoir_core::interface::{Facet, FacetMode};
+use voussoir_core::law::{Facet, FacetMode};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -243,7 +243,7 @@ mod tests {
 
     /// The return of z is Alart and Curnier's projection where slip does not dilate.
     #[test]
-    fn regimes_of_coulomb_are_those_of_alart_and_curnier() {
+    fn modes_of_coulomb_are_those_of_alart_and_curnier() {
         let p = coulomb(0.5, 0.0);
         let of = |z: [f64; 2]| p.mode(ContactMode::Stick, z, [1.0, 1.0], 1.0, 1e-12);
         assert_eq!(of([1.0, 0.4]), ContactMode::Stick);

@@ -152,14 +152,14 @@ mod tests {
     use super::super::control_row::control_row;
     use super::super::law::ContactMode;
     use super::super::linearised::solve_linear;
-    use super::super::loads::LoadStep;
+    use super::super::loads::StagedLoads;
     use super::super::tangent::wanted_modes;
     use super::*;
     use crate::path::shuffle::Shuffle;
-    use voussoir_core::geometry::Vec2;
-    use voussoir_core::interface::Facet;
+    use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
-    use voussoir_core::path::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathProblem};
+    use voussoir_core::model::geometry::Vec2;
+    use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 
     /// A rigid block on three compliant points of the ground with friction that dilates, pushed down and aside.
     fn pushed() -> PathProblem {
@@ -193,7 +193,7 @@ mod tests {
             body_of: vec![0, 1],
             contacts: vec![contact(-1.0), contact(0.2), contact(1.0)],
             facets: vec![vec![Facet::opening(0.0), left, right]],
-            drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Factor(1.0) }],
+            load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
             responses: vec![],
             length: 2.0,
             counters: Counters::new(),
@@ -207,7 +207,7 @@ mod tests {
         let control = Control::Factor(1.0);
         for finite in [false, true] {
             let mut system = StepSystem::new(&problem, finite).expect("a system");
-            system.load(LoadStep { earlier: Vec::new(), growing: &problem.drives[0].loading, start: 0.0 });
+            system.load(StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 });
             let (start, u) = (system.undeformed(), system.units());
             let (mut random, mut compared) = (Shuffle::new(5), [0; 3]);
             for _ in 0..600 {

@@ -13,13 +13,13 @@ use super::state::{State, Tangent, in_proportion};
 use super::step::solve_step;
 use super::tracer::{Outcome, Tracer, commit, end_path};
 use voussoir_core::limit::Status;
-use voussoir_core::path::Drive;
+use voussoir_core::path::LoadStep;
 
 /// Why there is no first state.
 const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
 
 /// To a factor: in one step where nothing irreversible happens in it, else in steps.
-pub(super) fn load_to_factor(tracer: &mut Tracer, drive: &Drive, factor: f64) -> Outcome {
+pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> Outcome {
     let control = Control::Factor(factor);
     let whole = solve_step(&mut tracer.system, &tracer.state, tracer.state.clone(), &control);
     let small = !tracer.system.finite();
@@ -38,21 +38,21 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, drive: &Drive, factor: f64) ->
             return if commit(tracer, next) { Outcome::Reached } else { Outcome::Ended };
         }
         if small && tracer.system.monotone() {
-            return equal_steps(tracer, drive, factor);
+            return equal_steps(tracer, load_step, factor);
         }
     }
     if small && is_proportional(tracer) {
-        return start_proportional(tracer, drive, factor);
+        return start_proportional(tracer, load_step, factor);
     }
-    follow(tracer, drive, factor)
+    follow(tracer, load_step, factor)
 }
 
-/// The first drive where it is proportional and no state at its factor was found: by a spring, which
+/// The first load step where it is proportional and no state at its factor was found: by a spring, which
 /// has a solution whatever the load. If λ grows with it, that state in proportion is the one looked
 /// for. If λ stays at nothing, the motion is a mechanism. Where flow is not associated that proves
 /// something only if λ stays at nothing with associated flow too.
-pub(super) fn start_proportional(tracer: &mut Tracer, drive: &Drive, factor: f64) -> Outcome {
-    let direction = if factor < drive.start { -1.0 } else { 1.0 };
+pub(super) fn start_proportional(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> Outcome {
+    let direction = if factor < load_step.start { -1.0 } else { 1.0 };
     let control = Control::Mixed { weight: mixed_weight(tracer), length: direction };
     let nothing = 1e-9 * tracer.system.units().factor;
     if !tracer.system.monotone()
@@ -64,19 +64,19 @@ pub(super) fn start_proportional(tracer: &mut Tracer, drive: &Drive, factor: f64
     let Ok((state, _)) = own else {
         return end_path(tracer, Status::Stalled, NO_START.into());
     };
-    if (state.factor - drive.start) * direction > nothing {
-        let guess = in_proportion(&state, (factor - drive.start) / (state.factor - drive.start));
+    if (state.factor - load_step.start) * direction > nothing {
+        let guess = in_proportion(&state, (factor - load_step.start) / (state.factor - load_step.start));
         return match iterate(&mut tracer.system, &tracer.state, guess, &Control::Factor(factor), 8, None) {
             Ok((next, _)) if commit(tracer, next.clone()) => Outcome::Reached,
             Ok(_) => Outcome::Ended,
-            Err(_) => follow(tracer, drive, factor),
+            Err(_) => follow(tracer, load_step, factor),
         };
     }
     if !tracer.system.monotone() {
         let polygons = take_associated(&mut tracer.system);
         let other = by_homotopy(&mut tracer.system, &tracer.state, &tracer.state.clone(), &control);
         tracer.system.laws.polygons = polygons;
-        if !other.is_ok_and(|(other, _)| (other.factor - drive.start) * direction <= nothing) {
+        if !other.is_ok_and(|(other, _)| (other.factor - load_step.start) * direction <= nothing) {
             return end_path(tracer, Status::Stalled, NO_START.into());
         }
     }
@@ -103,7 +103,7 @@ pub(super) fn is_proportional(tracer: &Tracer) -> bool {
 
 /// To a factor that is known to be carried, in equal steps of λ (associated flow: what carries a
 /// factor carries all between).
-pub(super) fn equal_steps(tracer: &mut Tracer, drive: &Drive, factor: f64) -> Outcome {
+pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> Outcome {
     let from = tracer.state.factor;
     let mut last: Option<State> = None;
     let mut at = 0.0;
@@ -133,7 +133,7 @@ pub(super) fn equal_steps(tracer: &mut Tracer, drive: &Drive, factor: f64) -> Ou
                 tracer.system.count("cutbacks", 1);
                 share *= 0.5;
                 if share < 1e-4 {
-                    return follow(tracer, drive, factor);
+                    return follow(tracer, load_step, factor);
                 }
             }
         }

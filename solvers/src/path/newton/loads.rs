@@ -1,6 +1,6 @@
 //! The loads in force: those that earlier stages left and the one that grows.
 
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Loading, PathProblem};
 
 /// The loads in force: each loading with its factor, the one that grows last.
@@ -29,15 +29,15 @@ impl Loads<'_> {
     }
 }
 
-/// The present drive on top of what earlier ones left.
+/// The present load step on top of what earlier ones left.
 #[derive(Clone)]
-pub(super) struct LoadStep<'a> {
+pub(super) struct StagedLoads<'a> {
     pub earlier: Vec<(f64, &'a Loading)>,
     pub growing: &'a Loading,
     pub start: f64,
 }
 
-impl<'a> LoadStep<'a> {
+impl<'a> StagedLoads<'a> {
     pub fn at(&self, factor: f64) -> Loads<'a> {
         let mut parts = self.earlier.clone();
         parts.push((factor - self.start, self.growing));

@@ -5,7 +5,7 @@ use super::loads::load_size;
 use super::response::dissipated_by_tractions;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::Increment;
 
 /// Work-conjugate displacement of the growing load by rigid motions: Σ F·u / Σ|F| \[m\].

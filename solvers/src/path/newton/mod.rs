@@ -10,7 +10,6 @@ mod creeping;
 mod cycle_detector;
 mod deformation;
 mod derivatives;
-mod drives;
 mod energy;
 mod equations;
 mod events;
@@ -28,6 +27,7 @@ pub(super) mod law;
 mod limit_point;
 mod line_search;
 mod linearised;
+mod load_steps;
 mod load_to_factor;
 mod loads;
 mod measure;
@@ -52,9 +52,8 @@ mod unknowns;
 use super::continuation::arc_length::ArcLength;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::card::{Capability, Card, no_further_check};
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::schema::PluginKind;
+use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
 /// Steps with Newton's method.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -65,18 +64,18 @@ pub struct NewtonPath {}
 impl PathSolver for NewtonPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
         if let Some(why) = self.refuses(problem, settings) {
-            return drives::stalled(why);
+            return load_steps::stalled(why);
         }
         let strategy = settings.continuation.clone();
         let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
-        self_check::confirmed(problem, settings.finite, drives::trace(problem, settings, strategy, observer))
+        self_check::confirmed(problem, settings.finite, load_steps::trace(problem, settings, strategy, observer))
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
         if settings.continuation.as_ref().is_some_and(|c| c.exact_events()) {
             return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
         }
-        if problem.drives.is_empty() {
+        if problem.load_steps.is_empty() {
             return Some("nothing is loaded".into());
         }
         (!problem.deforms()).then(|| {

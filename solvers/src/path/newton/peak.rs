@@ -58,7 +58,7 @@ pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, behind: &Tangent) -
     ledger.add(&tracer.system, &tracer.state, &state, [&tracer.record.gradient, &gradient]);
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut state);
-    let recorded = ledger.recorded(&tracer.system, tracer.drive, &state, &gradient);
+    let recorded = ledger.recorded(&tracer.system, tracer.load_step, &state, &gradient);
     let motion = scaled_motion(tracer, &state, behind);
     Peak { factor: state.factor, state: recorded, motion }
 }

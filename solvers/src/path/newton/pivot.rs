@@ -134,7 +134,7 @@ fn walked(
     let mut frame = Frame::new(hessian.rows(&system.unknowns).clone(), points, row);
     let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
     right[size - 1] = -left;
-    frame.drive(&right);
+    frame.load_rate(&right);
     let laws = system.laws.polygons.clone();
     let contacts = &system.problem.contacts;
     let law_of = |c: usize| match contacts[c].law {

@@ -92,7 +92,7 @@ pub(super) fn tractions_dissipate(system: &StepSystem, state: &State) -> bool {
 
 /// Points that change what they do between two states.
 pub(super) fn branch_changes(system: &StepSystem, start: &State, state: &State) -> usize {
-    let of = |state: &State, c: usize| state.updates.points[c].regime;
+    let of = |state: &State, c: usize| state.updates.points[c].branch;
     system.laws.responses.points().filter(|c| of(start, *c) != of(state, *c)).count()
 }
 
@@ -137,7 +137,7 @@ pub(super) fn local_controls(
     }
     let dissipates = |c: &usize| moved.updates.points[*c].dissipated > 0.0;
     let active: Vec<usize> = system.laws.responses.points().filter(dissipates).collect();
-    let begins = |c: &usize| moved.updates.points[*c].regime != state.updates.points[*c].regime;
+    let begins = |c: &usize| moved.updates.points[*c].branch != state.updates.points[*c].branch;
     let new: Vec<usize> = active.iter().copied().filter(begins).collect();
     let mut all: Vec<LocalControl> = LocalControl::along(&active, &rate.gap).into_iter().collect();
     if new.len() < active.len() {

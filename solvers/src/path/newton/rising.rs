@@ -16,10 +16,10 @@ use super::law::ContactMode;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
-use crate::lu::{Entries, SparseLu};
 use crate::path::complementarity::{Complementarity, Known};
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
+use voussoir_core::linear::{Entries, SparseLu};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
 const VERGE: f64 = 1e-8;

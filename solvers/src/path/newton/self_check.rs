@@ -9,8 +9,8 @@
 //!   (`rising`).
 
 use super::loads::load_size;
+use voussoir_core::certificate::{PathChecker, flow_residual, power_residual, ray_residual, tolerance};
 use voussoir_core::limit::Status;
-use voussoir_core::path::certificate::{Watch, flow_residual, power_residual, ray_residual, tolerance};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
 /// How close the factor of a claim and of its state are, relative to them.
@@ -37,18 +37,18 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     if let Some(factor) = answer.factor.filter(|f| f.is_nan() || (f - own).abs() > SAME * f.abs().max(own.abs())) {
         return Err(format!("the factor {factor} is not that of the state"));
     }
-    let mut watch = Watch::new(finite);
-    watch.state(problem, &answer.state);
+    let mut checker = PathChecker::new(finite);
+    checker.state(problem, &answer.state);
     // Gaps that are rounding of what the forces deform have no size to compare with.
     let force = answer.state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let soft = problem.contacts.iter().flat_map(|c| c.compliance).fold(0.0, f64::max);
     let blocks = problem.bodies.iter().filter_map(|b| b.flexibility.as_ref()).map(|f| f.amax()).fold(soft, f64::max);
     let moves = answer.state.gap.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let still = moves <= 1e-9 * force * blocks;
-    let applied = problem.applied(answer.state.drive, answer.state.factor);
-    let parts = problem.drives.iter().zip(applied);
+    let applied = problem.applied(answer.state.load_step, answer.state.factor);
+    let parts = problem.load_steps.iter().zip(applied);
     let load: f64 = parts.map(|(d, factor)| (factor * load_size(problem, &d.loading)).abs()).sum();
-    for (name, value) in watch.worst {
+    for (name, value) in checker.worst {
         if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;
         }
@@ -81,7 +81,7 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
         return Err("the mechanism moves the ground".into());
     }
     small("path_flow", flow_residual(problem, &answer.state.force, motion))?;
-    small("path_power", power_residual(problem, &problem.drives[answer.drive].loading, motion))?;
+    small("path_power", power_residual(problem, &problem.load_steps[answer.load_step].loading, motion))?;
     small("path_forces", problem.leaves_forces(&answer.state, motion))?;
     if answer.status == Status::NoEquilibrium && answer.state.factor >= 1.0 - 1e-9 {
         return Err("all of the dead load is carried".into());
@@ -92,18 +92,18 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
 /// Whether rates of forces carry any amount of the load.
 fn ray(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(ray) = &answer.ray else { return Err("there is no ray".into()) };
-    small("path_ray", ray_residual(problem, &problem.drives[answer.drive].loading, ray))
+    small("path_ray", ray_residual(problem, &problem.load_steps[answer.load_step].loading, ray))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::path::newton::NewtonPath;
-    use voussoir_core::geometry::Vec2;
-    use voussoir_core::interface::Facet;
+    use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
+    use voussoir_core::model::geometry::Vec2;
     use voussoir_core::path::{
-        Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathBody, PathSettings, PathSolver, Sliding,
+        Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathSettings, PathSolver, Sliding,
         Unobserved,
     };
 
@@ -132,7 +132,7 @@ mod tests {
             compliance: [1e-6, 2e-6],
             sliding: Sliding::middle(0.0),
         };
-        let drive = |stage, gravity, loading, end| Drive { stage, gravity, loading, start: 0.0, end };
+        let load_step = |stage, gravity, loading, end| LoadStep { stage, gravity, loading, start: 0.0, end };
         let pole = Vec2::new(0.0, 0.5);
         let live = Loading { forces: vec![(1, None, pole, force)], ..Loading::default() };
         let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
@@ -142,9 +142,9 @@ mod tests {
             body_of: vec![0, 1],
             contacts: vec![contact(-1.0), contact(1.0)],
             facets: vec![vec![Facet::opening(0.0), left, right]],
-            drives: vec![
-                drive(0, true, dead, DriveEnd::Factor(1.0)),
-                drive(1, false, live, DriveEnd::Collapse(f64::INFINITY)),
+            load_steps: vec![
+                load_step(0, true, dead, LoadStepEnd::Factor(1.0)),
+                load_step(1, false, live, LoadStepEnd::Collapse(f64::INFINITY)),
             ],
             responses: vec![],
             length: 2.0,

@@ -30,7 +30,7 @@ pub(super) fn energy_accuracy(tracer: &mut Tracer, next: &State) -> f64 {
     let gradient = tracer.system.gradient(next);
     let mut ledger = tracer.record.energy;
     ledger.add(&tracer.system, &tracer.state, next, [&tracer.record.gradient, &gradient]);
-    let after = ledger.recorded(&tracer.system, tracer.drive, next, &gradient);
+    let after = ledger.recorded(&tracer.system, tracer.load_step, next, &gradient);
     let of = |state: &PathState| state.work - state.stored - state.dissipated;
     let lost = (of(&after) - of(&tracer.record.state)).abs();
     let whole = after.stored.abs() + after.dissipated.abs();

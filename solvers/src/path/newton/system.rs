@@ -6,7 +6,7 @@ use super::factors::Factorised;
 use super::geometry::Geometry;
 use super::kinematics::{gradient, hessian};
 use super::law::{ContactMode, Polygon};
-use super::loads::{LoadStep, load_size};
+use super::loads::{StagedLoads, load_size};
 use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
 use super::unknowns::{Units, Unknowns};
@@ -27,7 +27,7 @@ pub(super) struct Laws {
 /// What is computed once for many iterations.
 #[derive(Default)]
 pub(super) struct Cache {
-    /// Second derivatives with small displacements, of the present drive.
+    /// Second derivatives with small displacements, of the present load step.
     pub hessian: Option<Rc<Hessian>>,
     pub factors: Factorised,
 }
@@ -38,7 +38,7 @@ pub(super) struct StepSystem<'a> {
     pub geometry: Geometry<'a>,
     pub laws: Laws,
     pub unknowns: Unknowns,
-    pub loads: LoadStep<'a>,
+    pub loads: StagedLoads<'a>,
     /// Undeformed bodies whose material yields.
     blocks: Vec<Option<YieldingBlock>>,
     pub cache: Cache,
@@ -113,8 +113,8 @@ impl<'a> StepSystem<'a> {
             (!held).then(|| bodies - 1)
         };
         let free = problem.bodies.iter().map(|body| body.held).map(number).collect();
-        let size = problem.drives.iter().map(|d| load_size(problem, &d.loading)).find(|s| *s > 0.0);
-        let settlement = settlement_size(problem.drives.iter().map(|d| &d.loading), problem.length);
+        let size = problem.load_steps.iter().map(|d| load_size(problem, &d.loading)).find(|s| *s > 0.0);
+        let settlement = settlement_size(problem.load_steps.iter().map(|d| &d.loading), problem.length);
         let force = size.unwrap_or(settlement / mean);
         let force = if force > 0.0 { force } else { 1.0 };
         let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
@@ -125,7 +125,7 @@ impl<'a> StepSystem<'a> {
             laws: Laws { polygons, responses, compliance },
             unknowns: Unknowns { units, contacts: problem.contacts.len(), free, bodies },
             counters: Counters::new(),
-            loads: LoadStep { earlier: Vec::new(), growing: &problem.drives[0].loading, start: 0.0 },
+            loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
             line_search: true,
             blocks: undeformed(problem)?,
@@ -148,8 +148,8 @@ impl<'a> StepSystem<'a> {
         self.unknowns.column(index)
     }
 
-    /// Begins a drive.
-    pub fn load(&mut self, loads: LoadStep<'a>) {
+    /// Begins a load step.
+    pub fn load(&mut self, loads: StagedLoads<'a>) {
         let size = load_size(self.problem, loads.growing);
         let settlement = loads
             .growing

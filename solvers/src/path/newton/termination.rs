@@ -15,7 +15,7 @@ use super::tracer::{Outcome, Tracer, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, Drive};
+use voussoir_core::path::{Continuation, LoadStep};
 
 /// Share of its fall by which the load must rise for the least one to be that of a snap-through.
 const RISES: f64 = 0.1;
@@ -156,7 +156,7 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
 }
 
 /// Whether the path went as far behind its peak as was asked for.
-pub(super) fn stops(tracer: &mut Tracer, drive: &Drive, direction: f64) -> bool {
+pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let Some(peak) = &tracer.limit.peak else {
         if tracer.system.finite() && displacement.abs() > tracer.system.units().length {
@@ -179,7 +179,7 @@ pub(super) fn stops(tracer: &mut Tracer, drive: &Drive, direction: f64) -> bool 
     let (stop_displacement, stop_factor) = (tracer.settings.stop_displacement, tracer.settings.stop_factor);
     let done = match (stop_displacement, stop_factor) {
         (None, None) => {
-            let grown = (peak.factor - drive.start).abs();
+            let grown = (peak.factor - load_step.start).abs();
             (peak.factor - factor) * direction >= 0.1 * grown || behind >= peak.state.displacement.abs()
         }
         (most, least) => {

@@ -14,7 +14,7 @@ use voussoir_core::path::{Continuation, PathEvent, PathObserver, PathSettings, P
 /// come apart: what is left is rounding.
 const APART: f64 = 1e-6;
 
-/// How a drive ended.
+/// How a load step ended.
 pub(super) enum Outcome {
     /// At its factor.
     Reached,
@@ -74,7 +74,7 @@ pub(super) struct Tracer<'a, 'o> {
     pub settings: &'a PathSettings,
     pub strategy: Arc<dyn Continuation>,
     pub observer: &'o mut dyn PathObserver,
-    pub drive: usize,
+    pub load_step: usize,
     /// The last converged state.
     pub state: State,
     pub record: Record,
@@ -101,11 +101,11 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         tracer.system.drop_rounding(&mut next, tracer.system.loads.start);
     }
     let gradient = tracer.system.gradient(&next);
-    tracer.record.events.extend(events(&tracer.system, tracer.drive, &tracer.state, &next));
+    tracer.record.events.extend(events(&tracer.system, tracer.load_step, &tracer.state, &next));
     tracer.record.energy.add(&tracer.system, &tracer.state, &next, [&tracer.record.gradient, &gradient]);
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut next);
-    tracer.record.state = tracer.record.energy.recorded(&tracer.system, tracer.drive, &next, &gradient);
+    tracer.record.state = tracer.record.energy.recorded(&tracer.system, tracer.load_step, &next, &gradient);
     tracer.state = next;
     tracer.record.gradient = gradient;
     tracer.system.count("steps", 1);

@@ -11,7 +11,7 @@
 //! until the step is accepted.
 
 use std::sync::Arc;
-use voussoir_core::interface::{InterfaceResponse, TractionPoint};
+use voussoir_core::law::{InterfaceResponse, TractionPoint};
 use voussoir_core::path::{ContactLaw, PathProblem};
 
 /// Contact points of one law, and where their states stand.

@@ -15,7 +15,7 @@ use super::step::solve_step;
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::tracer::{Tracer, moved_along};
-use voussoir_core::path::DriveEnd;
+use voussoir_core::path::LoadStepEnd;
 
 /// Length, relative to the first step, from which on a line search helps. What shorter steps do not find is a corner,
 /// where branches are chosen: a line search may find another state close by, on none of them.
@@ -57,8 +57,8 @@ pub(super) fn plan(tracer: &mut Tracer, following: &mut Following) -> Option<Ste
         share *= following.limits.largest / moves;
         following.length = share * per_tangent;
     }
-    if matches!(following.drive.end, DriveEnd::Factor(_)) && tangent.factor != 0.0 {
-        let most = (following.target - following.drive.start).abs() / 16.0 / tangent.factor.abs();
+    if matches!(following.load_step.end, LoadStepEnd::Factor(_)) && tangent.factor != 0.0 {
+        let most = (following.target - following.load_step.start).abs() / 16.0 / tangent.factor.abs();
         if share > most {
             share = most;
             following.length = share * per_tangent;

@@ -8,12 +8,8 @@ use crate::config::report::{Mistake, sort, suggest};
 use crate::study::{OUTPUT, apply};
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
-use voussoir_core::assembly::Plane;
-use voussoir_core::interface::{Formulation, InterfaceLaw};
-use voussoir_core::material::BulkMaterial;
-use voussoir_core::material::plane::PlanarUpdate;
-use voussoir_core::schema::{Need, Parameter, PluginKind, Range, Shape};
-use voussoir_core::units::Quantity;
+use voussoir_core::law::{BulkMaterial, Formulation, InterfaceLaw, PlanarUpdate, Plane};
+use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 use voussoir_solvers::point::{Control, PointLaw};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
@@ -305,7 +301,7 @@ fn read_law(builder: &mut Builder<'_>, resolved: &Json, point: &Json) -> Option<
                 Formulation::Response(response) => Some((tag, PointLaw::Joint(response))),
                 Formulation::Facets(facets) => match law.stiffness() {
                     Some(stiffness) if stiffness.iter().all(|k| k.is_finite()) => {
-                        let response = voussoir_core::interface::facet_response::FacetResponse::new(facets, stiffness);
+                        let response = voussoir_core::law::FacetResponse::new(facets, stiffness);
                         Some((tag, PointLaw::Joint(Arc::new(response))))
                     }
                     _ => {

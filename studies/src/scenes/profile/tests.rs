@@ -1,7 +1,7 @@
 //! What is proved of profiles and their rings.
 
 use super::*;
-use voussoir_core::geometry::cross;
+use voussoir_core::model::geometry::cross;
 
 fn profiles() -> Vec<Profile> {
     vec![

@@ -14,7 +14,7 @@ use crate::path::event::point::{Point, opening};
 use crate::path::event::rate::Piece;
 use crate::path::event::system::PointFacet;
 use nalgebra::{Matrix2, Matrix3, Matrix3xX, Vector2, Vector3};
-use voussoir_core::interface::FacetMode;
+use voussoir_core::law::FacetMode;
 
 /// Condition of K, relative to all points stuck, above which its twist is an unknown of its own.
 const WEAK: f64 = 1e5;

@@ -82,7 +82,7 @@ pub enum Followed {
 /// What is nearest: arc until then, rate with which it comes, contact point, facet or `usize::MAX`.
 type Hit = (f64, f64, usize, usize);
 
-/// One drive, or a part of it.
+/// One load step, or a part of it.
 struct Run<'s> {
     sections: &'s Sections,
     joints: Vec<Joint>,

@@ -5,9 +5,9 @@ use crate::path::newton::geometry::Geometry;
 use crate::path::newton::kinematics::{gradient as gradient_of, hessian as hessian_of};
 use crate::path::newton::loads::Loads;
 use nalgebra::{DMatrix, Rotation2};
-use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathProblem, Sliding};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathProblem, Sliding};
 
 /// A symmetric positive definite matrix of plausible entries.
 fn flexibility(rows: usize) -> DMatrix<f64> {
@@ -55,7 +55,7 @@ fn chain() -> PathProblem {
         contacts,
         facets: vec![],
         responses: Vec::new(),
-        drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Factor(1.0) }],
+        load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
         length: 3.0,
         counters: Counters::new(),
     }
@@ -71,7 +71,7 @@ fn some_state() -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
 fn sliding_chain() -> PathProblem {
     let mut problem = chain();
     problem.bodies.iter_mut().for_each(|body| body.flexibility = None);
-    problem.drives[0].loading.forces[0].1 = None;
+    problem.load_steps[0].loading.forces[0].1 = None;
     for (contact, share) in problem.contacts.iter_mut().zip([0.0, 1.0, 0.3]) {
         (contact.minus.slot, contact.plus.slot) = (None, None);
         contact.sliding.share = share;
@@ -85,7 +85,7 @@ fn the_tangent_is_the_derivative() {
     for (problem, finite) in [(chain(), false), (chain(), true), (sliding_chain(), true)] {
         let geometry = Geometry::new(&problem, finite);
         let (force, mut motion) = some_state();
-        let loading = &problem.drives[0].loading;
+        let loading = &problem.load_steps[0].loading;
         let settle = |motion: &mut Vec<[f64; 3]>, factor: f64| {
             motion[0] = [0.02 * factor, -0.03 * factor, 0.1 * factor];
         };
@@ -141,9 +141,9 @@ fn the_tangent_is_the_derivative() {
 #[test]
 fn gaps_are_objective() {
     let mut problem = chain();
-    problem.drives[0].loading.settlements.clear();
+    problem.load_steps[0].loading.settlements.clear();
     let (force, motion) = some_state();
-    let loading = problem.drives[0].loading.clone();
+    let loading = problem.load_steps[0].loading.clone();
     let geometry = Geometry::new(&problem, true);
     let before = gradient_of(&geometry, &force, &motion, &Loads { parts: vec![(1.0, &loading)] }, &[]);
     for angle in [1.0, 3.0, 40.0] {

@@ -7,7 +7,7 @@ mod yielding;
 
 use nalgebra::DMatrix;
 use std::sync::Arc;
-use voussoir_core::geometry::Vec2;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Continuation, PathBody, PathObserver, PathProblem, PathSettings, PathState};
 
 fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {

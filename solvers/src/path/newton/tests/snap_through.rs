@@ -5,10 +5,10 @@ use crate::path::continuation::dissipation::Dissipation;
 use crate::path::newton::NewtonPath;
 use nalgebra::Rotation2;
 use std::sync::Arc;
-use voussoir_core::geometry::Vec2;
 use voussoir_core::limit::{Counters, Status};
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
-    Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathProblem, PathSolver, Sliding,
+    Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathProblem, PathSolver, Sliding,
     Unobserved,
 };
 
@@ -48,7 +48,13 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         contacts,
         facets: vec![],
         responses: Vec::new(),
-        drives: vec![Drive { stage: 0, gravity: false, loading, start: 0.0, end: DriveEnd::Collapse(f64::INFINITY) }],
+        load_steps: vec![LoadStep {
+            stage: 0,
+            gravity: false,
+            loading,
+            start: 0.0,
+            end: LoadStepEnd::Collapse(f64::INFINITY),
+        }],
         length: 2.0 * half_span,
         counters: Counters::new(),
     }
@@ -114,12 +120,12 @@ fn the_peak_does_not_depend_on_place_or_units() {
     for c in &mut turned.contacts {
         (c.position, c.normal, c.tangent) = (about(c.position), turn * c.normal, turn * c.tangent);
     }
-    for f in &mut turned.drives[0].loading.forces {
+    for f in &mut turned.load_steps[0].loading.forces {
         (f.2, f.3) = (about(f.2), turn * f.3);
     }
     // Millimetres and meganewtons: lengths × 1000, compliances × 1e9.
     let mut units = two_bars(1000.0, 200.0, 1e-3 * 1e9);
-    units.drives[0].loading.forces.iter_mut().for_each(|f| f.3 *= 1e-6);
+    units.load_steps[0].loading.forces.iter_mut().for_each(|f| f.3 *= 1e-6);
     units.bodies.iter_mut().for_each(|b| b.mass *= 1e-3);
     for problem in [turned, units] {
         let factor = NewtonPath {}.trace(&problem, &how, &mut Unobserved).factor.expect("a peak");

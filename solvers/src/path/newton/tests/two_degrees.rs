@@ -8,16 +8,16 @@ use crate::path::continuation::load_control::LoadControl;
 use crate::path::newton::NewtonPath;
 use nalgebra::DMatrix;
 use std::sync::Arc;
-use voussoir_core::geometry::Vec2;
-use voussoir_core::interface::Facet;
+use voussoir_core::law::Facet;
 use voussoir_core::limit::{Counters, Status};
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
-    Attachment, Contact, ContactLaw, Continuation, Drive, DriveEnd, Loading, PathBody, PathProblem, PathSolver,
+    Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver,
     Sliding, Unobserved,
 };
 
 /// One contact point on the ground, held by springs K over (t, n): the two-degree-of-freedom example.
-fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, DriveEnd)>) -> PathProblem {
+fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, LoadStepEnd)>) -> PathProblem {
     let [[a, b], [_, d]] = stiffness;
     let det = a * d - b * b;
     let inverse = [[d / det, -b / det], [-b / det, a / det]];
@@ -56,9 +56,9 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, drives: Vec<(Vec2, Drive
         contacts: vec![contact],
         facets: vec![vec![Facet::opening(0.0), left, right]],
         responses: Vec::new(),
-        drives: drives
+        load_steps: load_steps
             .into_iter()
-            .map(|(f, end)| Drive {
+            .map(|(f, end)| LoadStep {
                 stage: 0,
                 gravity: false,
                 loading: Loading {
@@ -80,7 +80,10 @@ fn turning() -> PathProblem {
     two_degrees(
         K,
         1.25,
-        vec![(Vec2::new(0.0, -1.0), DriveEnd::Factor(1.0)), (Vec2::new(1.0, 0.0), DriveEnd::Collapse(f64::INFINITY))],
+        vec![
+            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
+            (Vec2::new(1.0, 0.0), LoadStepEnd::Collapse(f64::INFINITY)),
+        ],
     )
 }
 
@@ -94,7 +97,7 @@ fn a_path_that_turns_back() {
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     assert!((answer.factor.unwrap() - 1.25).abs() < 1e-9, "{:?}", answer.factor);
     let (mut slid, mut open) = (0, 0);
-    for state in states.0.iter().filter(|s| s.drive == 1) {
+    for state in states.0.iter().filter(|s| s.load_step == 1) {
         let [normal, tangent] = state.gap[0];
         if normal > 1e-9 {
             open += 1;
@@ -127,7 +130,7 @@ fn one_solution_of_the_two_degree_example() {
     for (friction, tangential, normal) in
         [(0.5, 1.4, 0.2), (0.9, 1.4, 0.2), (1.25, 0.0, 0.0), (1.5, 0.0, 0.0), (2.0, 0.0, 0.0)]
     {
-        let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
+        let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
         let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
         assert_eq!(answer.status, Status::Stands, "μ {friction}: {:?}", answer.notes);
         let [n, t] = answer.state.gap[0];
@@ -139,7 +142,7 @@ fn one_solution_of_the_two_degree_example() {
 /// cycles, the one from the open state does not.
 #[test]
 fn separation_at_a_friction_close_to_the_load() {
-    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), DriveEnd::Factor(1.0))]);
+    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
     let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
     assert_eq!(answer.status, Status::Stands, "{:?} {:?} {:?}", answer.factor, answer.state.gap, answer.notes);
     let [n, t] = answer.state.gap[0];
@@ -150,17 +153,17 @@ fn separation_at_a_friction_close_to_the_load() {
 /// a reversal of twice the friction, and reloads: gap = slip, spring K_t = 1, contact compliant.
 #[test]
 fn slip_has_a_history() {
-    let drive = |t: f64| (Vec2::new(t, 0.0), DriveEnd::Factor(1.0));
+    let load_step = |t: f64| (Vec2::new(t, 0.0), LoadStepEnd::Factor(1.0));
     let problem = two_degrees(
         [[1.0, 0.0], [0.0, 2.0]],
         0.5,
         vec![
-            (Vec2::new(0.0, -1.0), DriveEnd::Factor(1.0)),
-            drive(0.8),
-            drive(-0.6),
-            drive(-0.9),
-            drive(0.5),
-            drive(0.9),
+            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
+            load_step(0.8),
+            load_step(-0.6),
+            load_step(-0.9),
+            load_step(0.5),
+            load_step(0.9),
         ],
     );
     // Force f_t = 0.8, 0.2, −0.7, −0.2, 0.7 in turn: slip f − 0.5 = 0.3; stuck while |f − 0.3| ≤ 0.5;
@@ -174,9 +177,9 @@ fn slip_has_a_history() {
         let mut states = Kept(Vec::new());
         let answer = NewtonPath {}.trace(&problem, &settings(strategy), &mut states);
         assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-        for (drive, slip) in expected.iter().enumerate() {
-            let last = states.0.iter().rfind(|s| s.drive == drive).expect("a state of every drive");
-            assert!((last.gap[0][1] - slip).abs() < 1e-12, "drive {drive}: {} {slip}", last.gap[0][1]);
+        for (load_step, slip) in expected.iter().enumerate() {
+            let last = states.0.iter().rfind(|s| s.load_step == load_step).expect("a state of every load step");
+            assert!((last.gap[0][1] - slip).abs() < 1e-12, "load step {load_step}: {} {slip}", last.gap[0][1]);
         }
         let end = answer.state;
         // Dissipation: μ N × (0.3 + 0.5 + 0.4).

@@ -2,17 +2,17 @@
 
 use super::body;
 use crate::path::newton::control::Control;
-use crate::path::newton::loads::LoadStep;
+use crate::path::newton::loads::StagedLoads;
 use crate::path::newton::step::solve_step;
 use crate::path::newton::system::StepSystem;
 use std::sync::Arc;
-use voussoir_core::assembly::Plane;
 use voussoir_core::elastic::{Condenser, IsotropicElastic, MeshDensity};
-use voussoir_core::geometry::Vec2;
+use voussoir_core::law::{
+    Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises,
+};
 use voussoir_core::limit::Counters;
-use voussoir_core::material::plane::PlanarUpdate;
-use voussoir_core::material::{Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises};
-use voussoir_core::path::{Attachment, Contact, ContactLaw, Drive, DriveEnd, Loading, PathProblem, Sliding};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathProblem, Sliding};
 
 /// Von Mises with linear hardening H = E / 10, radial return (Simo & Hughes 1998, box 3.2).
 #[derive(Debug)]
@@ -99,20 +99,21 @@ fn steps_with_yielding_blocks_converge_quadratically() {
     });
     let loading =
         Loading { forces: vec![(1, Some(3), Vec2::new(1.0, 1.0), Vec2::new(3e5, -4e5))], ..Loading::default() };
-    let drive = Drive { stage: 0, gravity: false, loading: loading.clone(), start: 0.0, end: DriveEnd::Factor(1.0) };
+    let load_step =
+        LoadStep { stage: 0, gravity: false, loading: loading.clone(), start: 0.0, end: LoadStepEnd::Factor(1.0) };
     let problem = PathProblem {
         bodies: vec![ground, block],
         body_of: vec![0, 1],
         contacts: contacts.collect(),
         facets: Vec::new(),
-        drives: vec![drive],
+        load_steps: vec![load_step],
         responses: vec![],
         length: 1.0,
         counters: Counters::new(),
     };
     for finite in [false, true] {
         let mut system = StepSystem::new(&problem, finite).unwrap();
-        system.load(LoadStep { earlier: Vec::new(), growing: &loading, start: 0.0 });
+        system.load(StagedLoads { earlier: Vec::new(), growing: &loading, start: 0.0 });
         let start = system.undeformed();
         let (state, _) = solve_step(&mut system, &start, start.clone(), &Control::Factor(1.0)).unwrap();
         let yielding = state.blocks.iter().flatten().map(|inner| inner.linear.yielding).sum::<usize>();

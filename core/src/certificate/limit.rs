@@ -1,0 +1,530 @@
+//! Certificates: what proves an answer, recomputed from the assembly alone.
+//!
+//! Nothing here is shared with solvers: equilibrium is summed body by body from forces at points,
+//! strengths are checked as the rectangular stress block, dissipation is the integral of the support
+//! function of the law's own polygon along each joint. Laws are read with associated flow, unless
+//! the claim is that a field and a mechanism obey the laws' own flow: then the jumps must be
+//! combinations of the facets' flow directions and their power with the field's distance from the
+//! yield surface must vanish, joint by joint.
+
+use super::mechanism::{CentroidVelocity, Jump, jumps};
+use super::products::proved;
+use crate::law::{Facet, FacetMode, YieldPolygon};
+use crate::limit::{LowerProof, LowerProofKind, Status};
+use crate::model::geometry::{Vec2, cross};
+use crate::model::{Assembly, Bond, StageLoads, add_force};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Named residuals, all relative, and the verdict.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Certificate {
+    /// Whether every residual is within its tolerance.
+    pub passed: bool,
+    /// Name → value.
+    pub residuals: BTreeMap<String, f64>,
+    /// What failed, in words; empty when passed.
+    pub failures: Vec<String>,
+}
+
+/// A contact force at a point of a joint, on the plus body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Where it acts \[m\].
+    pub point: Vec2,
+    /// (r_n, r_t) \[N\].
+    pub force: [f64; 2],
+}
+
+/// What an answer claims.
+#[derive(Debug, Clone, Copy)]
+pub struct Claim<'a> {
+    /// How the last stage ends.
+    pub status: Status,
+    /// The collapse factor.
+    pub factor: Option<f64>,
+    /// The factor at which the field is in equilibrium.
+    pub field_factor: f64,
+    /// The factor at which the stage starts.
+    pub start: f64,
+    /// Contact forces.
+    pub field: Option<&'a [ContactForce]>,
+    /// Velocity of every body.
+    pub motion: Option<&'a [CentroidVelocity]>,
+    /// Contact forces that balance the varying load alone.
+    pub ray: Option<&'a [ContactForce]>,
+    /// Whether some factor is feasible where the start is not, and the interval.
+    pub feasible_interval: Option<[f64; 2]>,
+    /// Set where field and motion are claimed to obey the laws' own flow.
+    pub non_associated: Option<NonAssociatedClaim<'a>>,
+}
+
+/// What is claimed besides where joints flow as their laws say.
+#[derive(Debug, Clone, Copy)]
+pub struct NonAssociatedClaim<'a> {
+    /// No such factor is less.
+    pub proved_lower: Option<f64>,
+    /// What that rests on. Multipliers of products are checked; of an exhaustive search, which is no
+    /// certificate, only the order.
+    pub lower_proof: Option<&'a LowerProof>,
+    /// The greatest factor of associated flow.
+    pub associated_factor: Option<f64>,
+    /// The motion that proves it.
+    pub associated_motion: Option<&'a [CentroidVelocity]>,
+}
+
+/// Tolerance of residuals that should be rounding.
+pub const ROUNDING: f64 = 1e-10;
+
+/// A lower bound by products may lose so much of the factor to rounding.
+const PRODUCTS: f64 = 1e-6;
+
+/// Least excess of power over dissipation, relative to load times greatest jump, that is no rounding.
+const EXCESS: f64 = 1e-13;
+
+/// The greatest jump of a motion; motions that refute equilibrium at every factor are scaled to 1.
+pub fn largest_jump(jumps: &[Jump]) -> f64 {
+    jumps.iter().map(Jump::size).fold(0.0, f64::max)
+}
+
+struct Check<'a> {
+    assembly: &'a Assembly,
+    loads: &'a StageLoads,
+    groups: Vec<Option<usize>>,
+    facets: Vec<Vec<Facet>>,
+    polygons: Vec<YieldPolygon>,
+    size: f64,
+    certificate: Certificate,
+}
+
+/// Checks a claim about the stage with these loads: the certificate, and the bounds \[lower, upper\]
+/// that field and motion prove where both exist.
+pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64) -> (Certificate, Option<[f64; 2]>) {
+    let joined = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
+    let unread = assembly
+        .catalogue
+        .laws
+        .iter()
+        .enumerate()
+        .find_map(|(index, (name, law))| (joined(index) && law.formulation().facets().is_none()).then_some(name));
+    if let Some(name) = unread {
+        let failures = vec![format!("joint law \"{name}\" is not given by facets: its strength cannot be checked")];
+        return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
+    }
+    let facets: Vec<Vec<Facet>> =
+        assembly.catalogue.laws.iter().map(|(_, law)| law.formulation().facets().unwrap_or_default()).collect();
+    let mut check = Check {
+        groups: assembly.rigid_groups().0,
+        polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),
+        facets,
+        size: assembly.size(),
+        assembly,
+        loads,
+        certificate: Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() },
+    };
+    let mut bounds = None;
+    match claim.status {
+        Status::Stands => {
+            check.field(claim);
+        }
+        Status::Collapse if claim.non_associated.is_some() => bounds = check.non_associated(claim, gap),
+        Status::Collapse => {
+            let lower = check.field(claim).then_some(claim.field_factor);
+            let upper = check.upper_bound(claim);
+            match (lower, upper, claim.factor) {
+                (Some(lower), Some((upper, uncertain)), Some(factor)) => {
+                    let scale = lower.abs().max(upper.abs()).max(check.factor_scale());
+                    let spread = (upper - lower).abs().max((factor - lower).abs()) / scale;
+                    check.residual("gap", spread, gap.max(uncertain / scale));
+                    bounds = Some([lower.min(upper), upper.max(lower)]);
+                }
+                _ => check.fail("a collapse needs a factor, an admissible field and a mechanism"),
+            }
+        }
+        Status::Unbounded => {
+            check.field(claim);
+            check.ray(claim);
+        }
+        Status::NoEquilibrium => check.refutation(claim, gap),
+        Status::LimitPoint | Status::Stalled => check.fail("not proven"),
+    }
+    (check.certificate, bounds)
+}
+
+impl Check<'_> {
+    fn fail(&mut self, why: impl Into<String>) {
+        self.certificate.passed = false;
+        self.certificate.failures.push(why.into());
+    }
+
+    /// Records a residual; NaN fails.
+    fn residual(&mut self, name: &str, value: f64, tolerance: f64) -> bool {
+        self.certificate.residuals.insert(name.into(), value);
+        let fine = value <= tolerance;
+        if !fine {
+            self.fail(format!("{name}: {value:.3e} exceeds {tolerance:.1e}"));
+        }
+        fine
+    }
+
+    /// Size of the loads in force units.
+    fn load_scale(&self, factor: f64) -> f64 {
+        let size = |w: &[f64; 3]| w[0].hypot(w[1]);
+        self.free_bodies().map(|b| size(&self.loads.fixed[b]) + factor.abs() * size(&self.loads.varying[b])).sum()
+    }
+
+    /// Scale of residuals at a factor [N]: the loads there, or the varying load where there is no
+    /// other.
+    fn residual_scale(&self, factor: f64) -> f64 {
+        let dead = self.load_scale(0.0);
+        let at = self.load_scale(factor);
+        (if dead > 0.0 { at } else { at.max(self.load_scale(1.0)) }).max(f64::MIN_POSITIVE)
+    }
+
+    /// Factors below this do not change the loads that are there anyway: differences of factors
+    /// are compared with it where the factor itself is nearly zero.
+    fn factor_scale(&self) -> f64 {
+        let (dead, both) = (self.load_scale(0.0), self.load_scale(1.0));
+        if dead == 0.0 {
+            1.0
+        } else if both > dead {
+            1e-6 * dead / (both - dead)
+        } else {
+            0.0
+        }
+    }
+
+    fn free_bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.groups.len()).filter(|&body| self.groups[body].is_some())
+    }
+
+    /// Greatest resultant left on any free group by contact forces and `fixed × dead + factor ×
+    /// varying`, moments about the group's first body and divided by the scene's size \[N\].
+    fn imbalance(&self, forces: &[ContactForce], dead: f64, factor: f64) -> f64 {
+        let count = self.groups.iter().flatten().max().map_or(0, |g| g + 1);
+        let mut pole: Vec<Option<Vec2>> = vec![None; count];
+        let mut sums = vec![[0.0f64; 3]; count];
+        for body in self.free_bodies() {
+            let Some(group) = self.groups[body] else {
+                continue;
+            };
+            let pole = *pole[group].get_or_insert_with(|| self.assembly.inertia(body).centroid);
+            for (wrenches, factor) in [(&self.loads.fixed, dead), (&self.loads.varying, factor)] {
+                let [x, y, moment] = wrenches[body];
+                sums[group][0] += factor * x;
+                sums[group][1] += factor * y;
+                sums[group][2] += factor * (moment - cross(pole, Vec2::new(x, y)));
+            }
+        }
+        for contact in forces {
+            let joint = &self.assembly.joints[contact.joint];
+            let (n, t) = joint.frame();
+            let force = n * contact.force[0] + t * contact.force[1];
+            for (body, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+                if let Some(group) = self.groups[body]
+                    && let Some(pole) = pole[group]
+                {
+                    add_force(&mut sums[group], contact.point - pole, force, sign);
+                }
+            }
+        }
+        sums.iter().map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size)).fold(0.0, f64::max)
+    }
+
+    /// Greatest violation of strength \[N\]; in the recession cone where `strengths` is false.
+    fn violation(&self, forces: &[ContactForce], strengths: bool) -> f64 {
+        let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+        for contact in forces {
+            let joint = &self.assembly.joints[contact.joint];
+            let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
+            let sum = resultants.entry(contact.joint).or_default();
+            sum[0] += contact.force[0];
+            sum[1] += contact.force[1];
+            sum[2] += contact.force[0] * lever;
+        }
+        let mut worst = 0.0f64;
+        for (index, [n, t, m]) in resultants {
+            let joint = &self.assembly.joints[index];
+            let Bond::Law(law) = joint.bond else { continue };
+            let (height, area) = (joint.height(), joint.height() * self.assembly.width);
+            let polygon = &self.polygons[law];
+            let scale = if strengths { area } else { 0.0 };
+            let least = polygon.least_normal() * scale;
+            let arm = 2.0 * m.abs() / height;
+            let greatest = polygon.greatest_normal();
+            if greatest.is_infinite() {
+                worst = worst.max(arm - (n - least));
+            } else {
+                // The compressed depth d of a rectangular block of stress must fit beside |M|/N.
+                let full = (greatest * scale - least).max(0.0);
+                let block = n - least;
+                worst = worst.max(-block).max(block - full);
+                let depth = if full > 0.0 { block / full } else { 0.0 };
+                worst = worst.max(arm - block.max(0.0) * (1.0 - depth));
+            }
+            for facet in self.facets[law].iter().filter(|f| f.normal[1] != 0.0) {
+                worst = worst.max(facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale);
+            }
+        }
+        worst
+    }
+
+    fn field(&mut self, claim: &Claim) -> bool {
+        let Some(field) = claim.field else {
+            self.fail("no field");
+            return false;
+        };
+        let at = claim.field_factor;
+        let scale = self.residual_scale(at);
+        let balanced = self.residual("equilibrium", self.imbalance(field, 1.0, at) / scale, ROUNDING);
+        self.residual("strength", self.violation(field, true) / scale, ROUNDING) && balanced
+    }
+
+    fn ray(&mut self, claim: &Claim) {
+        let Some(ray) = claim.ray else {
+            return self.fail("no ray");
+        };
+        let largest = ray.iter().map(|c| c.force[0].hypot(c.force[1])).fold(0.0, f64::max);
+        let load = self.load_scale(1.0) - self.load_scale(0.0);
+        let scale = load.max(largest).max(f64::MIN_POSITIVE);
+        self.residual("ray_equilibrium", self.imbalance(ray, 0.0, 1.0) / scale, ROUNDING);
+        self.residual("ray_strength", self.violation(ray, false) / scale, ROUNDING);
+    }
+
+    fn powers(&self, motion: &[CentroidVelocity]) -> Powers {
+        let (mut fixed, mut varying) = (0.0, 0.0);
+        for body in self.free_bodies() {
+            let c = self.assembly.inertia(body).centroid;
+            let [vx, vy, omega] = motion[body];
+            let power = |w: &[f64; 3]| w[0] * vx + w[1] * vy + (w[2] - (c.x * w[1] - c.y * w[0])) * omega;
+            fixed += power(&self.loads.fixed[body]);
+            varying += power(&self.loads.varying[body]);
+        }
+        let jumps = jumps(self.assembly, motion);
+        let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
+        let (mut dissipated, mut impossible, mut uncertain) = (0.0, 0.0f64, 0.0);
+        for (joint, jump) in self.assembly.joints.iter().zip(&jumps) {
+            let Bond::Law(law) = joint.bond else {
+                impossible = impossible.max(jump.size());
+                continue;
+            };
+            let polygon = &self.polygons[law];
+            for open in jump.open {
+                for ray in &polygon.rays {
+                    impossible = impossible.max(-(ray[0] * open + ray[1] * jump.slip));
+                }
+            }
+            let area = joint.height() * self.assembly.width;
+            dissipated += support_integral(&polygon.vertices, jump) * area;
+            let strongest = polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+            uncertain += 8.0 * f64::EPSILON * strongest * area * jump.size();
+        }
+        Powers { fixed, varying, dissipated, uncertain, impossible: impossible / largest }
+    }
+
+    /// Field and mechanism with the laws' own flow: both exist at one factor, each joint moves only
+    /// where it yields, and no associated bound is exceeded. The bounds \[claimed lower, factor\].
+    fn non_associated(&mut self, claim: &Claim, gap: f64) -> Option<[f64; 2]> {
+        let own = claim.non_associated?;
+        let (Some(factor), Some(motion), Some(field)) = (claim.factor, claim.motion, claim.field) else {
+            self.fail("a collapse needs a factor, an admissible field and a mechanism");
+            return None;
+        };
+        if factor != claim.field_factor {
+            self.fail("the field is not at the collapse factor");
+        }
+        let admissible = self.field(claim);
+        self.held(motion);
+        let varying = self.powers(motion).varying;
+        let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
+        let jumps = jumps(self.assembly, motion);
+        let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
+        let (impossible, idle) = self.idle_power(field, &jumps);
+        let flows = self.residual("flow", impossible / largest, ROUNDING);
+        let scale = self.residual_scale(factor) * largest;
+        let complementary = self.residual("complementarity", idle / scale, ROUNDING);
+        let unit = factor.abs().max(self.factor_scale());
+        if let Some(greatest) = own.associated_factor {
+            let unit = unit.max(greatest.abs());
+            self.residual("above_associated", ((factor - greatest) / unit).max(0.0), gap);
+            let Some(motion) = own.associated_motion else {
+                self.fail("no motion proves the associated factor");
+                return None;
+            };
+            self.held(motion);
+            let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
+            self.residual("associated_flow", impossible, ROUNDING);
+            self.residual("associated_motion_scale", (varying - 1.0).abs(), 1e-9);
+            let spread = ((dissipated - fixed) / varying - greatest).abs() / unit;
+            self.residual("associated_gap", spread, gap.max(uncertain / varying.abs() / unit));
+        }
+        let mut lower = own.proved_lower.unwrap_or(claim.start);
+        if !(claim.start <= lower && lower <= factor) {
+            self.fail(format!("the lower bound {lower} does not lie between the start and the factor"));
+        }
+        if let Some(proof) = own.lower_proof {
+            let strongest = field.iter().map(|c| c.force[0].abs().max(c.force[1].abs())).fold(0.0, f64::max);
+            let shown = match proof.by {
+                LowerProofKind::Search => Ok((f64::INFINITY, 0.0)),
+                LowerProofKind::Start => Ok((claim.start, 0.0)),
+                LowerProofKind::Associated => Ok((own.associated_factor.unwrap_or(claim.start), 0.0)),
+                LowerProofKind::Products => {
+                    proved(self.assembly, self.loads, &proof.steps, [claim.start, factor], [largest, strongest])
+                }
+            };
+            match shown {
+                // What rounding of the multipliers may cost is taken off, and once more, so that other
+                // rounding confirms it.
+                Ok((shown, rounding)) if lower > shown && lower - shown <= PRODUCTS * unit => {
+                    lower = (shown - rounding).max(claim.start);
+                }
+                Ok((shown, _)) if lower <= shown => {}
+                Ok((shown, _)) => self.fail(format!("the lower bound {lower} is not proved, only {shown}")),
+                Err(why) => self.fail(format!("the lower bound: {why}")),
+            }
+        }
+        (admissible && scaled && flows && complementary).then_some([lower, factor])
+    }
+
+    /// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
+    /// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
+    /// multiplier of its sliding facet; what is left of the opening is associated.
+    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump]) -> (f64, f64) {
+        let mut resultants = vec![[0.0f64; 3]; jumps.len()];
+        for contact in field {
+            let joint = &self.assembly.joints[contact.joint];
+            let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
+            let sum = &mut resultants[contact.joint];
+            sum[0] += contact.force[0];
+            sum[1] += contact.force[1];
+            sum[2] += contact.force[0] * lever;
+        }
+        let (mut impossible, mut idle) = (0.0f64, 0.0);
+        for ((joint, jump), [n, t, m]) in self.assembly.joints.iter().zip(jumps).zip(resultants) {
+            let Bond::Law(law) = joint.bond else {
+                impossible = impossible.max(jump.size());
+                continue;
+            };
+            let (height, area) = (joint.height(), joint.height() * self.assembly.width);
+            let mut open = jump.open;
+            let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
+            let sliding =
+                self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * jump.slip < 0.0);
+            match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
+                Some(facet) => {
+                    let gamma = -jump.slip / facet.flow[1];
+                    open.iter_mut().for_each(|o| *o += gamma * facet.flow[0]);
+                    idle += gamma * slack(facet).abs();
+                }
+                None => impossible = impossible.max(jump.slip.abs()),
+            }
+            let polygon = &self.polygons[law];
+            let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
+            let mut corners = vec![[least, 0.0]];
+            if greatest.is_finite() {
+                corners.push([greatest, 0.0]);
+            } else {
+                impossible = open.iter().fold(impossible, |worst, o| worst.max(-o));
+            }
+            let opening = Jump { open, slip: 0.0 };
+            let ends = [n / 2.0 - m / height, n / 2.0 + m / height];
+            let power = support_integral(&corners, &opening) * area + ends[0] * open[0] + ends[1] * open[1];
+            idle += power.abs();
+        }
+        (impossible, idle)
+    }
+
+    /// The factor that the motion proves, and by how much rounding of its jumps can change it where
+    /// strengths are far beyond the forces.
+    fn upper_bound(&mut self, claim: &Claim) -> Option<(f64, f64)> {
+        let motion = claim.motion?;
+        let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
+        self.held(motion);
+        let flows = self.residual("flow", impossible, ROUNDING);
+        let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
+        (flows && scaled).then(|| ((dissipated - fixed) / varying, uncertain / varying.abs()))
+    }
+
+    /// Held bodies do not move.
+    fn held(&mut self, motion: &[CentroidVelocity]) {
+        if self.groups.iter().zip(motion).any(|(group, v)| group.is_none() && v.iter().any(|x| *x != 0.0)) {
+            self.fail("a body held by the ground moves");
+        }
+    }
+
+    fn refutation(&mut self, claim: &Claim, gap: f64) {
+        let Some(motion) = claim.motion else {
+            return self.fail("no motion that refutes equilibrium");
+        };
+        self.held(motion);
+        let Powers { fixed, varying, dissipated, impossible, .. } = self.powers(motion);
+        self.residual("flow", impossible, ROUNDING);
+        let excess = fixed + claim.start * varying - dissipated;
+        let largest = largest_jump(&jumps(self.assembly, motion));
+        let scale = self.residual_scale(claim.start) * largest;
+        if excess.is_nan() || excess <= EXCESS * scale {
+            self.fail(format!("the loads do no more work on the motion than is dissipated: excess {excess:.3e}"));
+        }
+        self.certificate.residuals.insert("excess_power".into(), excess / scale);
+        match claim.feasible_interval {
+            Some([low, high]) => {
+                let near = if low > claim.start { low } else { high };
+                self.residual("motion_scale", (varying.abs() - 1.0).abs(), 1e-9);
+                let proven = (dissipated - fixed) / varying;
+                let spread = (proven - near).abs() / proven.abs().max(near.abs()).max(self.factor_scale());
+                self.residual("interval_gap", spread, gap);
+            }
+            None => {
+                self.residual("motion_scale", (largest - 1.0).abs(), 1e-9);
+            }
+        }
+    }
+}
+
+/// Powers on a motion.
+struct Powers {
+    /// Of the fixed loads.
+    fixed: f64,
+    /// Of the varying loads.
+    varying: f64,
+    /// Dissipated in the joints.
+    dissipated: f64,
+    /// Rounding of the jumps times the strengths: what of `dissipated` means nothing.
+    uncertain: f64,
+    /// The greatest motion that no force of a law could do, relative to the greatest jump.
+    impossible: f64,
+}
+
+/// ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area.
+/// The maximum of linear functions is integrated exactly between their crossings.
+fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
+    let end = |v: &[f64; 2], i: usize| -(v[0] * jump.open[i] + v[1] * jump.slip);
+    let lines: Vec<[f64; 2]> = vertices.iter().map(|v| [end(v, 0), end(v, 1)]).collect();
+    let mut cuts = vec![0.0, 1.0];
+    for (i, a) in lines.iter().enumerate() {
+        for b in &lines[i + 1..] {
+            let (first, last) = (a[0] - b[0], a[1] - b[1]);
+            if first * last < 0.0 {
+                cuts.push(first / (first - last));
+            }
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    let greatest = |s: f64| lines.iter().map(|l| l[0] + s * (l[1] - l[0])).fold(f64::NEG_INFINITY, f64::max);
+    cuts.windows(2).map(|w| (w[1] - w[0]) * (greatest(w[0]) + greatest(w[1])) / 2.0).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dissipation_of_a_crushing_rotation_is_that_of_its_compressed_part() {
+        // f_c = 4 on the closing part of a joint whose ends move by −1 and +3: 4 · (1/2 · 1/4).
+        let jump = Jump { open: [-1.0, 3.0], slip: 0.0 };
+        let power = support_integral(&[[0.0, 0.0], [4.0, 0.0]], &jump);
+        assert!((power - 0.5).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,286 @@
+//! Mechanisms: which joints rotate, slide and crush in a motion, and what kind of collapse it is.
+
+use crate::law::{FacetMode, FlowRule, InterfaceLaw, YieldPolygon};
+use crate::model::geometry::{Vec2, turned};
+use crate::model::{Assembly, Bond, Joint};
+use serde::{Deserialize, Serialize};
+
+/// What kind of collapse a mechanism is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MechanismKind {
+    /// Three hinges.
+    ThreeHinge,
+    /// Four hinges.
+    FourHinge,
+    /// Five hinges.
+    FiveHinge,
+    /// Any other number of hinges.
+    Rocking,
+    /// Sliding only.
+    Sliding,
+    /// Crushing only.
+    Crushing,
+    /// Several of these together.
+    Mixed,
+}
+
+/// The face of an arch on which a hinge closes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Inner face.
+    Intrados,
+    /// Outer face.
+    Extrados,
+}
+
+/// A joint that rotates while its blocks keep touching.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hinge {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Names of the bodies \[minus, plus\].
+    pub between: [String; 2],
+    /// On arches, where the blocks touch.
+    pub side: Option<Side>,
+    /// Where the blocks touch \[m\].
+    pub point: [f64; 2],
+    /// Rotation of plus relative to minus \[rad per unit of motion\].
+    pub rotation: f64,
+}
+
+/// A joint that slides.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sliding {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Names of the bodies \[minus, plus\].
+    pub between: [String; 2],
+    /// Slip of plus relative to minus along t \[m per unit of motion\].
+    pub slip: f64,
+}
+
+/// A joint that crushes: its own law over more than half the height, or blocks next to it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Crushing {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Names of the bodies \[minus, plus\].
+    pub between: [String; 2],
+    /// Crushed share of the height.
+    pub share: f64,
+}
+
+/// A collapse mechanism.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mechanism {
+    /// Its kind.
+    pub kind: MechanismKind,
+    /// Hinges, neighbouring joints of equal side and sense counted as one.
+    pub hinge_count: usize,
+    /// Whether it is the only one; `null` where not known.
+    pub unique: Option<bool>,
+    /// Every rotating joint whose blocks touch.
+    pub hinges: Vec<Hinge>,
+    /// Every sliding joint.
+    pub sliding: Vec<Sliding>,
+    /// Every joint that crushes over more than half its height, and every joint next to which a block
+    /// of a material that yields has crushed.
+    pub crushing: Vec<Crushing>,
+}
+
+/// Velocity of a body: \[v_x, v_y\] at its centroid and ω.
+pub type CentroidVelocity = [f64; 3];
+
+/// How the plus body leaves the minus body at a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// ġ_n at the two ends.
+    pub open: [f64; 2],
+    /// ġ_t, the same along the joint.
+    pub slip: f64,
+}
+
+impl Jump {
+    /// Relative rotation of plus, given the joint's height.
+    pub fn rotation(&self, height: f64) -> f64 {
+        (self.open[0] - self.open[1]) / height
+    }
+
+    /// The greatest component.
+    pub fn size(&self) -> f64 {
+        self.open[0].abs().max(self.open[1].abs()).max(self.slip.abs())
+    }
+}
+
+/// Velocity of a point of a body.
+pub fn velocity_at(centroid: Vec2, velocity: CentroidVelocity, point: Vec2) -> Vec2 {
+    Vec2::new(velocity[0], velocity[1]) + turned(point - centroid) * velocity[2]
+}
+
+/// The jumps at all joints in a motion of all bodies.
+pub fn jumps(assembly: &Assembly, motion: &[CentroidVelocity]) -> Vec<Jump> {
+    let centroids: Vec<Vec2> = (0..assembly.bodies.len()).map(|body| assembly.inertia(body).centroid).collect();
+    let jump = |joint: &Joint| {
+        let (n, t) = joint.frame();
+        let apart = joint.ends.map(|point| {
+            let at = |body: usize| velocity_at(centroids[body], motion[body], point);
+            at(joint.plus) - at(joint.minus)
+        });
+        Jump { open: apart.map(|v| v.dot(&n)), slip: (apart[0] + apart[1]).dot(&t) / 2.0 }
+    };
+    assembly.joints.iter().map(jump).collect()
+}
+
+/// Jumps smaller than this share of the greatest count as none.
+const TOLERANCE: f64 = 1e-9;
+
+/// How far a point of a joint is from touching, given the rays of the law without crushing:
+/// positive apart, zero in contact (slip that dilates included), negative crushing.
+fn clearance(rays: &[[f64; 2]], open: f64, slip: f64) -> f64 {
+    let along = |ray: &[f64; 2]| (ray[0] * open + ray[1] * slip) / ray[0].max(0.1);
+    rays.iter().map(along).fold(f64::INFINITY, f64::min)
+}
+
+/// Reads a mechanism off a motion in which joints flow as `flow` says. `None` where nothing moves.
+pub fn mechanism(
+    assembly: &Assembly,
+    motion: &[CentroidVelocity],
+    unique: Option<bool>,
+    flow: FlowRule,
+) -> Option<Mechanism> {
+    mechanism_above(TOLERANCE, assembly, motion, unique, flow)
+}
+
+/// Reads a mechanism off rates of bodies that also deform: jumps below `share` of the greatest are
+/// deformation.
+pub fn mechanism_above(
+    share: f64,
+    assembly: &Assembly,
+    motion: &[CentroidVelocity],
+    unique: Option<bool>,
+    flow: FlowRule,
+) -> Option<Mechanism> {
+    let jumps = jumps(assembly, motion);
+    let tolerance = share * jumps.iter().map(Jump::size).fold(0.0, f64::max);
+    if tolerance == 0.0 {
+        return None;
+    }
+    let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law, flow)).collect();
+    let mut found = Mechanism {
+        kind: MechanismKind::Rocking,
+        hinge_count: 0,
+        unique,
+        hinges: Vec::new(),
+        sliding: Vec::new(),
+        crushing: Vec::new(),
+    };
+    for (index, (joint, jump)) in assembly.joints.iter().zip(&jumps).enumerate() {
+        let Bond::Law(law) = joint.bond else { continue };
+        let height = joint.height();
+        let between = || [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
+        let clear = jump.open.map(|open| clearance(&rays[law], open, jump.slip));
+        if clear[0] > tolerance && clear[1] > tolerance {
+            continue; // apart all along
+        }
+        if jump.slip.abs() > tolerance {
+            found.sliding.push(Sliding { joint: index, between: between(), slip: jump.slip });
+        }
+        let crushed = crushed_share(clear, tolerance);
+        if crushed > 0.5 {
+            found.crushing.push(Crushing { joint: index, between: between(), share: crushed });
+        }
+        let rotation = jump.rotation(height);
+        if (rotation * height).abs() > tolerance && crushed < 1.0 {
+            let touching = usize::from(clear[1] < clear[0]);
+            let toward = joint.ends[1 - touching] - joint.ends[touching];
+            let point = joint.ends[touching] + toward * crushed;
+            let side = assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]);
+            found.hinges.push(Hinge { joint: index, between: between(), side, point: point.into(), rotation });
+        }
+    }
+    found.name_kind(assembly);
+    Some(found)
+}
+
+impl Mechanism {
+    /// The mechanism with what also crushes: blocks next to these joints. A joint next to which more than
+    /// half of the height crushes is no hinge.
+    pub fn with_crushing(mut self, assembly: &Assembly, crushing: Vec<Crushing>) -> Self {
+        for new in crushing {
+            match self.crushing.iter_mut().find(|own| own.joint == new.joint) {
+                Some(own) => own.share = own.share.max(new.share),
+                None => self.crushing.push(new),
+            }
+        }
+        self.crushing.sort_by_key(|c| c.joint);
+        self.name_kind(assembly);
+        self
+    }
+
+    /// Counts hinges and names the kind.
+    fn name_kind(&mut self, assembly: &Assembly) {
+        let crushes = |joint: usize| self.crushing.iter().any(|c| c.joint == joint && c.share > 0.5);
+        let hinges: Vec<&Hinge> = self.hinges.iter().filter(|hinge| !crushes(hinge.joint)).collect();
+        self.hinge_count = count_merged(assembly, &hinges);
+        self.kind = match (self.hinge_count, self.sliding.is_empty(), self.crushing.is_empty()) {
+            (0, false, true) => MechanismKind::Sliding,
+            (0, true, false) => MechanismKind::Crushing,
+            (3, true, true) => MechanismKind::ThreeHinge,
+            (4, true, true) => MechanismKind::FourHinge,
+            (5, true, true) => MechanismKind::FiveHinge,
+            (_, true, true) => MechanismKind::Rocking,
+            _ => MechanismKind::Mixed,
+        };
+    }
+}
+
+fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {
+    let facets = law.formulation().facets().unwrap_or_default();
+    let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
+    if flow == FlowRule::NonAssociated {
+        uncrushed.iter_mut().for_each(|f| f.normal = f.flow);
+    }
+    let mut rays = YieldPolygon::of(&uncrushed).rays;
+    let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;
+    if rays.len() < 2 || rays.iter().any(|a| rays.iter().any(|b| opposite(a, b))) {
+        // Stuck along the joint: only opening parts the blocks.
+        rays = vec![[1.0, 0.0]];
+    }
+    rays
+}
+
+/// Share of the height over which the clearance, linear along the joint, is negative.
+fn crushed_share(clear: [f64; 2], tolerance: f64) -> f64 {
+    let [low, high] = if clear[0] < clear[1] { clear } else { [clear[1], clear[0]] };
+    if low >= -tolerance {
+        0.0
+    } else if high <= tolerance {
+        1.0
+    } else {
+        low / (low - high)
+    }
+}
+
+/// Counts hinges, joints that share a body and rotate in the same sense on the same side as one.
+fn count_merged(assembly: &Assembly, hinges: &[&Hinge]) -> usize {
+    let mut count = hinges.len();
+    let mut group: Vec<usize> = (0..hinges.len()).collect();
+    for i in 0..hinges.len() {
+        for j in 0..i {
+            let (a, b) = (&assembly.joints[hinges[i].joint], &assembly.joints[hinges[j].joint]);
+            let neighbours =
+                [a.minus, a.plus].iter().any(|body| !assembly.bodies[*body].fixed && [b.minus, b.plus].contains(body));
+            let off = |joint: &Joint, hinge: &Hinge| Vec2::from(hinge.point) - joint.middle();
+            let alike =
+                hinges[i].rotation * hinges[j].rotation > 0.0 && off(a, hinges[i]).dot(&off(b, hinges[j])) > 0.0;
+            if neighbours && alike && group[i] != group[j] {
+                let (from, to) = (group[i], group[j]);
+                group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                count -= 1;
+            }
+        }
+    }
+    count
+}

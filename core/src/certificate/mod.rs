@@ -1,0 +1,14 @@
+//! Certificates: what proves an answer. They share nothing with solvers.
+
+mod limit;
+mod mechanism;
+mod path;
+mod products;
+
+pub use self::limit::{Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump};
+pub use self::mechanism::{
+    CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
+    mechanism_above, velocity_at,
+};
+pub use self::path::{PathChecker, TOLERANCES, Tolerance, flow_residual, power_residual, ray_residual, tolerance};
+pub use self::products::{COVERED, proved};

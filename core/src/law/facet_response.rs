@@ -1,0 +1,158 @@
+//! Tractions from gaps for laws given by facets, with the joint's own stiffness.
+//!
+//! t = −K (g − g_p) with K = diag(k_n, k_t), a·t ≤ b on every facet, ġ_p = −Σ γ_i d_i, γ ≥ 0, γ_i only on
+//! facets that are reached; fully implicit. Two facets at most can be active in the plane, so the step
+//! is the one admissible answer among the facets alone and in pairs. A facet of opening without tensile
+//! strength is no plastic flow: the joint opens and closes where it was, so its share in g_p is not
+//! kept; what has torn or crushed or dilated is.
+
+use super::interface::{Facet, FacetMode, InterfaceResponse, TractionPoint, UpdateBranch};
+use super::material::UpdateFailure;
+
+/// A joint of facets with stiffness.
+#[derive(Debug, Clone)]
+pub struct FacetResponse {
+    facets: Vec<Facet>,
+    stiffness: [f64; 2],
+}
+
+/// An active set: facets, their multipliers \[m\], and the traction.
+struct Active<'a> {
+    facets: [Option<&'a Facet>; 2],
+    steps: [f64; 2],
+    traction: [f64; 2],
+    excess: f64,
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+impl FacetResponse {
+    /// Facets with stiffness \[k_n, k_t\] \[Pa/m\], both finite.
+    pub fn new(facets: Vec<Facet>, stiffness: [f64; 2]) -> Self {
+        FacetResponse { facets, stiffness }
+    }
+
+    fn pull(&self, direction: [f64; 2]) -> [f64; 2] {
+        [self.stiffness[0] * direction[0], self.stiffness[1] * direction[1]]
+    }
+
+    fn excess(&self, traction: [f64; 2]) -> f64 {
+        self.facets.iter().map(|f| dot(f.normal, traction) - f.bound).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn alone<'a>(&self, trial: [f64; 2], facet: &'a Facet) -> Option<Active<'a>> {
+        let pull = self.pull(facet.flow);
+        let step = (dot(facet.normal, trial) - facet.bound) / dot(facet.normal, pull);
+        let traction = [trial[0] - step * pull[0], trial[1] - step * pull[1]];
+        (step >= 0.0).then(|| Active {
+            facets: [Some(facet), None],
+            steps: [step, 0.0],
+            traction,
+            excess: self.excess(traction),
+        })
+    }
+
+    fn pair<'a>(&self, trial: [f64; 2], one: &'a Facet, two: &'a Facet) -> Option<Active<'a>> {
+        let corner = intersection(one, two)?;
+        // Σ γ K d = trial − corner.
+        let (a, b) = (self.pull(one.flow), self.pull(two.flow));
+        let away = [trial[0] - corner[0], trial[1] - corner[1]];
+        let determinant = a[0] * b[1] - a[1] * b[0];
+        if determinant == 0.0 {
+            return None;
+        }
+        let steps = [(away[0] * b[1] - away[1] * b[0]) / determinant, (a[0] * away[1] - a[1] * away[0]) / determinant];
+        (steps[0] >= 0.0 && steps[1] >= 0.0).then(|| Active {
+            facets: [Some(one), Some(two)],
+            steps,
+            traction: corner,
+            excess: self.excess(corner),
+        })
+    }
+
+    fn tangent(&self, active: &[Option<&Facet>; 2]) -> [[f64; 2]; 2] {
+        let [k_n, k_t] = self.stiffness;
+        match active {
+            [Some(_), Some(_)] => [[0.0; 2]; 2],
+            [Some(facet), None] => {
+                let pull = self.pull(facet.flow);
+                let across = dot(facet.normal, pull);
+                let row = [facet.normal[0] * k_n, facet.normal[1] * k_t];
+                let entry =
+                    |i: usize, j: usize| pull[i] * row[j] / across - if i == j { self.stiffness[i] } else { 0.0 };
+                [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
+            }
+            _ => [[-k_n, 0.0], [0.0, -k_t]],
+        }
+    }
+}
+
+fn intersection(one: &Facet, two: &Facet) -> Option<[f64; 2]> {
+    let (a, b) = (one.normal, two.normal);
+    let determinant = a[0] * b[1] - a[1] * b[0];
+    let corner = [one.bound * b[1] - two.bound * a[1], two.bound * a[0] - one.bound * b[0]];
+    (determinant != 0.0).then(|| [corner[0] / determinant, corner[1] / determinant])
+}
+
+impl InterfaceResponse for FacetResponse {
+    fn state_size(&self) -> usize {
+        2
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &["plastic_gap_n [m]", "plastic_gap_t [m]"]
+    }
+
+    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+        if !gap.iter().chain(old).all(|x| x.is_finite()) {
+            return Err(UpdateFailure::NotFinite);
+        }
+        let trial = [-self.stiffness[0] * (gap[0] - old[0]), -self.stiffness[1] * (gap[1] - old[1])];
+        new.copy_from_slice(old);
+        let mut found =
+            Active { facets: [None; 2], steps: [0.0; 2], traction: trial, excess: self.excess(trial).max(0.0) };
+        if found.excess > 0.0 {
+            let alone = self.facets.iter().filter_map(|facet| self.alone(trial, facet));
+            let pairs = self
+                .facets
+                .iter()
+                .enumerate()
+                .flat_map(|(i, one)| self.facets[i + 1..].iter().filter_map(move |two| self.pair(trial, one, two)));
+            for candidate in alone.chain(pairs) {
+                if candidate.excess < found.excess {
+                    found = candidate;
+                }
+            }
+            let size = trial[0].abs().max(trial[1].abs());
+            if found.excess > 1e-12 * size {
+                return Err(UpdateFailure::NoConvergence);
+            }
+        }
+        let mut branch = UpdateBranch::Elastic;
+        let mut dissipated = 0.0;
+        for (facet, step) in found.facets.iter().zip(found.steps) {
+            let Some(facet) = facet else { continue };
+            dissipated += step * dot(facet.flow, found.traction);
+            if step > 0.0 && !(facet.mode == FacetMode::Opening && facet.bound == 0.0) {
+                branch = UpdateBranch::Sliding;
+                new[0] -= step * facet.flow[0];
+                new[1] -= step * facet.flow[1];
+            }
+        }
+        let elastic = [found.traction[0] / self.stiffness[0], found.traction[1] / self.stiffness[1]];
+        let stored = 0.5 * dot(found.traction, elastic);
+        Ok(TractionPoint {
+            traction: found.traction,
+            tangent: self.tangent(&found.facets),
+            branch,
+            stored,
+            dissipated: dissipated.max(0.0),
+        })
+    }
+}

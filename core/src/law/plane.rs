@@ -1,0 +1,245 @@
+//! Plane strain and plane stress around any law in space, written once.
+//!
+//! In the plane a strain is (ε_xx, ε_yy, γ_xy). Plane strain sets ε_zz = 0. Plane stress finds the
+//! ε_zz at which σ_zz = 0 by a bracketed Newton iteration on the law itself, and its tangent is that
+//! of the iteration's end: with a, b in the plane and z across,
+//!
+//! ```text
+//! 0 = C_zb dε_b + C_zz dε_zz    →    C̄_ab = C_ab − C_az C_zb / C_zz
+//! ```
+//!
+//! (static condensation; de Souza Neto, Perić & Owen 2008, section 9.2). The out-of-plane shears of an
+//! isotropic law stay zero. ε_zz at the end of a step is the last number of the state: the next step
+//! starts there.
+
+use super::material::{BatchFailure, Region, StressPoint, StressUpdate, UpdateFailure, Voigt};
+use std::sync::Arc;
+
+/// Stress state of deformable bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// ε_z = 0.
+    Strain,
+    /// σ_z = 0.
+    Stress,
+}
+
+/// Voigt indices of the plane's components.
+const IN_PLANE: [usize; 3] = [0, 1, 3];
+const ACROSS: usize = 2;
+/// Points that go to the law in one call.
+const CHUNK: usize = 16;
+/// Law evaluations of one plane-stress update.
+const EVALUATIONS: usize = 200;
+
+/// What an update in the plane gives for one point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarPoint {
+    /// σ_xx, σ_yy, σ_xy \[Pa\].
+    pub stress: [f64; 3],
+    /// σ_zz \[Pa\]; rounding in plane stress.
+    pub stress_across: f64,
+    /// ε_zz; 0 in plane strain.
+    pub strain_across: f64,
+    /// ∂(σ_xx, σ_yy, σ_xy)/∂(ε_xx, ε_yy, γ_xy) \[Pa\].
+    pub tangent: [[f64; 3]; 3],
+    /// ∂σ_zz/∂(ε_xx, ε_yy, γ_xy) \[Pa\]; 0 in plane stress.
+    pub tangent_across: [f64; 3],
+    /// Where the stress lies.
+    pub region: Region,
+    /// Plastic work of the step per volume \[J/m³\].
+    pub dissipation: f64,
+}
+
+impl PlanarPoint {
+    /// No stress and no stiffness: something to be overwritten.
+    pub const ZERO: PlanarPoint = PlanarPoint {
+        stress: [0.0; 3],
+        stress_across: 0.0,
+        strain_across: 0.0,
+        tangent: [[0.0; 3]; 3],
+        tangent_across: [0.0; 3],
+        region: Region::Elastic,
+        dissipation: 0.0,
+    };
+}
+
+/// A law in space, used in a plane.
+#[derive(Debug, Clone)]
+pub struct PlanarUpdate {
+    law: Arc<dyn StressUpdate>,
+    plane: Plane,
+    /// C_zz of the undeformed material \[Pa\].
+    stiffness: f64,
+}
+
+impl PlanarUpdate {
+    /// The law in this plane. Fails where the law has no response to zero strain.
+    pub fn new(law: Arc<dyn StressUpdate>, plane: Plane) -> Result<Self, UpdateFailure> {
+        let mut old = vec![0.0; law.state_size()];
+        law.initial_state(&mut old);
+        let mut new = old.clone();
+        let length = if law.largest_length().is_finite() { law.largest_length() / 2.0 } else { 1.0 };
+        let stiffness = law.update_point(&[0.0; 6], length, &old, &mut new)?.tangent[ACROSS][ACROSS];
+        Ok(PlanarUpdate { law, plane, stiffness })
+    }
+
+    /// The law in space.
+    pub fn law(&self) -> &Arc<dyn StressUpdate> {
+        &self.law
+    }
+
+    /// The plane.
+    pub fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    /// Numbers in the state of a point: the law's, and ε_zz in plane stress.
+    pub fn state_size(&self) -> usize {
+        self.law.state_size() + usize::from(self.plane == Plane::Stress)
+    }
+
+    /// Writes the state of the undeformed material.
+    pub fn initial_state(&self, state: &mut [f64]) {
+        let own = self.law.state_size();
+        self.law.initial_state(&mut state[..own]);
+        state[own..].fill(0.0);
+    }
+
+    /// The update of one point; as [`StressUpdate::update_point`].
+    pub fn update_point(
+        &self,
+        strain: &[f64; 3],
+        length: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<PlanarPoint, UpdateFailure> {
+        match self.plane {
+            Plane::Strain => {
+                let strain = in_space(strain, 0.0);
+                Ok(planar(&self.law.update_point(&strain, length, old, new)?, 0.0, None))
+            }
+            Plane::Stress => self.zero_stress(strain, length, old, new),
+        }
+    }
+
+    /// Updates a group of points; as [`StressUpdate::update`].
+    pub fn update(
+        &self,
+        strains: &[[f64; 3]],
+        lengths: &[f64],
+        old: &[f64],
+        new: &mut [f64],
+        points: &mut [PlanarPoint],
+    ) -> Result<(), BatchFailure> {
+        let (size, count) = (self.state_size(), strains.len());
+        if lengths.len() != count || points.len() != count || old.len() != count * size || new.len() != count * size {
+            return Err(BatchFailure { point: 0, failure: UpdateFailure::WrongSize });
+        }
+        if self.plane == Plane::Stress {
+            for (index, (strain, point)) in strains.iter().zip(points).enumerate() {
+                let place = index * size..(index + 1) * size;
+                *point = self
+                    .zero_stress(strain, lengths[index], &old[place.clone()], &mut new[place])
+                    .map_err(|failure| BatchFailure { point: index, failure })?;
+            }
+            return Ok(());
+        }
+        let mut space = [[0.0; 6]; CHUNK];
+        let mut found = [StressPoint::ZERO; CHUNK];
+        for start in (0..count).step_by(CHUNK) {
+            let end = count.min(start + CHUNK);
+            let here = end - start;
+            for (out, strain) in space.iter_mut().zip(&strains[start..end]) {
+                *out = in_space(strain, 0.0);
+            }
+            let place = start * size..end * size;
+            self.law
+                .update(&space[..here], &lengths[start..end], &old[place.clone()], &mut new[place], &mut found[..here])
+                .map_err(|wrong| BatchFailure { point: start + wrong.point, ..wrong })?;
+            for (point, found) in points[start..end].iter_mut().zip(&found) {
+                *point = planar(found, 0.0, None);
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds ε_zz with σ_zz = 0. σ_zz grows with ε_zz wherever the material is stable, so a bracket
+    /// found by growing steps holds a root; Newton steps that leave it become bisections.
+    fn zero_stress(
+        &self,
+        strain: &[f64; 3],
+        length: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<PlanarPoint, UpdateFailure> {
+        let own = self.law.state_size();
+        let (old_own, across) = (&old[..own], old[own]);
+        let size = strain.iter().fold(across.abs(), |a, b| a.max(b.abs()));
+        if !size.is_finite() {
+            return Err(UpdateFailure::NotFinite);
+        }
+        let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
+        let (mut z, mut reach) = (across, size.max(f64::MIN_POSITIVE));
+        for _ in 0..EVALUATIONS {
+            let full = in_space(strain, z);
+            let point = self.law.update_point(&full, length, old_own, &mut new[..own])?;
+            let stress = point.stress[ACROSS];
+            let largest = IN_PLANE.iter().fold(0.0_f64, |a, &i| a.max(point.stress[i].abs()));
+            let noise = 4.0 * f64::EPSILON * self.stiffness * size.max(z.abs());
+            let closed =
+                matches!((low, high), (Some(l), Some(h)) if !(l < z && z < h) || h - l <= 4.0 * f64::EPSILON * z.abs());
+            if stress.abs() <= 1e-13 * largest + noise || (closed && stress.abs() <= 1e-9 * largest + noise) {
+                new[own] = z;
+                return Ok(planar(&point, z, Some(self.stiffness)));
+            }
+            if closed {
+                return Err(UpdateFailure::NoConvergence);
+            }
+            if stress > 0.0 {
+                high = Some(z)
+            } else {
+                low = Some(z)
+            }
+            let slope = point.tangent[ACROSS][ACROSS];
+            let newton = z - stress / slope;
+            z = match (low, high) {
+                (Some(l), Some(h)) if slope > 0.0 && l < newton && newton < h => newton,
+                (Some(l), Some(h)) => 0.5 * (l + h),
+                _ => {
+                    // No bracket yet: Newton, but never farther than twice what was tried before.
+                    let step = if slope > 0.0 && newton.is_finite() { newton - z } else { -stress.signum() * reach };
+                    reach *= 2.0;
+                    z + step.clamp(-reach, reach)
+                }
+            };
+        }
+        Err(UpdateFailure::NoConvergence)
+    }
+}
+
+fn in_space(strain: &[f64; 3], across: f64) -> Voigt {
+    [strain[0], strain[1], across, strain[2], 0.0, 0.0]
+}
+
+/// The components in the plane; condensed over zz where C_zz of the undeformed material is given.
+fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> PlanarPoint {
+    let c = &point.tangent;
+    let mut tangent = [[0.0; 3]; 3];
+    // Without stiffness across, as at the tip of a cone, there is nothing to condense.
+    let free = condense.is_some_and(|stiffness| c[ACROSS][ACROSS].abs() > 1e-14 * stiffness);
+    for (row, &i) in tangent.iter_mut().zip(&IN_PLANE) {
+        for (entry, &j) in row.iter_mut().zip(&IN_PLANE) {
+            *entry = c[i][j] - if free { c[i][ACROSS] * c[ACROSS][j] / c[ACROSS][ACROSS] } else { 0.0 };
+        }
+    }
+    PlanarPoint {
+        stress: IN_PLANE.map(|i| point.stress[i]),
+        stress_across: point.stress[ACROSS],
+        strain_across,
+        tangent,
+        tangent_across: if condense.is_some() { [0.0; 3] } else { IN_PLANE.map(|j| c[ACROSS][j]) },
+        region: point.region,
+        dissipation: point.dissipation,
+    }
+}

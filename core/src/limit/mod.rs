@@ -1,0 +1,9 @@
+//! Limit analysis: its problem, what is asked, what is answered, and the trait of its solvers.
+
+mod lower_proof;
+mod problem;
+mod solver;
+
+pub use self::lower_proof::{FIRST, LAST, LowerProof, LowerProofKind, ProductStep};
+pub use self::problem::{JointForce, LimitJoint, LimitProblem, Velocity};
+pub use self::solver::{Counters, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, Status};

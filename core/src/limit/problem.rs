@@ -1,0 +1,135 @@
+//! The problem of limit analysis and its answers: what a limit solver is given and gives back.
+//!
+//! Rigid bodies b with wrenches `fixed + λ varying`, joints with strengths over (N_0, N_1, T).
+//! Static form: the greatest λ with equilibrium and strengths. Kinematic form (its dual): the least
+//! λ = D(q̇) − fixed·q̇ over motions with varying·q̇ = 1, D the power dissipated in the joints.
+//! Rows carry the flow of their facets too ([`crate::law::ForceRow::flow`]). Solvers that read
+//! it answer with [`NonAssociated`]; all others read joints with associated flow.
+
+use crate::law::{Facet, JointStrength, integrate, is_associated};
+use crate::model::geometry::{Vec2, bounding_box, cross};
+use crate::model::{Assembly, Bond, StageLoads, Wrenches};
+use std::collections::BTreeMap;
+
+/// Forces carried by a joint: normal forces at its two ends, shear along it \[N\].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JointForce {
+    /// N_0, N_1 ≥ 0 in compression.
+    pub normal: [f64; 2],
+    /// T, along t on the plus body.
+    pub shear: f64,
+}
+
+/// Velocity of a body as a rigid motion seen at the origin: \[v_x, v_y, ω\].
+pub type Velocity = [f64; 3];
+
+/// A joint between two free groups, or a group and the ground (`None`).
+#[derive(Debug, Clone)]
+pub struct LimitJoint {
+    /// Index of the joint in the assembly.
+    pub joint: usize,
+    /// Group on the minus side.
+    pub minus: Option<usize>,
+    /// Group on the plus side.
+    pub plus: Option<usize>,
+    /// Its ends \[m\].
+    pub ends: [Vec2; 2],
+    /// Unit normal from minus to plus.
+    pub normal: Vec2,
+    /// Unit tangent.
+    pub tangent: Vec2,
+    /// What it can carry.
+    pub strength: JointStrength,
+}
+
+impl LimitJoint {
+    /// Wrenches about `pole` on the plus body per unit of N_0, N_1 and T; minus gets the opposite.
+    pub fn wrenches(&self, pole: Vec2) -> [[f64; 3]; 3] {
+        let at = |point: Vec2, direction: Vec2| [direction.x, direction.y, cross(point - pole, direction)];
+        [at(self.ends[0], self.normal), at(self.ends[1], self.normal), at(self.ends[0], self.tangent)]
+    }
+}
+
+/// The reduced problem of one stage.
+#[derive(Debug, Clone)]
+pub struct LimitProblem {
+    /// For each body of the assembly its free group, `None` where held.
+    pub group_of: Vec<Option<usize>>,
+    /// Number of free groups.
+    pub groups: usize,
+    /// Joints that remain.
+    pub joints: Vec<LimitJoint>,
+    /// Wrench per group about `pole` \[N, N m\].
+    pub fixed: Wrenches,
+    /// Wrench per group about `pole` for λ = 1.
+    pub varying: Wrenches,
+    /// Middle of the scene, about which moments are taken \[m\].
+    pub pole: Vec2,
+    /// Length scale \[m\].
+    pub length: f64,
+    /// Whether some law's own flow is not associated.
+    pub non_associated: bool,
+}
+
+impl LimitProblem {
+    /// Reduces an assembly: bonded bodies become one, held ones the ground, joints inside a group
+    /// vanish. An error names the law that limit analysis cannot read.
+    pub fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
+        let (group_of, groups) = assembly.rigid_groups();
+        let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
+        let (low, high) = bounding_box(points);
+        let pole = if assembly.joints.is_empty() { Vec2::zeros() } else { (low + high) / 2.0 };
+        let mut read: BTreeMap<usize, Vec<Facet>> = BTreeMap::new();
+        let mut non_associated = false;
+        let mut joints = Vec::new();
+        for (index, joint) in assembly.joints.iter().enumerate() {
+            let (minus, plus) = (group_of[joint.minus], group_of[joint.plus]);
+            let Bond::Law(law) = joint.bond else {
+                continue;
+            };
+            if minus == plus {
+                continue;
+            }
+            let (name, interface) = &assembly.catalogue.laws[law];
+            if let std::collections::btree_map::Entry::Vacant(place) = read.entry(law) {
+                let facets = interface.formulation().facets().ok_or_else(|| {
+                    format!("joint law \"{name}\" is not given by facets: limit analysis cannot read it")
+                })?;
+                non_associated |= !is_associated(&facets);
+                place.insert(facets);
+            }
+            let facets = &read[&law];
+            let strength = integrate(facets, joint.height() * assembly.width)
+                .map_err(|why| format!("joint law \"{name}\": {why}"))?;
+            let (normal, tangent) = joint.frame();
+            joints.push(LimitJoint { joint: index, minus, plus, ends: joint.ends, normal, tangent, strength });
+        }
+        let gather = |wrenches: &Wrenches| {
+            let mut sum = vec![[0.0; 3]; groups];
+            for (group, wrench) in group_of.iter().zip(wrenches) {
+                if let Some(group) = group {
+                    let [x, y, moment] = wrench;
+                    sum[*group][0] += x;
+                    sum[*group][1] += y;
+                    sum[*group][2] += moment - (pole.x * y - pole.y * x);
+                }
+            }
+            sum
+        };
+        Ok(LimitProblem {
+            fixed: gather(&loads.fixed),
+            varying: gather(&loads.varying),
+            group_of,
+            groups,
+            joints,
+            pole,
+            length: if low.x.is_finite() { (high - low).norm() } else { 1.0 },
+            non_associated,
+        })
+    }
+
+    /// Sum of the sizes of some wrenches as forces \[N\], moments divided by the scene's length.
+    pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
+        wrenches.iter().map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length)).sum()
+    }
+}

@@ -1,0 +1,95 @@
+//! What is asked of a limit solver, and what it answers.
+
+use super::lower_proof::LowerProof;
+use super::problem::{JointForce, LimitProblem, Velocity};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+
+/// What is asked of a limit solver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LimitQuestion {
+    /// Is there an admissible field at this factor?
+    Admissible(f64),
+    /// From an admissible state at `start`, what is the greatest factor, searched up to `max`?
+    Collapse {
+        /// Where the search starts.
+        start: f64,
+        /// Where it ends (may be ∞).
+        max: f64,
+    },
+}
+
+/// How a stage ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// It reached its factor; an admissible field proves it.
+    Stands,
+    /// It collapses at a factor that both bounds enclose.
+    Collapse,
+    /// It carries any factor: a ray proves it.
+    Unbounded,
+    /// The loads present before the stage begins cannot be carried: a motion proves it.
+    NoEquilibrium,
+    /// No rate of solution with growing factor.
+    LimitPoint,
+    /// Not proven; the notes say why.
+    Stalled,
+}
+
+/// Counts of work done.
+pub type Counters = BTreeMap<String, u64>;
+
+/// A limit solver's answer for one stage.
+#[derive(Debug, Clone)]
+pub struct LimitAnswer {
+    /// How it ends.
+    pub status: Status,
+    /// The collapse factor.
+    pub factor: Option<f64>,
+    /// The factor at which `field` is in equilibrium.
+    pub field_factor: f64,
+    /// One entry per joint of the problem.
+    pub field: Option<Vec<JointForce>>,
+    /// One entry per group, about the problem's pole; scaled to varying·q̇ = 1, for `NoEquilibrium`
+    /// with a feasible interval to ±1, without one in any scale.
+    pub motion: Option<Vec<Velocity>>,
+    /// Is the motion the only one?
+    pub unique: Option<bool>,
+    /// One entry per joint of the problem.
+    pub ray: Option<Vec<JointForce>>,
+    /// All factors with an admissible field, where that interval leaves out the start.
+    pub feasible_interval: Option<[f64; 2]>,
+    /// Set where joints were read with their laws' own flow.
+    pub non_associated: Option<NonAssociated>,
+    /// Work done.
+    pub counters: Counters,
+    /// What a user should know.
+    pub notes: Vec<String>,
+}
+
+/// What comes with an answer that reads each joint with its law's own flow. With non-associated
+/// flow the factor is not unique: `factor` of the answer is one at which the law's own mechanism
+/// and field exist together.
+#[derive(Debug, Clone, Default)]
+pub struct NonAssociated {
+    /// No such factor is less than this.
+    pub proved_lower: Option<f64>,
+    /// What that rests on.
+    pub lower_proof: Option<LowerProof>,
+    /// The greatest factor of associated flow, above which nothing can be.
+    pub associated_factor: Option<f64>,
+    /// Its mechanism, scaled as `motion`, which proves it.
+    pub associated_motion: Option<Vec<Velocity>>,
+}
+
+/// A way to do limit analysis, chosen by `[solver] solver = …`.
+#[typetag::serde(tag = "solver")]
+pub trait LimitSolver: Debug + Send + Sync {
+    /// Answers the question. Never panics; what cannot be proven is `Stalled` with its reason.
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer;
+
+    /// Why this solver cannot take this problem, if so.
+    fn refuses(&self, problem: &LimitProblem) -> Option<String>;
+}

@@ -1,0 +1,168 @@
+//! L U of unsymmetric sparse matrices.
+
+use super::entries::Entries;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use faer::{Mat, MatMut};
+
+/// L U of a square sparse matrix with partial pivoting, with the matrix itself for refinement.
+pub struct SparseLu {
+    matrix: SparseColMat<usize, f64>,
+    factors: Lu<usize, f64>,
+}
+
+/// Which entries a matrix has, and the order of elimination that keeps its factors sparse: the same for
+/// all matrices with the same entries, whatever their values.
+#[derive(Default)]
+pub struct Analysis(Option<Known>);
+
+struct Known {
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+    order: SymbolicLu<usize>,
+}
+
+impl Analysis {
+    /// Of a matrix; that of the last one where that had the same entries.
+    fn of(&mut self, matrix: &SparseColMat<usize, f64>) -> Option<SymbolicLu<usize>> {
+        let pattern = matrix.symbolic();
+        if let Some(known) = &self.0
+            && known.columns == pattern.col_ptr()
+            && known.rows == pattern.row_idx()
+        {
+            return Some(known.order.clone());
+        }
+        let order = SymbolicLu::try_new(pattern).ok()?;
+        let (columns, rows) = (pattern.col_ptr().to_vec(), pattern.row_idx().to_vec());
+        self.0 = Some(Known { columns, rows, order: order.clone() });
+        Some(order)
+    }
+}
+
+/// Entries by columns, in each by rows, repeated ones added up: sorted by counting, rows first.
+fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usize, f64> {
+    let starts = |of: fn(&(usize, usize, f64)) -> usize| {
+        let mut start = vec![0; size + 1];
+        entries.iter().for_each(|entry| start[of(entry) + 1] += 1);
+        (0..size).for_each(|i| start[i + 1] += start[i]);
+        start
+    };
+    let by_rows: Entries;
+    let sorted = if entries.is_sorted_by_key(|entry| entry.0) {
+        entries
+    } else {
+        let mut next = starts(|entry| entry.0);
+        let mut sorted = vec![(0, 0, 0.0); entries.len()];
+        for entry in entries {
+            sorted[next[entry.0]] = *entry;
+            next[entry.0] += 1;
+        }
+        by_rows = sorted;
+        &by_rows
+    };
+    let start = starts(|entry| entry.1);
+    let mut end = start[..size].to_vec();
+    let (mut rows, mut values) = (vec![0; entries.len()], vec![0.0; entries.len()]);
+    for &(i, j, value) in sorted {
+        let at = end[j];
+        if at > start[j] && rows[at - 1] == i {
+            values[at - 1] += value;
+        } else {
+            (rows[at], values[at]) = (i, value);
+            end[j] += 1;
+        }
+    }
+    // Close the gaps that repeated entries leave.
+    let mut columns = vec![0; size + 1];
+    let mut at = 0;
+    for j in 0..size {
+        for from in start[j]..end[j] {
+            (rows[at], values[at]) = (rows[from], values[from]);
+            at += 1;
+        }
+        columns[j + 1] = at;
+    }
+    rows.truncate(at);
+    values.truncate(at);
+    SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, columns, None, rows), values)
+}
+
+impl SparseLu {
+    /// Factorises a matrix. `None` where it is singular in its pattern.
+    pub fn new(size: usize, entries: &Entries) -> Option<Self> {
+        SparseLu::analysed(size, entries, &mut Analysis::default())
+    }
+
+    /// Factorises a matrix by the analysis of one with the same entries, which is made anew where they
+    /// differ. `None` as for [`SparseLu::new`].
+    pub fn analysed(size: usize, entries: &Entries, analysis: &mut Analysis) -> Option<Self> {
+        let matrix = by_columns(size, entries);
+        let factors = Lu::try_new_with_symbolic(analysis.of(&matrix)?, matrix.as_ref()).ok()?;
+        Some(SparseLu { matrix, factors })
+    }
+
+    /// Factorises a matrix with something added, which refinement takes out again: where the matrix
+    /// itself is singular but its right-hand sides are consistent. `None` as for [`SparseLu::new`].
+    pub fn shifted(size: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
+        let all: Entries = entries.iter().chain(shift).copied().collect();
+        let factors = SparseLu::new(size, &all)?.factors;
+        Some(SparseLu { matrix: by_columns(size, entries), factors })
+    }
+
+    /// Solves for several right-hand sides (columns), each with `refinements` steps of iterative
+    /// refinement. `None` where the matrix is singular to rounding.
+    pub fn solve(&self, right: &[Vec<f64>], refinements: usize) -> Option<Vec<Vec<f64>>> {
+        let size = self.matrix.nrows();
+        let target = Mat::from_fn(size, right.len(), |i, j| right[j][i]);
+        let mut x = target.clone();
+        self.in_place(x.as_mut());
+        for _ in 0..refinements {
+            let mut step = &target - &self.matrix * &x;
+            self.in_place(step.as_mut());
+            x += step;
+        }
+        let out: Vec<Vec<f64>> = (0..right.len()).map(|j| (0..size).map(|i| x[(i, j)]).collect()).collect();
+        out.iter().flatten().all(|v| v.is_finite()).then_some(out)
+    }
+
+    fn in_place(&self, x: MatMut<'_, f64>) {
+        self.factors.solve_in_place(x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Repeated entries in any order add up, and matrices of one pattern share its analysis.
+    #[test]
+    fn entries_add_up_and_a_pattern_is_analysed_once() {
+        let entries = |scale: f64| -> Entries {
+            vec![
+                (2, 0, 1.0),
+                (0, 0, scale),
+                (1, 2, 4.0),
+                (0, 2, 0.5),
+                (0, 0, 1.0),
+                (2, 1, -2.0),
+                (1, 2, -1.0),
+                (2, 0, 1.5),
+                (1, 1, 1.0),
+            ]
+        };
+        let mut analysis = Analysis::default();
+        for scale in [2.0, -0.25] {
+            let factors = SparseLu::analysed(3, &entries(scale), &mut analysis).unwrap();
+            assert!(analysis.0.as_ref().is_some_and(|known| known.rows.len() == 6));
+            let x = factors.solve(&[vec![1.0, 2.0, 3.0]], 1).unwrap().swap_remove(0);
+            let rows =
+                [(scale + 1.0) * x[0] + 0.5 * x[2] - 1.0, x[1] + 3.0 * x[2] - 2.0, 2.5 * x[0] - 2.0 * x[1] - 3.0];
+            assert!(rows.iter().all(|r| r.abs() < 1e-14), "{rows:?}");
+        }
+        let mut other = entries(1.0);
+        other.push((0, 1, 1.0));
+        assert!(SparseLu::analysed(3, &other, &mut analysis).is_some());
+        assert!(analysis.0.is_some_and(|known| known.rows.len() == 7));
+    }
+}

@@ -1,0 +1,186 @@
+//! Bodies and joints with their materials and laws, before any solver sees them.
+
+use super::geometry::{Vec2, area_and_centroid, bounding_box};
+use super::joints::{Bond, Joint};
+use crate::elastic::{MeshDensity, largest_element};
+use crate::law::{BulkMaterial, Deformability, InterfaceLaw, Plane};
+use std::sync::Arc;
+
+/// The materials and interface laws of a study, by name.
+#[derive(Debug, Clone, Default)]
+pub struct Catalogue {
+    /// `[materials.NAME]`.
+    pub materials: Vec<(String, Arc<dyn BulkMaterial>)>,
+    /// `[joints.NAME]`.
+    pub laws: Vec<(String, Arc<dyn InterfaceLaw>)>,
+}
+
+impl Catalogue {
+    /// Index of the material called `name`.
+    pub fn material(&self, name: &str) -> Option<usize> {
+        self.materials.iter().position(|(n, _)| n == name)
+    }
+
+    /// Index of the interface law called `name`.
+    pub fn law(&self, name: &str) -> Option<usize> {
+        self.laws.iter().position(|(n, _)| n == name)
+    }
+}
+
+/// A block, or a support.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// Unique in its assembly.
+    pub name: String,
+    /// Anticlockwise; empty for a support without a shape of its own.
+    pub vertices: Vec<Vec2>,
+    /// Index into the catalogue's materials.
+    pub material: usize,
+    /// Held by the ground.
+    pub fixed: bool,
+}
+
+/// What an arch knows of itself beyond bodies and joints: voussoirs are bodies `first..first + n`
+/// from left to right, joint k lies between voussoirs k−1 and k, its end 0 on the intrados.
+#[derive(Debug, Clone)]
+pub struct ArchLayout {
+    /// Index of the first voussoir.
+    pub first: usize,
+    /// Number of voussoirs.
+    pub voussoirs: usize,
+    /// Clear span at the intrados springings \[m\].
+    pub span: f64,
+    /// Rise of the intrados \[m\].
+    pub rise: f64,
+}
+
+/// Bodies and joints with their laws.
+#[derive(Debug, Clone)]
+pub struct Assembly {
+    /// Laws and materials that bodies and joints refer to.
+    pub catalogue: Catalogue,
+    /// Blocks and supports.
+    pub bodies: Vec<Body>,
+    /// Contacts.
+    pub joints: Vec<Joint>,
+    /// Out of plane \[m\].
+    pub width: f64,
+    /// Stress state of deformable bodies.
+    pub plane: Plane,
+    /// How deformable bodies are meshed.
+    pub mesh: MeshDensity,
+    /// Present for arches.
+    pub arch: Option<ArchLayout>,
+}
+
+/// Mass and centroid of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertia {
+    /// \[kg\]; 0 for a support without a shape.
+    pub mass: f64,
+    /// \[m\]; the origin for a support without a shape.
+    pub centroid: Vec2,
+}
+
+impl Assembly {
+    /// Index of the body called `name`.
+    pub fn body(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name == name)
+    }
+
+    /// Mass and centroid of a body.
+    pub fn inertia(&self, body: usize) -> Inertia {
+        let body = &self.bodies[body];
+        if body.vertices.is_empty() {
+            return Inertia { mass: 0.0, centroid: Vec2::zeros() };
+        }
+        let (area, centroid) = area_and_centroid(&body.vertices);
+        Inertia { mass: self.catalogue.materials[body.material].1.density() * area * self.width, centroid }
+    }
+
+    /// The law of a joint, unless it is bonded.
+    pub fn law(&self, joint: &Joint) -> Option<&dyn InterfaceLaw> {
+        match joint.bond {
+            Bond::Bonded => None,
+            Bond::Law(index) => Some(&*self.catalogue.laws[index].1),
+        }
+    }
+
+    /// Whether a body's material is rigid.
+    pub fn is_rigid(&self, body: usize) -> bool {
+        self.catalogue.materials[self.bodies[body].material].1.deformability() == Deformability::Rigid
+    }
+
+    /// Whether a body's material yields.
+    pub fn yields(&self, body: usize) -> bool {
+        let material = &self.catalogue.materials[self.bodies[body].material].1;
+        matches!(material.deformability(), Deformability::Inelastic { .. })
+    }
+
+    /// Whether the elements of a body are small enough for its material to soften without snapping
+    /// back inside an element; the error names sizes and what to change.
+    pub fn fine_enough(&self, body: usize) -> Result<(), String> {
+        let (name, material) = &self.catalogue.materials[self.bodies[body].material];
+        let Some(update) = material.stress_update().filter(|_| self.yields(body)) else { return Ok(()) };
+        let (most, own) = (update.largest_length(), largest_element(&self.bodies[body].vertices, &self.mesh)?);
+        if own <= most {
+            return Ok(());
+        }
+        Err(format!(
+            "elements of \"{}\" have the size √area = {own:.4e} m; material \"{name}\" softens too steeply for more than \
+             {most:.4e} m: use more elements, or raise its fracture energy",
+            self.bodies[body].name
+        ))
+    }
+
+    /// Whether some free block deforms or some joint is compliant.
+    pub fn deforms(&self) -> bool {
+        let soft = |body: usize| !self.bodies[body].fixed && !self.is_rigid(body);
+        (0..self.bodies.len()).any(soft)
+            || self.joints.iter().any(|j| self.law(j).is_some_and(|law| law.stiffness().is_some()))
+    }
+
+    /// Diagonal of the box around everything \[m\].
+    pub fn size(&self) -> f64 {
+        let points = self.bodies.iter().flat_map(|b| &b.vertices).chain(self.joints.iter().flat_map(|j| &j.ends));
+        let (low, high) = bounding_box(points);
+        (high - low).norm()
+    }
+
+    /// Which bodies move as one because bonded joints hold them together: for each body the index
+    /// of its free group, or `None` where the group is held by the ground. Also the number of groups.
+    pub fn rigid_groups(&self) -> (Vec<Option<usize>>, usize) {
+        let mut parent: Vec<usize> = (0..self.bodies.len()).collect();
+        for joint in self.joints.iter().filter(|joint| joint.bond == Bond::Bonded) {
+            let (a, b) = (root(&mut parent, joint.minus), root(&mut parent, joint.plus));
+            parent[a] = b;
+        }
+        let mut held = vec![false; self.bodies.len()];
+        for (index, body) in self.bodies.iter().enumerate() {
+            let r = root(&mut parent, index);
+            held[r] |= body.fixed;
+        }
+        let (mut number, mut count) = (vec![None; self.bodies.len()], 0);
+        let groups = (0..self.bodies.len())
+            .map(|index| {
+                let r = root(&mut parent, index);
+                (!held[r]).then(|| {
+                    *number[r].get_or_insert_with(|| {
+                        count += 1;
+                        count - 1
+                    })
+                })
+            })
+            .collect();
+        (groups, count)
+    }
+}
+
+/// The root of i in a forest of groups (union–find), paths halved on the way.
+pub fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}

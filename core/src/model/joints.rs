@@ -1,0 +1,95 @@
+//! Straight joints between two bodies: how they meet, their frame, their initial opening.
+
+use super::geometry::{Vec2, turned};
+use serde::{Deserialize, Serialize};
+
+/// How two bodies meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bond {
+    /// As one piece.
+    Bonded,
+    /// By the interface law with this index in the catalogue.
+    Law(usize),
+}
+
+/// Initial opening of a joint: a number, or a table along it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Gap {
+    /// The same everywhere \[m\].
+    Uniform(f64),
+    /// Pairs \[s, gap\] \[m\], s ascending from the joint's end 0; linear between them, constant
+    /// before the first and behind the last.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Default for Gap {
+    fn default() -> Self {
+        Gap::Uniform(0.0)
+    }
+}
+
+impl Gap {
+    /// The opening at the distance s \[m\] from the joint's end 0 \[m\].
+    pub fn at(&self, s: f64) -> f64 {
+        let table = match self {
+            Gap::Uniform(gap) => return *gap,
+            Gap::Table(table) => table,
+        };
+        let behind = table.partition_point(|row| row[0] <= s);
+        match (behind.checked_sub(1).map(|i| table[i]), table.get(behind)) {
+            (Some([a, from]), Some(&[b, to])) => from + (to - from) * (s - a) / (b - a),
+            (Some([_, gap]), None) => gap,
+            (None, first) => first.map_or(0.0, |row| row[1]),
+        }
+    }
+}
+
+/// A straight contact between two bodies.
+#[derive(Debug, Clone)]
+pub struct Joint {
+    /// Index of the body on the minus side.
+    pub minus: usize,
+    /// Index of the body on the plus side.
+    pub plus: usize,
+    /// Ends at s = −h/2 and s = +h/2; t points from the first to the second, n = t turned by −90°
+    /// points into plus.
+    pub ends: [Vec2; 2],
+    /// How the bodies meet.
+    pub bond: Bond,
+    /// Initial opening, along s from end 0.
+    pub gap: Gap,
+}
+
+impl Joint {
+    /// h \[m\].
+    pub fn height(&self) -> f64 {
+        (self.ends[1] - self.ends[0]).norm()
+    }
+
+    /// s = 0.
+    pub fn middle(&self) -> Vec2 {
+        (self.ends[0] + self.ends[1]) / 2.0
+    }
+
+    /// Unit vectors (n, t).
+    pub fn frame(&self) -> (Vec2, Vec2) {
+        let t = (self.ends[1] - self.ends[0]).normalize();
+        (-turned(t), t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A table is linear between its rows and constant outside.
+    #[test]
+    fn gaps_along_a_joint() {
+        let gap = Gap::Table(vec![[0.0, 0.1], [1.0, 0.3], [2.0, 0.0]]);
+        for (s, expected) in [(-1.0, 0.1), (0.0, 0.1), (0.5, 0.2), (1.0, 0.3), (1.5, 0.15), (2.0, 0.0), (3.0, 0.0)] {
+            assert!((gap.at(s) - expected).abs() < 1e-15, "{s}");
+        }
+        assert_eq!(Gap::Uniform(0.2).at(7.0), 0.2);
+    }
+}

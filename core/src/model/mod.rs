@@ -1,0 +1,16 @@
+//! The model: bodies, joints, loads and stages, before any solver sees them.
+
+mod assembly;
+mod contact;
+pub mod geometry;
+mod joints;
+mod loads;
+mod scene;
+mod wrench;
+
+pub use self::assembly::{ArchLayout, Assembly, Body, Catalogue, Inertia, root};
+pub use self::contact::{CONTACT_TOLERANCE, Interpenetration, find_joints};
+pub use self::joints::{Bond, Gap, Joint};
+pub use self::loads::{PointForce, Settlement, Stage, StageLoads, Target, stage_loads};
+pub use self::scene::Scene;
+pub use self::wrench::{Wrenches, add_force};

@@ -1,0 +1,26 @@
+//! What is wrong with an input, and where: a key path that the reader of the file turns into
+//! file, line and column.
+
+/// One mistake in a study.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Dotted path from the study's root, list entries by index: `stages.1.loads.0.force`.
+    pub path: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do, where that can be said.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// A mistake at `path`.
+    pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Diagnostic { path: path.into(), message: message.into(), help: None }
+    }
+
+    /// With advice.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}

@@ -1,0 +1,14 @@
+//! Registry and configuration of plug-ins: cards, the schema of their keys, units, diagnostics. Knows
+//! no mechanics.
+
+mod card;
+mod diagnostic;
+mod schema;
+mod units;
+
+pub use self::card::{
+    Capability, Card, audit, candidate, candidates, card, cards, cards_of, check_as, nearest, no_further_check,
+};
+pub use self::diagnostic::Diagnostic;
+pub use self::schema::{Need, Parameter, PluginKind, Range, Shape, Variant};
+pub use self::units::{Quantity, STANDARD_GRAVITY};

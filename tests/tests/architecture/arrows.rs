@@ -1,0 +1,32 @@
+//! The arrows between crates, and what libraries do not do.
+
+use super::source::{each_source, workspace};
+
+fn manifest(folder: &str) -> toml::Table {
+    let path = workspace().join(folder).join("Cargo.toml");
+    std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML")
+}
+
+/// core knows no plug-in, laws no solver, solvers no law; libraries do not read clocks or files.
+#[test]
+fn the_arrows_hold() {
+    let ours = |folder: &str| -> Vec<String> {
+        let table = manifest(folder);
+        let dependencies = table["dependencies"].as_table().expect("a table").clone();
+        dependencies.keys().filter(|name| name.starts_with("voussoir")).cloned().collect()
+    };
+    assert_eq!(ours("core"), Vec::<String>::new());
+    assert_eq!(ours("laws"), ["voussoir-core"]);
+    assert_eq!(ours("solvers"), ["voussoir-core"]);
+    assert_eq!(ours("studies"), ["voussoir-core", "voussoir-laws", "voussoir-solvers"]);
+    for folder in ["tests", "benches"] {
+        assert_eq!(ours(folder), ["voussoir"], "{folder}");
+    }
+    for folder in ["core", "laws", "solvers"] {
+        each_source(&workspace().join(folder).join("src"), &mut |path, text| {
+            for word in ["println!", "eprintln!", "std::fs", "Instant::now", "SystemTime"] {
+                assert!(!text.contains(word), "{} uses {word}", path.display());
+            }
+        });
+    }
+}

@@ -1,0 +1,4 @@
+//! Every plug-in, found by its card, keeps what its trait promises.
+
+mod cards;
+mod state;

@@ -1,0 +1,5 @@
+//! Studies and results as files: read back unchanged, and every changed number found.
+
+mod lower_bound;
+mod round_trip;
+mod tampering;

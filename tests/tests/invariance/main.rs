@@ -1,0 +1,4 @@
+//! What must not change an answer: units, scale, rotation, reflection, numbering.
+
+mod limit;
+mod path;

@@ -1,0 +1,3 @@
+//! What is said about wrong input, word for word.
+
+mod mistakes;

@@ -1,0 +1,167 @@
+//! Scenes of the random stress test at whose corners a path once stopped where it need not: what it finds there now,
+//! and with how much work. The numbers are those from which `random::scene` makes the scene.
+
+use voussoir::core::certificate::MechanismKind;
+use voussoir::core::limit::Status;
+use voussoir::results::CaseResult;
+use voussoir_tests::random::{Law, Numbers, RandomScene, scene};
+use voussoir_tests::{answered, assert_close};
+
+fn scene_of(numbers: Numbers) -> RandomScene {
+    scene(numbers).expect("a scene")
+}
+
+/// By a solver, after its history.
+fn followed(scene: &RandomScene, solver: &str) -> CaseResult {
+    let limit = answered(&scene.associated());
+    let known = if limit.status == Status::Collapse { limit.load_factor } else { None };
+    answered(&scene.study(solver, known))
+}
+
+fn certified(result: &CaseResult, status: Status) -> f64 {
+    assert_eq!(result.status, status, "{:?}", result.notes);
+    assert!(result.certificate.passed, "{:?}", result.certificate);
+    result.load_factor.expect("a factor")
+}
+
+/// A step shortened to the next slip is not tried again at a length that differs by rounding (5000 times, once).
+#[test]
+fn a_step_cut_to_the_next_slip_gets_shorter() {
+    let scene = scene_of((
+        Law::Coulomb,
+        -0.989_660_220_568_051_8,
+        4.116_891_444_282_939,
+        3,
+        4,
+        0.765_339_188_501_275_7,
+        2,
+        0.825_892_737_888_373_3,
+        0.672_786_948_105_318_8,
+        3,
+    ));
+    let newton = followed(&scene, "newton_path");
+    let factor = certified(&newton, Status::Collapse);
+    assert_close(factor, certified(&followed(&scene, "event_path"), Status::Collapse), 1e-8);
+    assert!(newton.counters["steps"] <= 100, "{:?}", newton.counters);
+}
+
+/// A wall on whose ground every brick slides by itself, at λ = μ: the regimes leave many motions, and the first that
+/// linear algebra picks closes a gap. One that goes on for ever is found by a linear program.
+#[test]
+fn bricks_that_slide_side_by_side_are_a_mechanism() {
+    let exponent: f64 = -0.785_625_467_461_697_8;
+    let scene = scene_of((
+        Law::Dilatant,
+        exponent,
+        4.350_181_491_860_756,
+        0,
+        4,
+        0.226_829_416_723_166_9,
+        3,
+        0.160_499_699_410_223_38,
+        0.736_706_306_441_423_3,
+        4,
+    ));
+    let newton = followed(&scene, "newton_path");
+    assert_close(certified(&newton, Status::Collapse), 10f64.powf(exponent), 1e-9);
+    assert_eq!(newton.mechanism.as_ref().map(|m| m.kind), Some(MechanismKind::Sliding));
+    assert!(newton.counters["steps"] <= 50, "{:?}", newton.counters);
+}
+
+/// Steps below the tolerance of the law crept along what is no solution, thousands of them: the limit
+/// point is proven at the corner instead, and the path ends there.
+#[test]
+fn a_path_does_not_creep_behind_its_limit_point() {
+    let unloaded = [
+        (
+            Law::Dilatant,
+            0.054_696_262_769_130_12,
+            0.685_318_683_286_208,
+            3,
+            3,
+            0.492_323_579_475_519_5,
+            2,
+            0.387_528_387_141_931_8,
+            0.718_811_857_433_311_6,
+            0,
+        ),
+        (
+            Law::Dilatant,
+            0.194_864_736_423_322_67,
+            4.936_377_551_916_530_5,
+            2,
+            3,
+            0.314_509_582_819_827_27,
+            2,
+            0.562_670_547_877_737,
+            0.669_956_988_283_859,
+            0,
+        ),
+    ];
+    for numbers in unloaded {
+        let newton = followed(&scene_of(numbers), "newton_path");
+        certified(&newton, Status::LimitPoint);
+        assert!(newton.notes.iter().any(|note| note.contains("no rate of solution")), "{:?}", newton.notes);
+        assert!(newton.counters["steps"] <= 100, "{:?}", newton.counters);
+    }
+}
+
+/// 47 points at the verge of a change under the dead load, where nothing is loaded yet: the line search finds
+/// their rate. The wall slides on its ground at λ = μ.
+#[test]
+fn many_points_at_the_verge_of_a_change_are_decided() {
+    let exponent: f64 = -0.263_854_514_873_449_8;
+    let scene = scene_of((
+        Law::Dilatant,
+        exponent,
+        5.548_207_716_270_577,
+        1,
+        2,
+        0.501_784_948_968_964_6,
+        3,
+        0.899_317_350_741_552_4,
+        0.876_105_356_668_826_8,
+        5,
+    ));
+    for solver in ["event_path", "newton_path"] {
+        assert_close(certified(&followed(&scene, solver), Status::Collapse), 10f64.powf(exponent), 1e-9);
+    }
+}
+
+/// With finite displacements the regimes of these steps do not settle when whole iterations are taken, and the
+/// steps were cut (twelve times; the second scene for minutes): with the line search none is.
+#[test]
+fn the_line_search_saves_cut_backs() {
+    let strengths = (
+        Law::Strengths,
+        -1.073_508_420_946_689_9,
+        3.026_884_668_671_921_7,
+        0,
+        2,
+        0.621_349_840_049_509_1,
+        0,
+        0.503_996_402_383_757_4,
+        0.488_994_030_408_313_84,
+        2,
+    );
+    let associated = (
+        Law::Associated,
+        0.163_670_435_213_347_56,
+        3.074_001_033_804_661,
+        3,
+        3,
+        0.412_792_814_661_272_77,
+        0,
+        0.452_211_534_815_403,
+        0.800_507_552_843_484_1,
+        4,
+    );
+    for (numbers, factor) in [(strengths, 2.631_964), (associated, 1.3073)] {
+        let study = scene_of(numbers).study("newton_path\"\nkinematics = \"finite", None);
+        let result = answered(&study);
+        assert_close(certified(&result, Status::Collapse), factor, 1e-4);
+        assert_eq!(result.counters["cutbacks"], 0, "{:?}", result.counters);
+        assert!(result.counters["line_searched_steps"] > 0, "{:?}", result.counters);
+        assert!(result.counters["newton_iterations"] <= 1600, "{:?}", result.counters);
+    }
+}

@@ -1,0 +1,6 @@
+//! Random scenes: solvers that share no numerical method against each other, and against other programs.
+
+mod cap;
+mod limit;
+mod nonassociated;
+mod path;

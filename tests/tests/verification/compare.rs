@@ -1,0 +1,238 @@
+//! Comparisons of flow rules: what must hold between the voices of every scene, published walls, and
+//! the axes of `compare` and `map`.
+
+use std::sync::OnceLock;
+use voussoir::core::limit::Status;
+use voussoir::kinds::{Observer, kind};
+use voussoir::results::{CaseResult, Comparison, ComparisonCell, StudyResults};
+use voussoir::study::{Study, load};
+use voussoir::verify::verify;
+use voussoir_tests::{assert_close, study};
+
+struct Silent;
+
+impl Observer for Silent {
+    fn answered(&self, _: &CaseResult) {}
+}
+
+fn results(study: &Study) -> StudyResults {
+    let kind = kind(&study.kind).expect("a registered kind");
+    let wanted: Vec<usize> = (0..study.cases.len()).collect();
+    let cases = kind.answer(study, &wanted, 2, &Silent);
+    let comparison = kind.compare(study, &cases);
+    StudyResults { study: study.name.clone(), version: "test".into(), cases, comparison }
+}
+
+/// The ten scenes of docs/flow_rule.md, answered once for all tests.
+fn ten_scenes() -> &'static (Study, StudyResults) {
+    static ANSWERED: OnceLock<(Study, StudyResults)> = OnceLock::new();
+    ANSWERED.get_or_init(|| {
+        let study = study(include_str!("../../../studies/cases/flow_rule_ten_scenes.toml"));
+        let results = results(&study);
+        (study, results)
+    })
+}
+
+fn comparison() -> &'static Comparison {
+    ten_scenes().1.comparison.as_ref().expect("a comparison")
+}
+
+fn voice<'a>(cells: &'a [ComparisonCell], name: &str) -> &'a ComparisonCell {
+    &cells[comparison().voices.iter().position(|voice| voice == name).expect("a voice")]
+}
+
+/// On every scene: no path load above the associated load; least ≤ sequential ≤ associated; a path
+/// that ended in a mechanism at or above the proved lower bound of the least load, and at or above
+/// the least load found where the bracket is closed.
+#[test]
+fn voices_stand_in_the_order_of_the_theory() {
+    let (mut sequences, mut paths) = (0, 0);
+    for row in &comparison().rows {
+        let name = row.scene.as_deref().expect("a scene");
+        let associated = voice(&row.cells, "associated").load_factor.expect(name);
+        let least = voice(&row.cells, "least");
+        assert_eq!(least.status, Some(Status::Collapse), "{name}");
+        let ([lower, found], least) = (least.bounds.expect(name), least.load_factor.expect(name));
+        assert!(lower <= found * (1.0 + 1e-9) && (found - least).abs() <= 1e-9 * found, "{name}: {lower} … {found}");
+        assert!(least <= associated * (1.0 + 1e-9), "{name}: least {least}, associated {associated}");
+        if let Some(sequential) = voice(&row.cells, "sequential").load_factor {
+            sequences += 1;
+            assert!(least <= sequential * (1.0 + 1e-6), "{name}: least {least}, sequential {sequential}");
+            assert!(sequential <= associated * (1.0 + 1e-9), "{name}: sequential {sequential}, {associated}");
+        }
+        let path = voice(&row.cells, "elastic path");
+        if let Some(factor) = path.load_factor {
+            paths += 1;
+            assert!(factor <= associated * (1.0 + 1e-9), "{name}: path {factor}, associated {associated}");
+            assert!(path.status != Some(Status::Collapse) || factor >= lower * (1.0 - 1e-9), "{name}: {factor}");
+            assert!(lower < found * (1.0 - 1e-9) || factor >= least * (1.0 - 1e-9), "{name}: {factor}, {least}");
+        }
+    }
+    assert!(comparison().rows.len() == 10 && sequences >= 8 && paths >= 8, "{sequences} sequences, {paths} paths");
+}
+
+/// Ferris and Tin-Loi (2001): associated .64285900, .40369410, .33194840; least .63898183,
+/// .35581738, 24/91. The elastic paths of walls 3 and 4 end at the least load.
+#[test]
+fn published_walls() {
+    let walls = [(0.642_859_00, 0.638_981_83), (0.403_694_10, 0.355_817_38), (0.331_948_40, 24.0 / 91.0)];
+    for (row, (associated, least)) in comparison().rows.iter().zip(walls) {
+        assert_close(voice(&row.cells, "associated").load_factor.expect("a factor"), associated, 3e-8);
+        assert_close(voice(&row.cells, "least").load_factor.expect("a factor"), least, 3e-8);
+    }
+}
+
+/// A single ring hardly feels the flow rule: with four yielding joints the thrust line is determined
+/// by equilibrium and yield alone, whatever the flow.
+#[test]
+fn a_single_ring_does_not_feel_the_flow_rule() {
+    let row = comparison().rows.last().expect("rows");
+    assert_eq!(row.scene.as_deref(), Some("segmental arch"));
+    for cell in &row.cells {
+        assert!((cell.ratio.expect("a ratio") - 1.0).abs() <= 1e-9, "{cell:?}");
+    }
+}
+
+/// Why the four scenes of a single ring, two of them with low friction, have one load: the associated mechanism moves
+/// four joints, so equilibrium and yield there fix three redundants and the factor. Every other voice moves some of
+/// these four and no others, and has the same load.
+#[test]
+fn four_yielding_joints_determine_a_single_ring() {
+    let (_, results) = ten_scenes();
+    let moving = |case: &CaseResult| -> Vec<usize> {
+        let mechanism = case.mechanism.as_ref().expect("a mechanism");
+        let (hinges, sliding) = (mechanism.hinges.iter().map(|h| h.joint), mechanism.sliding.iter().map(|s| s.joint));
+        let joints: std::collections::BTreeSet<usize> = hinges.chain(sliding).collect();
+        joints.into_iter().collect()
+    };
+    for row in comparison().rows.iter().skip(6) {
+        let yielding = moving(&results.cases[voice(&row.cells, "associated").case]);
+        assert_eq!(yielding.len(), 4, "{:?}: {yielding:?}", row.scene);
+        for cell in &row.cells {
+            let joints = moving(&results.cases[cell.case]);
+            assert!(joints.iter().all(|joint| yielding.contains(joint)), "{:?}: {joints:?}, {yielding:?}", row.scene);
+            assert!((cell.ratio.expect("a ratio") - 1.0).abs() <= 1e-8, "{:?}: {cell:?}", row.scene);
+        }
+    }
+}
+
+/// The results confirm themselves; a changed ratio is found.
+#[test]
+fn verify_repeats_the_comparison() {
+    let (study, results) = ten_scenes();
+    assert_eq!(verify(study, results), vec![]);
+    let mut changed = results.clone();
+    changed.comparison.as_mut().expect("a comparison").rows[1].cells[2].ratio = Some(0.9);
+    let wrong = verify(study, &changed);
+    assert!(wrong.iter().any(|(_, why)| why.contains("comparison")), "{wrong:?}");
+}
+
+/// Blocks pushed sideways on the ground: friction μ < base/height slides at λ = μ for every voice.
+const BLOCK: &str = r#"
+[scene]
+scene = "wall"
+width = 1.0
+brick = [0.4, 0.2]
+courses = 1
+bricks = 1
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = 0.5
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "push"
+until = "collapse"
+loads = [{ kind = "body", acceleration = [9.81, 0.0] }]
+"#;
+
+/// Variants are outermost, then scenes, then the sweep; a variant is set on top of a scene; the
+/// ratio is to the reference.
+#[test]
+fn scenes_are_an_axis() {
+    let text = format!(
+        r#"name = "axes"
+kind = "compare"
+{BLOCK}
+[compare]
+reference = "rough"
+[[compare.scenes]]
+name = "as it is"
+[[compare.scenes]]
+name = "pulled"
+set = {{ "stages.push.loads.0.acceleration" = [-9.81, 0.0], "joints.dry.friction" = 0.1 }}
+[[variants]]
+name = "smooth"
+[[variants]]
+name = "rough"
+set = {{ "joints.dry" = {{ law = "coulomb_associated", friction = 0.6 }} }}
+[sweep]
+"scene.brick.0" = {{ list = [0.3, 0.4] }}
+"#
+    );
+    let study = study(&text);
+    let order: Vec<_> = study.cases.iter().map(|c| (c.variant.clone().unwrap(), c.scene.clone().unwrap())).collect();
+    let expected = [("smooth", "as it is"), ("smooth", "pulled"), ("rough", "as it is"), ("rough", "pulled")];
+    for (id, (variant, scene)) in order.iter().enumerate() {
+        assert_eq!((variant.as_str(), scene.as_str()), expected[id / 2], "case {id}");
+    }
+    let results = results(&study);
+    let comparison = results.comparison.as_ref().expect("a comparison");
+    assert_eq!((comparison.reference.as_str(), comparison.rows.len()), ("rough", 4));
+    for (row, ratio) in comparison.rows.iter().zip([0.5 / 0.6, 0.5 / 0.6, 0.1 / 0.6, 0.1 / 0.6]) {
+        assert_close(row.cells[0].ratio.expect("a ratio"), ratio, 1e-9);
+        assert_eq!(row.cells[1].ratio, Some(1.0));
+    }
+    assert_eq!(verify(&study, &results), vec![]);
+}
+
+/// A map's axes are those of the sweep; the first runs along x and is slowest.
+#[test]
+fn a_map_has_the_axes_of_the_sweep() {
+    let text = format!(
+        r#"name = "axes"
+kind = "map"
+{BLOCK}
+[map]
+x_label = "friction [-]"
+[sweep]
+"joints.dry.friction" = {{ list = [0.2, 0.4, 0.6] }}
+"scene.brick.1" = {{ list = [0.1, 0.2] }}
+[[variants]]
+name = "own"
+[[variants]]
+name = "associated"
+set = {{ "joints.dry.law" = "coulomb_associated" }}
+"#
+    );
+    let results = results(&study(&text));
+    let comparison = results.comparison.expect("a comparison");
+    let map = comparison.map.as_ref().expect("a map");
+    assert_eq!((map.x_values.as_slice(), map.y_values.as_slice()), (&[0.2, 0.4, 0.6][..], &[0.1, 0.2][..]));
+    assert_eq!(
+        (map.x_label.as_str(), map.contours.as_str(), map.regions.as_str()),
+        ("friction [-]", "associated", "own")
+    );
+    assert_eq!(map.y_label, "scene.brick.1");
+    for (place, row) in comparison.rows.iter().enumerate() {
+        assert_eq!(row.parameters["joints.dry.friction"].as_f64(), Some(map.x_values[place / 2]));
+        assert_close(row.cells[0].load_factor.expect("a factor"), map.x_values[place / 2], 1e-9);
+    }
+    let svg = voussoir::figures::map::map_svg("axes", &comparison).expect("a figure");
+    assert!(svg.contains("friction [-]") && svg.contains("sliding (6)"), "{svg}");
+}
+
+/// Without variants, or with one axis, there is nothing to compare.
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    for (kind, words) in [("compare", "sets variants beside each other"), ("map", "needs two axes")] {
+        let wrong = load(&format!("name = \"x\"\nkind = \"{kind}\"\n{BLOCK}"), "x.toml", &[]).expect_err("no variants");
+        assert!(wrong.iter().any(|mistake| mistake.message.contains(words)), "{wrong:?}");
+    }
+}

@@ -1,0 +1,259 @@
+//! Non-associated flow: walls of Ferris & Tin-Loi (2001), Int. J. Mech. Sci. 43, and Gilbert,
+//! Casapulla & Ahmed (2006), Computers & Structures 84, and cases that follow from statics alone.
+
+use voussoir::core::limit::Status;
+use voussoir::kinds::run::answer_case;
+use voussoir::results::{CaseResult, StudyResults};
+use voussoir::study::load;
+use voussoir::verify::verify;
+use voussoir_tests::{Arch, answered, assert_close, study};
+
+/// A wall with friction 0.65 pushed by λ × its weight.
+fn wall(rows: &[&[f64]], joint: &str, solver: &str) -> String {
+    format!(
+        r#"name = "wall"
+[scene]
+scene = "wall"
+width = 1.0
+brick = [0.4, 0.175]
+rows = {rows:?}
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+{joint}
+[solver]
+{solver}
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "push"
+until = "collapse"
+loads = [{{ kind = "body", acceleration = [9.81, 0.0] }}]
+"#
+    )
+}
+
+const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.65";
+const FIVE: &[f64] = &[1.0; 5];
+const SIX: &[f64] = &[0.5, 1.0, 1.0, 1.0, 1.0, 0.5];
+
+/// Walls 1, 3 and 4 by their numbers.
+fn published(number: usize) -> Vec<&'static [f64]> {
+    match number {
+        1 => vec![SIX, FIVE, SIX, FIVE, SIX, FIVE],
+        3 => {
+            let (fe, fu): (&[f64], &[f64]) = (&[1.0; 4], &[0.5, 1.0, 1.0, 1.0, 0.5]);
+            let (we, wu): (&[f64], &[f64]) = (&[1.0, 0.5, -1.0, 0.5, 1.0], &[0.5, 1.0, -1.0, 1.0, 0.5]);
+            vec![fe, fu, fe, wu, we, wu, we, wu, fe, fu, fe]
+        }
+        _ => {
+            let (we, wu): (&[f64], &[f64]) =
+                (&[0.5, 0.5, -1.0, 0.5, 0.5, -1.0, 0.5, 0.5], &[1.0, -1.0, 1.0, -1.0, 1.0]);
+            vec![SIX, FIVE, SIX, wu, we, wu, we, wu, SIX, FIVE, SIX]
+        }
+    }
+}
+
+fn collapse(text: &str) -> (f64, CaseResult) {
+    let result = answered(text);
+    assert_eq!(result.status, Status::Collapse, "{:?} {:?}", result.notes, result.certificate);
+    assert!(result.certificate.passed, "{:?}", result.certificate);
+    (result.load_factor.expect("a factor"), result)
+}
+
+/// The least load of wall `number` is `least`; bracket and time are printed. `LEAST_SEARCH` gives
+/// the search more work than the second that the test allows.
+fn least_of(number: usize, least: f64, associated: f64) {
+    let limit = std::env::var("LEAST_SEARCH").unwrap_or("1.0".into());
+    let solver = format!("solver = \"limit_least\"\nsearch_limit = {limit}");
+    let (found, result) = collapse(&wall(&published(number), COULOMB, &solver));
+    assert_close(found, least, 2e-8);
+    assert_close(result.associated_load_factor.expect("an upper bound"), associated, 2e-8);
+    let [low, high] = result.bounds.expect("a bracket");
+    assert!(0.0 <= low && low <= least * (1.0 + 2e-8) && high == found);
+    println!("wall {number}: [{low:.8}, {high:.8}] in {:.1} s, {:?}", result.seconds, result.counters);
+    assert_eq!(result.flow_read_as, None);
+    assert!(result.certificate.residuals["complementarity"] < 1e-12, "{:?}", result.certificate);
+}
+
+/// Least load .63898183 (independent program), below the published .640.
+#[test]
+fn least_of_wall_1() {
+    least_of(1, 0.638_981_83, 0.642_859_00);
+}
+
+/// Least load .35581738, published .356.
+#[test]
+fn least_of_wall_3() {
+    least_of(3, 0.355_817_38, 0.403_694_10);
+}
+
+/// Least load 24/91, published .264.
+#[test]
+fn least_of_wall_4() {
+    least_of(4, 24.0 / 91.0, 0.331_948_40);
+}
+
+/// Gilbert, Casapulla & Ahmed (2006) print .640, .356, .264: walls 3 and 4 agree to their digits. On
+/// wall 1 the sequence settles at another limit state, .64094 (with smaller steps the factor wanders
+/// about .6400 without settling): shown, and asserted to lie between the least and the associated load.
+#[test]
+fn sequential_programs_give_the_published_factors() {
+    for (number, printed, least) in [(1, 0.640, 0.638_981_83), (3, 0.356, 0.355_817_38), (4, 0.264, 24.0 / 91.0)] {
+        let result = answered(&wall(&published(number), COULOMB, "solver = \"limit_sequential\""));
+        let Some(factor) = result.load_factor else {
+            panic!("wall {number}: {:?} {:?}", result.notes, result.counters);
+        };
+        println!(
+            "wall {number}: {factor:.8}, {} programs, {:.2} s",
+            result.counters["linear_programs"], result.seconds
+        );
+        if number != 1 {
+            assert!((factor - printed).abs() <= 0.5e-3, "wall {number}: {factor}");
+        }
+        assert!(factor >= least * (1.0 - 1e-7));
+        assert!(factor <= result.associated_load_factor.expect("an upper bound") * (1.0 + 1e-9));
+    }
+}
+
+/// A wall of 20 courses by 20 bricks by sequential programs, in seconds.
+#[test]
+fn twenty_by_twenty_in_sequence() {
+    let text = wall(&[FIVE], COULOMB, "solver = \"limit_sequential\"")
+        .replace(&format!("rows = {:?}", [FIVE]), "courses = 20\nbricks = 20");
+    let result = answered(&text);
+    println!("{:?} {:?} {:.1} s {:?}", result.status, result.load_factor, result.seconds, result.counters);
+    assert!(result.status == Status::Collapse || result.notes.iter().any(|note| note.contains("did not converge")));
+    assert!(result.counters["linear_programs"] >= 1);
+}
+
+/// Dilatancy equal to the angle of friction is associated flow; between, the least load lies between.
+#[test]
+fn dilatancy_equal_to_friction_is_associated() {
+    let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
+    let with = |joint: &str| collapse(&wall(&rows, joint, "solver = \"limit_least\"")).0;
+    let associated = with("law = \"coulomb_associated\"\nfriction_angle = 40.0");
+    let equal = with("law = \"coulomb\"\nfriction_angle = 40.0\ndilatancy_angle = 40.0");
+    assert_close(equal, associated, 1e-14);
+    let factors: Vec<f64> = [0.0, 15.0, 30.0]
+        .map(|angle| with(&format!("law = \"coulomb\"\nfriction_angle = 40.0\ndilatancy_angle = {angle:?}")))
+        .into();
+    assert!(factors.iter().all(|factor| *factor <= associated * (1.0 + 1e-12)), "{factors:?} {associated}");
+}
+
+/// Without friction the law is `unilateral` with a free tangent.
+#[test]
+fn no_friction_is_a_free_tangent() {
+    let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5]];
+    for joint in ["law = \"coulomb\"\nfriction = 0.0", "law = \"unilateral\"\ntangential = \"free\""] {
+        for solver in ["limit_least", "limit_sequential", "limit_conic"] {
+            assert_eq!(collapse(&wall(&rows, joint, &format!("solver = \"{solver}\""))).0, 0.0, "{joint} {solver}");
+        }
+    }
+    let arch = |joint: &str| {
+        let joint = joint.to_string();
+        answered(&Arch { joint, ends: "jointed", solver: "limit_least", ..Arch::default() }.study()).status
+    };
+    let free = arch("law = \"unilateral\"\ntangential = \"free\"");
+    assert_eq!(arch("law = \"coulomb\"\nfriction = 0.0"), free);
+}
+
+/// An arch with blocks that slide out between inclined joints: where rounding finds the known state again
+/// the proof ends a little further below it, and closes.
+#[test]
+fn a_flat_arch_closes() {
+    let study = study(include_str!("../../../studies/cases/flow_rule_ten_scenes.toml"));
+    for name in ["flat arch on piers, friction 0.5", "arch on inclined springings, friction 0.3"] {
+        let mut cases = study.cases.iter().filter(|case| case.variant.as_deref() == Some("least"));
+        let case = cases.find(|case| case.scene.as_deref() == Some(name)).expect("a scene of the study");
+        let result = answer_case(case);
+        let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
+        assert!(low >= found * (1.0 - 2e-6), "{name}: [{low}, {found}] {:?}", result.notes);
+    }
+}
+
+/// Two rings without bond are many times redundant: the least load is well below the associated one, and
+/// nothing lies below it.
+#[test]
+fn two_rings_feel_the_flow_rule() {
+    let study = study(include_str!("../../../studies/cases/flow_rule_rings.toml"));
+    let mut ratios = Vec::new();
+    for case in study.cases.iter().filter(|case| case.variant.as_deref() == Some("least")) {
+        let result = answer_case(case);
+        let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
+        assert!(result.certificate.passed && low >= found * (1.0 - 2e-6), "[{low}, {found}] {:?}", result.notes);
+        ratios.push(found / result.associated_load_factor.expect("an upper bound"));
+    }
+    assert_eq!(ratios.len(), 4);
+    assert!(ratios.is_sorted_by(|a, b| a > b) && ratios[3] < 0.9, "{ratios:?}");
+}
+
+/// A brick above an opening that only friction in its upright joints can hold: an admissible field
+/// exists, so the associated load is positive; but with slip that does not dilate dead load alone is
+/// at a limit state, and no state with p·q̇ = 1 lies below. The elastic path, which starts without
+/// compression in the joints, finds no equilibrium.
+#[test]
+fn a_brick_held_by_wedging_alone_is_reported() {
+    let rows: Vec<&[f64]> = vec![&[1.0, -1.0, 1.0], &[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
+    let (factor, result) = collapse(&wall(&rows, "law = \"coulomb\"\nfriction = 0.4", "solver = \"limit_least\""));
+    // 25/164, by a linear program of another code.
+    assert_close(factor, 0.152_439_024_390_243_9, 1e-9);
+    assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
+    assert!(result.notes.iter().any(|note| note.contains("wedging alone")), "{:?}", result.notes);
+}
+
+/// A wall that slides as a whole has many fields and one factor, that of friction: the sequence ends
+/// there also where the scene is too large for the simplex method.
+#[test]
+fn a_wall_that_slides_as_a_whole_ends_the_sequence() {
+    let text = wall(&[FIVE], "law = \"coulomb\"\nfriction = 0.3", "solver = \"limit_sequential\"")
+        .replace(&format!("rows = {:?}", [FIVE]), "courses = 12\nbricks = 12");
+    assert_close(collapse(&text).0, 0.3, 1e-6);
+}
+
+/// A segmental ring: four yielding joints determine the three redundants and the factor, whatever
+/// the flow, so the least load is the associated one, and the search proves it.
+#[test]
+fn a_single_ring_hardly_feels_the_flow_rule() {
+    for (friction, expected) in [(0.6, 698.022_665_212_378_8), (0.3, 517.901_443_003_289_2)] {
+        let joint = format!("law = \"coulomb\"\nfriction = {friction:?}");
+        let (least, result) = collapse(&Arch { joint, ..Arch::default() }.study());
+        assert_eq!(result.solver, "limit_least");
+        println!("friction {friction}: {:?} in {:.3} s {:?}", result.bounds, result.seconds, result.counters);
+        assert_close(least, expected, 1e-9);
+        assert_close(result.bounds.expect("a bracket")[0], expected, 3e-8);
+        assert_close(result.associated_load_factor.expect("an upper bound"), expected, 1e-11);
+    }
+}
+
+/// What `run` writes `verify` confirms, and a changed mechanism, field or associated bound it finds.
+#[test]
+fn results_are_verified_and_changes_found() {
+    let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
+    for solver in ["limit_least", "limit_sequential"] {
+        let original = study(&wall(&rows, COULOMB, &format!("solver = \"{solver}\"")));
+        let resolved = toml::to_string(&original.resolved).expect("a study can be written");
+        let again = load(&resolved, "resolved.toml", &[]).expect("and read");
+        let cases = original.cases.iter().map(answer_case).collect();
+        let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
+        assert_eq!(results.cases[0].status, Status::Collapse, "{solver}: {:?}", results.cases[0].notes);
+        assert_eq!(verify(&again, &results), vec![]);
+        let changes: [fn(&mut CaseResult); 6] = [
+            |r| r.load_factor = r.load_factor.map(|f| f * 0.999),
+            |r| r.flow_read_as = Some("associated".into()),
+            |r| r.associated_load_factor = r.associated_load_factor.map(|f| f * 1.001),
+            |r| r.associated_motion = None,
+            |r| r.field.as_mut().expect("a field")[0].force[0] += 1.0,
+            |r| r.motion = r.associated_motion.clone(),
+        ];
+        for (index, change) in changes.iter().enumerate() {
+            let mut changed = results.clone();
+            change(&mut changed.cases[0]);
+            assert!(!verify(&again, &changed).is_empty(), "{solver}: change {index} was not found");
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Somebody else's answers: closed forms, published numbers, independent programs.
+
+mod arch;
+mod cap;
+mod cohesive;
+mod compare;
+mod contact;
+mod crushing;
+mod elements;
+mod event;
+mod finite;
+mod flow_rule;
+mod newton;
+mod paths_read;
+mod plastic;
+mod redundants;
+mod semicircle;
+mod snap_through;
+mod softening;
+mod statuses;
+mod walls;
