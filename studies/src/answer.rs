@@ -71,6 +71,7 @@ fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
 /// The path solver that answers, if it is not for limit analysis: the one named, or for `auto` on
 /// deformable scenes the exact one where it can.
 pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)> {
+    use voussoir_solvers::path::continuation::exact_events::ExactEvents;
     use voussoir_solvers::path::{event::EventPath, newton::NewtonPath};
     match question.solver {
         Choice::Named(..) => None,
@@ -83,7 +84,7 @@ pub fn path_solver(question: &Question) -> Option<(String, Arc<dyn PathSolver>)>
             }
             let facets =
                 assembly.joints.iter().all(|j| assembly.law(j).is_none_or(|l| l.formulation().facets().is_some()));
-            let exact = question.settings.continuation.as_ref().is_none_or(|c| c.exact_events());
+            let exact = question.settings.continuation.as_ref().is_none_or(|c| ExactEvents::is(&**c));
             let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
             if !question.settings.finite && facets && exact && linear {
                 Some(("event_path".into(), Arc::new(EventPath {})))

@@ -1,6 +1,6 @@
 //! Where a path of finite displacements leads from a state at which no step converges.
 //!
-//! There some contact points are at the verge of a change. The modes that the last rate asks for are one
+//! There some contact points are active. The modes that the last rate asks for are one
 //! candidate; it is a solution of the rate problem only if it asks for the same modes itself (a point
 //! that slides goes on sliding in its sense, one that opens opens). Where it is not, the linear
 //! complementarity problem of the rates ([`rising`](super::rising)) is searched to its end for a rate on
@@ -82,7 +82,7 @@ pub(super) fn branch_beyond_fold(
         Rising::None => {
             let sense = if rate.factor > 0.0 { "growing" } else { "falling" };
             Err(format!(
-                "at factor {} no rate of equilibrium goes on with a {sense} factor: all modes of the contact points at the verge of a change are excluded; unloading from there has come back to this place",
+                "at factor {} no rate of equilibrium goes on with a {sense} factor: all modes of the active contact points are excluded; unloading from there has come back to this place",
                 state.factor
             ))
         }

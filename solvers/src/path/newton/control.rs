@@ -1,7 +1,8 @@
 //! What fixes a step: a factor, a continuation strategy, weighted gaps, or a mixed control.
 
-use super::state::State;
 use std::sync::Arc;
+use super::state::State;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Continuation, Increment};
 
 /// What fixes a step.
@@ -15,6 +16,15 @@ pub(super) enum Control {
     Gaps { local: LocalControl, length: f64 },
     /// weight × Δλ + the displacement that λ works on = length, in units (small displacements).
     Mixed { weight: f64, length: f64 },
+}
+
+/// A monitor of a problem.
+#[derive(Debug, Clone, Default)]
+pub(super) struct MonitorWeights {
+    /// Contact points with the weights of their normal gaps.
+    pub gaps: Vec<(usize, f64)>,
+    /// A body, a point of it and a direction.
+    pub point: Option<(usize, Vec2, Vec2)>,
 }
 
 /// Weights of the gaps in a local control: Σ w·(g − g_start) = length.

@@ -1,14 +1,14 @@
 //! The last row of the linear equations of a step: the gradient of its control.
 
+use crate::path::energy::load_size;
 use super::control::Control;
 use super::derivatives::Hessian;
 use super::inelastic::add_plastic_work;
-use super::loads::load_size;
 use super::measure::increment_between;
+use super::monitors::by_motion;
 use super::response::dissipation_gradient;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use voussoir_core::model::geometry::turned;
 use voussoir_core::path::{Constraint, Increment};
 
 /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
@@ -20,66 +20,25 @@ pub(super) fn control_row(
     constraint: &Constraint,
     hessian: &Hessian,
 ) -> Vec<f64> {
-    let u = system.units();
-    let (points, size) = (state.gap.len(), system.size());
-    let last = size - 1;
-    let mut row = vec![0.0; size];
+    let mut row = vec![0.0; system.size()];
+    let mut by_gap = vec![0.0; 2 * state.gap.len()];
     let by = constraint.derivative;
-    row[last] += by.factor;
-    let mut by_gap = vec![0.0; 2 * points];
+    row[system.size() - 1] += by.factor;
     if by.motion != 0.0 {
-        let value = increment_between(system, start, state).motion.max(1e-300);
-        for body in 0..system.unknowns.free.len() {
-            let Some(free) = system.unknowns.free[body] else { continue };
-            for k in 0..3 {
-                let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-                let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
-                row[2 * points + 3 * free + k] += by.motion * delta / (value * system.unknowns.bodies as f64);
-            }
-        }
-        for c in 0..points {
-            for k in 0..2 {
-                let delta = (state.gap[c][k] - start.gap[c][k]) / u.displacement;
-                by_gap[2 * c + k] += by.motion * delta / (value * points as f64 * u.displacement);
-            }
-        }
+        add_size_of_motion(system, (start, state), by.motion, &mut row, &mut by_gap);
     }
     if by.dissipation != 0.0 {
-        let energy = u.energy();
-        let gradient = dissipation_gradient(system, start, state);
-        by_gap.iter_mut().zip(gradient).for_each(|(w, slope)| *w += by.dissipation * slope / energy);
-        for c in 0..points {
-            let Some(law) = system.law(c) else { continue };
-            let (kept, _) = law.irreversible(state.mode[c], system.step_gap(start, state, c));
-            if kept != [0.0; 2] {
-                for k in 0..2 {
-                    row[2 * c + k] -= by.dissipation * kept[k] * u.force / energy;
-                    by_gap[2 * c + k] -= by.dissipation * state.force[c][k] / energy;
-                }
-            }
-        }
-        add_plastic_work(system, &mut row, state, by.dissipation / energy);
+        add_dissipation(system, (start, state), by.dissipation, &mut row, &mut by_gap);
     }
     if by.displacement != 0.0 {
-        let loading = system.loads.growing;
-        let scale = by.displacement / load_size(system.problem, loading).max(1e-300);
-        let mut wrench = vec![[0.0; 3]; system.unknowns.free.len()];
-        for (body, _, point, f) in &loading.forces {
-            let arm = point - system.problem.bodies[*body].pole;
-            let theta = if system.finite() { state.motion[*body][2] } else { 0.0 };
-            let arm = nalgebra::Rotation2::new(theta) * arm;
-            wrench[*body][0] += f.x;
-            wrench[*body][1] += f.y;
-            wrench[*body][2] += f.dot(&turned(arm));
+        add_load_displacement(system, state, by.displacement, &mut row);
+    }
+    for (by, monitor) in by.monitored.iter().zip(&system.monitors).filter(|(by, _)| **by != 0.0) {
+        for &(c, weight) in &monitor.gaps {
+            by_gap[2 * c] += by * weight / system.units().displacement;
         }
-        for (body, b) in system.problem.bodies.iter().enumerate() {
-            let Some(free) = system.unknowns.free[body] else { continue };
-            wrench[body][0] += b.mass * loading.acceleration.x;
-            wrench[body][1] += b.mass * loading.acceleration.y;
-            for k in 0..3 {
-                let unit = if k == 2 { 1.0 / u.length } else { 1.0 };
-                row[2 * points + 3 * free + k] += scale * wrench[body][k] * unit;
-            }
+        if let Some((body, point, direction)) = monitor.point {
+            add_by_motion(system, body, by_motion(system, state, body, point, direction), *by, &mut row);
         }
     }
     if let Control::Gaps { local, .. } = control {
@@ -96,6 +55,80 @@ pub(super) fn control_row(
     row
 }
 
+/// Adds the gradient of the root mean square of motions and gaps.
+fn add_size_of_motion(
+    system: &StepSystem,
+    (start, state): (&State, &State),
+    by: f64,
+    row: &mut [f64],
+    by_gap: &mut [f64],
+) {
+    let (u, points) = (system.units(), state.gap.len());
+    let value = increment_between(system, start, state).motion.max(1e-300);
+    for body in 0..system.unknowns.free.len() {
+        let Some(free) = system.unknowns.free[body] else { continue };
+        for (k, unit) in u.motion().into_iter().enumerate() {
+            let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
+            row[2 * points + 3 * free + k] += by * delta / (value * system.unknowns.bodies as f64);
+        }
+    }
+    for c in 0..points {
+        for k in 0..2 {
+            let delta = (state.gap[c][k] - start.gap[c][k]) / u.displacement;
+            by_gap[2 * c + k] += by * delta / (value * points as f64 * u.displacement);
+        }
+    }
+}
+
+/// Adds the gradient of the dissipated energy.
+fn add_dissipation(
+    system: &StepSystem,
+    (start, state): (&State, &State),
+    by: f64,
+    row: &mut [f64],
+    by_gap: &mut [f64],
+) {
+    let (u, energy) = (system.units(), system.units().energy());
+    let gradient = dissipation_gradient(system, start, state);
+    by_gap.iter_mut().zip(gradient).for_each(|(w, slope)| *w += by * slope / energy);
+    for c in 0..state.gap.len() {
+        let Some(law) = system.law(c) else { continue };
+        let (kept, _) = law.irreversible(state.mode[c], system.step_gap(start, state, c));
+        if kept != [0.0; 2] {
+            for k in 0..2 {
+                row[2 * c + k] -= by * kept[k] * u.force / energy;
+                by_gap[2 * c + k] -= by * state.force[c][k] / energy;
+            }
+        }
+    }
+    add_plastic_work(system, row, state, by / energy);
+}
+
+/// Adds the gradient of the work-conjugate displacement of the growing load.
+fn add_load_displacement(system: &StepSystem, state: &State, by: f64, row: &mut [f64]) {
+    let loading = system.loads.growing;
+    let scale = by / load_size(system.problem, loading).max(1e-300);
+    let mut wrench = vec![[0.0; 3]; system.unknowns.free.len()];
+    for &(body, _, point, force) in &loading.forces {
+        let own = by_motion(system, state, body, point, force);
+        wrench[body].iter_mut().zip(own).for_each(|(w, own)| *w += own);
+    }
+    for (body, b) in system.problem.bodies.iter().enumerate() {
+        wrench[body][0] += b.mass * loading.acceleration.x;
+        wrench[body][1] += b.mass * loading.acceleration.y;
+        add_by_motion(system, body, wrench[body], scale, row);
+    }
+}
+
+/// Adds weights of the motion of a body, in the unit of displacement.
+fn add_by_motion(system: &StepSystem, body: usize, weights: [f64; 3], scale: f64, row: &mut [f64]) {
+    let Some(free) = system.unknowns.free[body] else { return };
+    for (k, weight) in weights.into_iter().enumerate() {
+        let unit = if k == 2 { 1.0 / system.units().length } else { 1.0 };
+        row[2 * system.unknowns.contacts + 3 * free + k] += scale * weight * unit;
+    }
+}
+
 /// Adds weighted gaps to a row over the scaled unknowns.
 pub(super) fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], hessian: &Hessian) {
     if by_gap.iter().all(|w| *w == 0.0) {
@@ -108,6 +141,7 @@ pub(super) fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[
     }
 }
 
+/// How far a control is from its aim, and its constraint.
 pub(super) fn control_value(system: &StepSystem, start: &State, state: &State, control: &Control) -> (f64, Constraint) {
     match control {
         Control::Factor(target) => {

@@ -1,10 +1,10 @@
 //! What the deformation of bodies adds to gaps and equilibrium (see `kinematics`), with its derivatives.
 
+use nalgebra::{DMatrix, Matrix2};
 use super::blocks::YieldingBlock;
 use super::derivatives::{Gradient, Hessian};
-use super::geometry::{Geometry, Side};
+use super::geometry::{Geometry, Place, Side};
 use super::loads::Loads;
-use nalgebra::{DMatrix, Matrix2};
 use voussoir_core::model::geometry::{Vec2, turned};
 
 /// C of a body: of one that yields, its linearisation's.
@@ -56,15 +56,8 @@ pub(super) fn by_forces(
 }
 
 /// Adds what the deformation of a body gives.
-pub(super) fn add_elastic_gradient(
-    geometry: &Geometry,
-    body: usize,
-    force: &[[f64; 2]],
-    motion: &[[f64; 3]],
-    loads: &Loads,
-    blocks: &[Option<YieldingBlock>],
-    out: &mut Gradient,
-) {
+pub(super) fn add_elastic_gradient(geometry: &Geometry, body: usize, place: &Place, out: &mut Gradient) {
+    let Place { force, motion, loads, blocks } = *place;
     let f = geometry.body_forces(body, force, motion, loads);
     let back = geometry.turn(-motion[body][2]);
     let mut v = times_flexibility(geometry, body, &f, blocks);
@@ -101,32 +94,31 @@ pub(super) fn add_elastic_gradient(
     out.deformation[body] = v;
 }
 
+/// A side of an elastic body with ∂f/∂r and its frame.
+type MovedSide = (Side, Matrix2<f64>, Matrix2<f64>);
+
+fn at(v: &[f64], slot: usize) -> Vec2 {
+    Vec2::new(v[2 * slot], v[2 * slot + 1])
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 /// Adds what the deformation of a body gives.
-#[allow(clippy::too_many_arguments)]
 pub(super) fn add_elastic_hessian(
     geometry: &Geometry,
     body: usize,
-    force: &[[f64; 2]],
-    motion: &[[f64; 3]],
-    loads: &Loads,
+    place: &Place,
     gradient: &Gradient,
-    blocks: &[Option<YieldingBlock>],
     out: &mut Hessian,
 ) {
-    let problem = geometry.problem;
-    let Some(flexibility) = flexibility(geometry, body, blocks) else { return };
-    let base = 2 * problem.contacts.len();
-    let theta = |b: usize| base + 3 * b + 2;
-    let rows = flexibility.nrows();
-    let v = &gradient.deformation[body];
-    let at = |v: &[f64], slot: usize| Vec2::new(v[2 * slot], v[2 * slot + 1]);
-    let back = geometry.turn(-motion[body][2]);
-    // ∂f/∂r of every side.
-    let moved: Vec<(Side, Matrix2<f64>, Matrix2<f64>)> = geometry.sides[body]
+    let Some(flexibility) = flexibility(geometry, body, place.blocks) else { return };
+    let moved: Vec<MovedSide> = geometry.sides[body]
         .iter()
         .map(|side| {
-            let c = &problem.contacts[side.contact];
-            let (_, turn) = geometry.carried(side, force, motion);
+            let c = &geometry.problem.contacts[side.contact];
+            let (_, turn) = geometry.carried(side, place.force, place.motion);
             let frame = turn * Matrix2::from_columns(&[c.normal, c.tangent]);
             (*side, frame * side.sign, frame)
         })
@@ -143,25 +135,37 @@ pub(super) fn add_elastic_hessian(
         }
     }
     // By the factor.
-    let growing = loads.growing();
-    let mut pushed = vec![0.0; rows];
-    for (_, slot, _, load) in growing.forces.iter().filter(|l| l.0 == body) {
+    let back = geometry.turn(-place.motion[body][2]);
+    let mut pushed = vec![0.0; flexibility.nrows()];
+    for (_, slot, _, load) in place.loads.growing().forces.iter().filter(|l| l.0 == body) {
         if let Some(slot) = slot {
             let on = back * *load;
             pushed[2 * slot] += on.x;
             pushed[2 * slot + 1] += on.y;
         }
     }
-    let by_factor = times_flexibility(geometry, body, &pushed, blocks);
+    let by_factor = times_flexibility(geometry, body, &pushed, place.blocks);
     for (side, m, _) in &moved {
         let gap = m.transpose() * at(&by_factor, side.slot);
         out.factor[2 * side.contact] += gap.x;
         out.factor[2 * side.contact + 1] += gap.y;
     }
-    if !geometry.finite {
-        return;
+    if geometry.finite {
+        add_rotations(geometry, body, place, &gradient.deformation[body], (&moved, &by_factor), out);
     }
-    // ∂f/∂θ of the body and its neighbours.
+}
+
+/// ∂f/∂θ of a body and its neighbours; adds the second derivatives by rotations that are diagonal in them.
+fn forces_by_rotations(
+    geometry: &Geometry,
+    body: usize,
+    place: &Place,
+    v: &[f64],
+    out: &mut Hessian,
+) -> Vec<(usize, Vec<f64>)> {
+    let problem = geometry.problem;
+    let theta = |b: usize| 2 * problem.contacts.len() + 3 * b + 2;
+    let rows = v.len();
     let mut columns: Vec<(usize, Vec<f64>)> = vec![(body, vec![0.0; rows])];
     let mut add = |of: usize, slot: usize, value: Vec2| {
         let place = columns.iter().position(|(b, _)| *b == of).unwrap_or_else(|| {
@@ -173,7 +177,7 @@ pub(super) fn add_elastic_hessian(
     };
     for side in &geometry.sides[body] {
         let c = &problem.contacts[side.contact];
-        let (r, turn) = geometry.carried(side, force, motion);
+        let (r, turn) = geometry.carried(side, place.force, place.motion);
         let swing = turned(turn * r) * -0.5;
         add(c.plus.body, side.slot, swing);
         add(c.minus.body, side.slot, -swing);
@@ -181,7 +185,8 @@ pub(super) fn add_elastic_hessian(
         let (plus, minus) = (theta(c.plus.body), theta(c.minus.body));
         out.entries.extend([(plus, plus, bend), (minus, minus, bend), (plus, minus, -bend), (minus, plus, -bend)]);
     }
-    for (factor, loading) in &loads.parts {
+    let back = geometry.turn(-place.motion[body][2]);
+    for (factor, loading) in &place.loads.parts {
         for (_, slot, _, load) in loading.forces.iter().filter(|l| l.0 == body) {
             if let Some(slot) = slot {
                 let on = back * *load * *factor;
@@ -190,21 +195,35 @@ pub(super) fn add_elastic_hessian(
             }
         }
     }
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    columns
+}
+
+/// Adds what rotations give with finite displacements.
+fn add_rotations(
+    geometry: &Geometry,
+    body: usize,
+    place: &Place,
+    v: &[f64],
+    (moved, by_factor): (&[MovedSide], &[f64]),
+    out: &mut Hessian,
+) {
+    let Some(flexibility) = flexibility(geometry, body, place.blocks) else { return };
+    let theta = |b: usize| 2 * geometry.problem.contacts.len() + 3 * b + 2;
+    let columns = forces_by_rotations(geometry, body, place, v, out);
     let products: Vec<Vec<f64>> =
-        columns.iter().map(|(_, column)| times_flexibility(geometry, body, column, blocks)).collect();
+        columns.iter().map(|(_, column)| times_flexibility(geometry, body, column, place.blocks)).collect();
     // Where a block yields, C need not be symmetric: gaps by rotations take C, moments by forces Cᵀ.
-    let yields = matches!(blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
+    let yields = matches!(place.blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
     let across: Option<Vec<Vec<f64>>> = yields.then(|| {
         let times = |column: &[f64]| flexibility.column_iter().map(|c| dot(c.as_slice(), column)).collect();
         columns.iter().map(|(_, column)| times(column)).collect()
     });
     for (k, (of, column)) in columns.iter().enumerate() {
-        for (side, m, frame) in &moved {
+        for (side, m, frame) in moved {
             let product = m.transpose() * at(&products[k], side.slot);
             let transposed = across.as_ref().map_or(product, |all| m.transpose() * at(&all[k], side.slot));
             let mut block = Vec2::zeros();
-            let c = &problem.contacts[side.contact];
+            let c = &geometry.problem.contacts[side.contact];
             let chain = f64::from(c.plus.body == *of) - f64::from(c.minus.body == *of);
             // ∂M/∂φ = −½ J R(−s φ/2) [n t]
             let here = at(v, side.slot);
@@ -218,9 +237,10 @@ pub(super) fn add_elastic_hessian(
         for (l, (other, _)) in columns.iter().enumerate() {
             out.entries.push((theta(*of), theta(*other), dot(column, &products[l])));
         }
-        out.factor[theta(*of)] += dot(column, &by_factor);
+        out.factor[theta(*of)] += dot(column, by_factor);
     }
-    for (_, slot, _, load) in growing.forces.iter().filter(|l| l.0 == body) {
+    let back = geometry.turn(-place.motion[body][2]);
+    for (_, slot, _, load) in place.loads.growing().forces.iter().filter(|l| l.0 == body) {
         if let Some(slot) = slot {
             out.factor[theta(body)] -= turned(back * *load).dot(&at(v, *slot));
         }

@@ -1,8 +1,8 @@
 //! Rows of gaps and balance in units, and of them the rows of contact points by mode.
 
+use crate::path::rows::Rows;
 use super::law::{ContactMode, Polygon};
 use super::unknowns::Unknowns;
-use crate::path::rows::Rows;
 use voussoir_core::linear::Entries;
 
 /// What is added to the factorised matrix, relative to its units: refinement takes it out again.

@@ -1,9 +1,9 @@
 //! Events of a step: what contact points begin and stop to do.
 
+use crate::path::events::{ContactStatus, transition};
 use super::law::ContactMode;
 use super::state::State;
 use super::system::StepSystem;
-use crate::path::events::{ContactStatus, transition};
 use voussoir_core::law::{TractionPoint, UpdateBranch};
 use voussoir_core::path::PathEvent;
 

@@ -1,8 +1,8 @@
 //! What one factorisation leaves to the next.
 
+use std::rc::Rc;
 use super::border::Held;
 use super::law::ContactMode;
-use std::rc::Rc;
 use voussoir_core::linear::Analysis;
 
 /// Factors with what they are of.

@@ -7,7 +7,7 @@ use super::peak::note_peak;
 use super::state::Tangent;
 use super::system::StepFailure;
 use super::termination::no_step;
-use super::tracer::{Outcome, Tracer, end_path};
+use super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::trial::{StepPlan, first_slip};
 use voussoir_core::limit::Status;
 
@@ -27,7 +27,7 @@ pub(super) enum AfterFailure {
     /// A corner of the path: another branch.
     Corner(Branch),
     /// Nothing.
-    Ended(Outcome),
+    Ended(LoadStepEnding),
 }
 
 /// Decides what follows a step that did not converge.

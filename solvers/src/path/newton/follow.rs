@@ -14,7 +14,7 @@ use super::state::Tangent;
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::termination::{ends_in_ray, no_step, stops};
-use super::tracer::{Outcome, Tracer, commit, end_path};
+use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
 use super::trial::{StepPlan, Trial, attempt, plan};
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
@@ -49,11 +49,11 @@ enum StepEnd {
     CutBack(f64),
     /// The path goes on along another branch.
     Corner(Branch),
-    Ended(Outcome),
+    Ended(LoadStepEnding),
 }
 
 /// By the strategy, up to a factor or the end of the path.
-pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> Outcome {
+pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
     let mut following = match Following::begin(tracer, load_step, target) {
         Ok(following) => following,
         Err(outcome) => return outcome,
@@ -161,12 +161,12 @@ fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangen
 }
 
 /// Over the first peak: along another branch where one rises from it, else on.
-fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<Outcome> {
+fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
     let (state, beyond) = locate_peak(tracer, following, following.direction);
     if let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
         // Newton's method went over to a falling branch where another one rises.
         if !commit(tracer, state) {
-            return Some(Outcome::Ended);
+            return Some(LoadStepEnding::Ended);
         }
         following.switch_to(Branch { tangent, modes: Some(modes) });
         return None;
@@ -176,7 +176,7 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
 }
 
 /// Takes a step over; how the load step ends with it, if so.
-fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<Outcome> {
+fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
     let Step { trial: Trial { next, iterations, reaches, .. }, tangent, accuracy, falls } = step;
     let (direction, target, finite) = (following.direction, following.target, tracer.system.finite());
     let rises =
@@ -193,20 +193,20 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
     let changes = changes * ORDINARY / next.mode.len().max(ORDINARY);
     let softening = branch_changes(&tracer.system, &tracer.state, &next);
     if !commit(tracer, next) {
-        return Some(Outcome::Ended);
+        return Some(LoadStepEnding::Ended);
     }
     if reaches {
         if tracer.limit.peak.is_some() {
             tracer.record.notes.push(format!("after a limit point the path came back to the factor {target}"));
         }
-        return Some(Outcome::Reached);
+        return Some(LoadStepEnding::Reached);
     }
     following.branch = Branch { tangent, modes: None };
     if !finite && !tracer.state.yields() && ends_in_ray(tracer, &following.branch.tangent, direction, target) {
-        return Some(Outcome::Ended);
+        return Some(LoadStepEnding::Ended);
     }
     if stops(tracer, following.load_step, direction) {
-        return Some(Outcome::Ended);
+        return Some(LoadStepEnding::Ended);
     }
     let growth = match (changes, iterations) {
         (0, 0..=5) if softening > 0 => 1.5,
@@ -222,7 +222,7 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
 }
 
 /// The end of a path that takes too many steps.
-fn out_of_steps(tracer: &mut Tracer, linear: bool) -> Outcome {
+fn out_of_steps(tracer: &mut Tracer, linear: bool) -> LoadStepEnding {
     if linear && tracer.limit.peak.is_some() && tracer.limit.doubt.is_none() {
         let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
         return end_path(tracer, Status::LimitPoint, why);

@@ -7,7 +7,7 @@ use super::measure::{increment_along, tangent_size};
 use super::response::update_at_rest;
 use super::state::Tangent;
 use super::tangent::tangent_at;
-use super::tracer::{Outcome, Tracer, end_path};
+use super::tracer::{LoadStepEnding, Tracer, end_path};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 
@@ -67,10 +67,10 @@ pub(super) struct Following<'d> {
 
 impl<'d> Following<'d> {
     /// At the beginning of a load step, or how it ends there.
-    pub fn begin(tracer: &mut Tracer, load_step: &'d LoadStep, target: f64) -> Result<Self, Outcome> {
+    pub fn begin(tracer: &mut Tracer, load_step: &'d LoadStep, target: f64) -> Result<Self, LoadStepEnding> {
         let direction = if target < load_step.start { -1.0 } else { 1.0 };
         if target == tracer.state.factor {
-            return Err(Outcome::Reached);
+            return Err(LoadStepEnding::Reached);
         }
         tracer.limit.rose = None;
         update_at_rest(&mut tracer.system, &mut tracer.state);

@@ -14,14 +14,14 @@
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
 //! that no combination of modes is without a direction.
 
-use super::border::{Bordered, Held};
-use super::equations::Equations;
-use super::law::ContactMode;
-use super::system::StepSystem;
 use crate::path::condensed::Condensed;
 use crate::path::rows::Rows;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
+use super::border::{Bordered, Held};
+use super::equations::Equations;
+use super::law::ContactMode;
+use super::system::StepSystem;
 use voussoir_core::linear::Analysis;
 
 /// Changed points above which the matrix is factorised anew.

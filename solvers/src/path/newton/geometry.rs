@@ -1,7 +1,8 @@
 //! Rigid motions, frames of contact points and forces in the axes of a body.
 
-use super::loads::Loads;
 use nalgebra::Matrix2;
+use super::blocks::YieldingBlock;
+use super::loads::Loads;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::PathProblem;
 
@@ -11,6 +12,15 @@ pub(super) struct Side {
     pub contact: usize,
     pub sign: f64,
     pub slot: usize,
+}
+
+/// Where derivatives are taken: contact forces, motions, loads, and the bodies that yield.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub force: &'a [[f64; 2]],
+    pub motion: &'a [[f64; 3]],
+    pub loads: &'a Loads<'a>,
+    pub blocks: &'a [Option<YieldingBlock>],
 }
 
 /// Geometry of a problem as the path solver sees it.

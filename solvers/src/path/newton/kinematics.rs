@@ -18,21 +18,14 @@
 //! Source: the mixed form of Hellinger and Reissner with corotational frames (Wriggers 2006,
 //! Computational Contact Mechanics; Crisfield 1997, Non-linear Finite Element Analysis 2, ch. 17).
 
-use super::blocks::YieldingBlock;
 use super::deformation::{add_elastic_gradient, add_elastic_hessian};
 use super::derivatives::{Gradient, Hessian};
-use super::geometry::Geometry;
-use super::loads::Loads;
+use super::geometry::{Geometry, Place};
 use voussoir_core::model::geometry::turned;
 
 /// First derivatives of Π at contact forces and motions; `blocks` are the bodies that yield.
-pub(super) fn gradient(
-    geometry: &Geometry,
-    force: &[[f64; 2]],
-    motion: &[[f64; 3]],
-    loads: &Loads,
-    blocks: &[Option<YieldingBlock>],
-) -> Gradient {
+pub(super) fn gradient(geometry: &Geometry, place: &Place) -> Gradient {
+    let Place { force, motion, loads, .. } = *place;
     let problem = geometry.problem;
     let mut out = Gradient {
         gap: Vec::with_capacity(problem.contacts.len()),
@@ -73,21 +66,15 @@ pub(super) fn gradient(
             }
         }
         if b.flexibility.is_some() {
-            add_elastic_gradient(geometry, body, force, motion, loads, blocks, &mut out);
+            add_elastic_gradient(geometry, body, place, &mut out);
         }
     }
     out
 }
 
 /// Second derivatives of Π.
-pub(super) fn hessian(
-    geometry: &Geometry,
-    force: &[[f64; 2]],
-    motion: &[[f64; 3]],
-    loads: &Loads,
-    gradient: &Gradient,
-    blocks: &[Option<YieldingBlock>],
-) -> Hessian {
+pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -> Hessian {
+    let Place { force, motion, loads, .. } = *place;
     let problem = geometry.problem;
     let base = 2 * problem.contacts.len();
     let size = base + 3 * problem.bodies.len();
@@ -145,7 +132,7 @@ pub(super) fn hessian(
             }
         }
         if b.flexibility.is_some() {
-            add_elastic_hessian(geometry, body, force, motion, loads, gradient, blocks, &mut out);
+            add_elastic_hessian(geometry, body, place, gradient, &mut out);
         }
     }
     // Settlements move with the factor.

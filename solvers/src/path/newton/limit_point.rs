@@ -51,10 +51,10 @@ pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) 
     Some(other)
 }
 
-/// Why the path ends at a proven limit point, or behind it.
+/// Why the path ends at a proven limit point, or beyond it.
 pub(super) fn not_followed(tracer: &Tracer, why: &str) -> String {
     match &tracer.limit.peak {
-        None => format!("the path was not followed behind it: {why}"),
-        Some(_) => format!("behind it the path was followed to factor {} only: {why}", tracer.state.factor),
+        None => format!("the path was not followed beyond it: {why}"),
+        Some(_) => format!("beyond it the path was followed to factor {} only: {why}", tracer.state.factor),
     }
 }

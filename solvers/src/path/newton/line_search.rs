@@ -49,7 +49,7 @@ pub(super) struct LineSearch {
 }
 
 impl LineSearch {
-    /// For laws of tractions from gaps: between the pieces of such a law whole iterations may go to and fro.
+    /// For laws of tractions from gaps: between the pieces of such a law whole iterations may cycle.
     pub fn of_tractions() -> Self {
         LineSearch { decrease: 0.3, halvings: 4, memory: 1, merits: Vec::new() }
     }

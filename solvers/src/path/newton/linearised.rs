@@ -15,6 +15,8 @@
 //! modes have no solution, and the step is refused. How it is factorised: see `border` and
 //! [`condensed`](crate::path::condensed).
 
+use crate::path::rows::Rows;
+use std::rc::Rc;
 use super::border::{Bordered, Held};
 use super::derivatives::{Gradient, Hessian};
 use super::factors::Kept;
@@ -22,8 +24,6 @@ use super::law::ContactMode;
 use super::response::{traction_residual, traction_row};
 use super::state::State;
 use super::system::StepSystem;
-use crate::path::rows::Rows;
-use std::rc::Rc;
 
 /// Backward error of every row that is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -1,12 +1,15 @@
 //! The load steps one after the other, converged states taken over, and the answer.
 
-use super::energy::EnergyBalance;
+use crate::path::energy::EnergyBalance;
+use crate::path::outcome::{Outcome, PathRecord, stalled};
+use std::sync::Arc;
 use super::follow::follow;
 use super::load_to_factor::load_to_factor;
 use super::loads::StagedLoads;
+use super::monitors::resolve;
+use super::recorded::{recorded, work_state};
 use super::system::StepSystem;
-use super::tracer::{Ending, LimitPoint, Outcome, PostPeak, Record, Tracer, end_path};
-use std::sync::Arc;
+use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{Continuation, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
@@ -18,14 +21,17 @@ pub(super) fn trace(
     strategy: Arc<dyn Continuation>,
     observer: &mut dyn PathObserver,
 ) -> PathAnswer {
-    let system = match StepSystem::new(problem, settings.finite) {
-        Ok(system) => system,
-        Err(why) => return stalled(why),
+    let monitors = resolve(problem, &strategy.monitors());
+    let built = monitors.and_then(|monitors| Ok((StepSystem::new(problem, settings.finite)?, monitors)));
+    let system = match built {
+        Ok((system, monitors)) => StepSystem { monitors, ..system },
+        Err(why) => return stalled(problem, why),
     };
     let state = system.undeformed();
     let gradient = system.gradient(&state);
     let energy = EnergyBalance::default();
-    let recorded = energy.recorded(&system, 0, &state, &gradient);
+    let seen = recorded(&energy, &system, 0, &state, &gradient);
+    let work = work_state(&system, &state, &gradient);
     let mut tracer = Tracer {
         system,
         settings,
@@ -33,7 +39,7 @@ pub(super) fn trace(
         observer,
         load_step: 0,
         state,
-        record: Record { energy, gradient, state: recorded, events: Vec::new(), notes: Vec::new() },
+        record: Record { energy, work, state: seen, events: Vec::new(), notes: Vec::new() },
         ending: Ending { status: Status::Stalled, motion: None, ray: None },
         limit: LimitPoint::default(),
         post_peak: PostPeak::default(),
@@ -42,23 +48,7 @@ pub(super) fn trace(
     answer(tracer)
 }
 
-/// An answer that says only why there is none.
-pub(super) fn stalled(why: String) -> PathAnswer {
-    PathAnswer {
-        status: Status::Stalled,
-        load_step: 0,
-        factor: None,
-        state: PathState::default(),
-        last: None,
-        motion: None,
-        unique: None,
-        ray: None,
-        events: Vec::new(),
-        counters: Counters::new(),
-        notes: vec![why],
-    }
-}
-
+/// Follows the load steps one after the other.
 fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     let mut earlier = Vec::new();
     for (index, load_step) in problem.load_steps.iter().enumerate() {
@@ -69,20 +59,21 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
             growing: &load_step.loading,
             start: load_step.start,
         });
-        tracer.record.gradient = tracer.system.gradient(&tracer.state);
+        let gradient = tracer.system.gradient(&tracer.state);
+        tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
             LoadStepEnd::Collapse(most) => follow(tracer, load_step, most),
         };
         // Behind a peak a structure with finite displacements comes back to the load as another one:
         // it has snapped through.
-        if tracer.system.finite() && tracer.limit.peak.is_some() && matches!(outcome, Outcome::Reached) {
+        if tracer.system.finite() && tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
             tracer.ending.status = Status::Collapse;
-            outcome = Outcome::Ended;
+            outcome = LoadStepEnding::Ended;
         }
         match outcome {
-            Outcome::Reached => earlier.push((tracer.state.factor - load_step.start, &load_step.loading)),
-            Outcome::Ended => {
+            LoadStepEnding::Reached => earlier.push((tracer.state.factor - load_step.start, &load_step.loading)),
+            LoadStepEnding::Ended => {
                 if load_step.gravity && matches!(tracer.ending.status, Status::Collapse | Status::LimitPoint) {
                     tracer.record.notes.push(format!(
                         "the change of gravity is carried up to {:.9} of its value only",
@@ -97,6 +88,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
 }
 
+/// The answer of a trace that has ended.
 fn answer(mut tracer: Tracer) -> PathAnswer {
     if let (Status::LimitPoint, Some(why)) = (tracer.ending.status, tracer.limit.doubt.take()) {
         tracer.limit.peak = None;
@@ -104,7 +96,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     }
     if let (Status::LimitPoint, Some(factor)) = (tracer.ending.status, tracer.limit.proven) {
         tracer.record.notes.push(format!(
-            "at factor {factor} no rate of solution has a factor that grows: all modes of the contact points at the verge of a change are excluded"
+            "at factor {factor} no rate of solution has a factor that grows: all modes of the active contact points are excluded"
         ));
     }
     let mut counters = tracer.system.counters.clone();
@@ -124,7 +116,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.post_peak.trough)
     {
         notes.push(format!(
-            "behind the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
+            "after the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
             trough.factor,
             trough.state.displacement - peak.state.displacement
         ));
@@ -152,17 +144,10 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
             (tracer.record.state, None, factor, tracer.ending.motion)
         }
     };
-    PathAnswer {
-        status: tracer.ending.status,
-        load_step: tracer.load_step,
-        factor,
-        state,
-        last,
-        motion,
-        unique: None,
-        ray: tracer.ending.ray,
-        events: tracer.record.events,
-        counters,
-        notes,
-    }
+    let record = PathRecord { load_step: tracer.load_step, state, last, events: tracer.record.events, counters, notes };
+    Outcome::at(tracer.ending.status, factor).moving(motion).carried_by(tracer.ending.ray).answer(
+        tracer.system.problem,
+        tracer.system.finite(),
+        record,
+    )
 }

@@ -1,4 +1,4 @@
-//! Drives to a factor: in one step where that is exact, from nothing by a spring, else in equal steps.
+//! Load steps to a factor: in one step where that is exact, from nothing by a mixed control, else in equal steps.
 
 use super::control::Control;
 use super::flow::{by_flow_rule_homotopy, take_associated};
@@ -11,7 +11,7 @@ use super::pivot::by_homotopy;
 use super::response::tractions_dissipate;
 use super::state::{State, Tangent, in_proportion};
 use super::step::solve_step;
-use super::tracer::{Outcome, Tracer, commit, end_path};
+use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
 
@@ -19,7 +19,7 @@ use voussoir_core::path::LoadStep;
 const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
 
 /// To a factor: in one step where nothing irreversible happens in it, else in steps.
-pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> Outcome {
+pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
     let control = Control::Factor(factor);
     let whole = solve_step(&mut tracer.system, &tracer.state, tracer.state.clone(), &control);
     let small = !tracer.system.finite();
@@ -35,7 +35,7 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
         let far = !small && iterations > 12;
         let straight = !slips && !far && !tractions_dissipate(&tracer.system, &next);
         if straight || (small && is_proportional(tracer)) {
-            return if commit(tracer, next) { Outcome::Reached } else { Outcome::Ended };
+            return if commit(tracer, next) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
         }
         if small && tracer.system.monotone() {
             return equal_steps(tracer, load_step, factor);
@@ -47,18 +47,18 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
     follow(tracer, load_step, factor)
 }
 
-/// The first load step where it is proportional and no state at its factor was found: by a spring, which
+/// The first load step where it is proportional and no state at its factor was found: by a mixed control, which
 /// has a solution whatever the load. If λ grows with it, that state in proportion is the one looked
 /// for. If λ stays at nothing, the motion is a mechanism. Where flow is not associated that proves
 /// something only if λ stays at nothing with associated flow too.
-pub(super) fn start_proportional(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> Outcome {
+pub(super) fn start_proportional(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
     let direction = if factor < load_step.start { -1.0 } else { 1.0 };
     let control = Control::Mixed { weight: mixed_weight(tracer), length: direction };
     let nothing = 1e-9 * tracer.system.units().factor;
     if !tracer.system.monotone()
         && let Some(next) = by_flow_rule_homotopy(&mut tracer.system, &tracer.state, factor)
     {
-        return if commit(tracer, next) { Outcome::Reached } else { Outcome::Ended };
+        return if commit(tracer, next) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
     }
     let own = by_homotopy(&mut tracer.system, &tracer.state, &tracer.state.clone(), &control);
     let Ok((state, _)) = own else {
@@ -67,8 +67,8 @@ pub(super) fn start_proportional(tracer: &mut Tracer, load_step: &LoadStep, fact
     if (state.factor - load_step.start) * direction > nothing {
         let guess = in_proportion(&state, (factor - load_step.start) / (state.factor - load_step.start));
         return match iterate(&mut tracer.system, &tracer.state, guess, &Control::Factor(factor), 8, None) {
-            Ok((next, _)) if commit(tracer, next.clone()) => Outcome::Reached,
-            Ok(_) => Outcome::Ended,
+            Ok((next, _)) if commit(tracer, next.clone()) => LoadStepEnding::Reached,
+            Ok(_) => LoadStepEnding::Ended,
             Err(_) => follow(tracer, load_step, factor),
         };
     }
@@ -103,7 +103,7 @@ pub(super) fn is_proportional(tracer: &Tracer) -> bool {
 
 /// To a factor that is known to be carried, in equal steps of λ (associated flow: what carries a
 /// factor carries all between).
-pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> Outcome {
+pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
     let from = tracer.state.factor;
     let mut last: Option<State> = None;
     let mut at = 0.0;
@@ -125,7 +125,7 @@ pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64
             Ok((next, _)) => {
                 last = Some(tracer.state.clone());
                 if !commit(tracer, next) {
-                    return Outcome::Ended;
+                    return LoadStepEnding::Ended;
                 }
                 at = next_at;
             }
@@ -138,5 +138,5 @@ pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64
             }
         }
     }
-    Outcome::Reached
+    LoadStepEnding::Reached
 }

@@ -1,7 +1,7 @@
 //! The loads in force: those that earlier stages left and the one that grows.
 
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Loading, PathProblem};
+use voussoir_core::path::Loading;
 
 /// The loads in force: each loading with its factor, the one that grows last.
 pub(super) struct Loads<'a> {
@@ -43,11 +43,4 @@ impl<'a> StagedLoads<'a> {
         parts.push((factor - self.start, self.growing));
         Loads { parts }
     }
-}
-
-/// Σ|F| of a loading, weights of accelerated free bodies included \[N\].
-pub(super) fn load_size(problem: &PathProblem, loading: &Loading) -> f64 {
-    let forces: f64 = loading.forces.iter().map(|f| f.3.norm()).sum();
-    let masses: f64 = problem.bodies.iter().filter(|b| !b.held).map(|b| b.mass).sum();
-    forces + masses * loading.acceleration.norm()
 }

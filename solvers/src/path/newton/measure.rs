@@ -1,26 +1,17 @@
 //! Sizes of states, rates and steps in the units of the unknowns: what continuation strategies measure.
 
+use crate::path::energy;
 use super::inelastic::{plastic_power, plastic_work};
-use super::loads::load_size;
+use super::monitors::monitored;
 use super::response::dissipated_by_tractions;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::Increment;
 
-/// Work-conjugate displacement of the growing load by rigid motions: Σ F·u / Σ|F| \[m\].
+/// Work-conjugate displacement of the growing load \[m\].
 pub(super) fn load_displacement(system: &StepSystem, motion: &[[f64; 3]]) -> f64 {
-    let loading = system.loads.growing;
-    let size = load_size(system.problem, loading);
-    if size == 0.0 {
-        return 0.0;
-    }
-    let forces: f64 =
-        loading.forces.iter().map(|(body, _, point, f)| f.dot(&system.geometry.rigid(*body, *point, motion))).sum();
-    let bodies = system.problem.bodies.iter().zip(motion);
-    let masses: f64 =
-        bodies.filter(|(b, _)| !b.held).map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1]))).sum();
-    (forces + masses) / size
+    let rigid = |body, point| system.geometry.rigid(body, point, motion);
+    energy::load_displacement(system.problem, system.loads.growing, motion, rigid)
 }
 
 /// Increment between two states in units, and the weights of its derivative: by gaps and directly.
@@ -51,6 +42,7 @@ pub(super) fn increment_between(system: &StepSystem, start: &State, state: &Stat
             / u.displacement,
         motion: motion.sqrt(),
         dissipation: dissipation / u.energy(),
+        monitored: monitored(system, start, state),
     }
 }
 
@@ -84,6 +76,7 @@ pub(super) fn increment_along(system: &StepSystem, state: &State, rate: &Tangent
         factor: rate.factor / system.units().factor,
         displacement: i.displacement / small,
         motion: i.motion / small,
+        monitored: i.monitored.map(|value| value / small),
         dissipation: i.dissipation / small + plastic_power(system, state, rate) / system.units().energy(),
     }
 }

@@ -1,4 +1,4 @@
-//! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
+//! `newton_path`: semismooth Newton on the modes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
 mod blocks;
@@ -10,7 +10,6 @@ mod creeping;
 mod cycle_detector;
 mod deformation;
 mod derivatives;
-mod energy;
 mod equations;
 mod events;
 mod factors;
@@ -32,12 +31,13 @@ mod load_to_factor;
 mod loads;
 mod measure;
 mod mechanism;
+mod monitors;
 mod peak;
 mod pivot;
 mod plastic_plateau;
+mod recorded;
 mod response;
 mod rising;
-mod self_check;
 mod softening;
 mod state;
 mod step;
@@ -49,9 +49,12 @@ mod tractions;
 mod trial;
 mod unknowns;
 
-use super::continuation::arc_length::ArcLength;
+use crate::path::continuation::exact_events::ExactEvents;
+use self::monitors::resolve;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use super::continuation::arc_length::ArcLength;
+use super::outcome::stalled;
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
 
@@ -64,24 +67,25 @@ pub struct NewtonPath {}
 impl PathSolver for NewtonPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
         if let Some(why) = self.refuses(problem, settings) {
-            return load_steps::stalled(why);
+            return stalled(problem, why);
         }
         let strategy = settings.continuation.clone();
         let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
-        self_check::confirmed(problem, settings.finite, load_steps::trace(problem, settings, strategy, observer))
+        load_steps::trace(problem, settings, strategy, observer)
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
-        if settings.continuation.as_ref().is_some_and(|c| c.exact_events()) {
+        if settings.continuation.as_ref().is_some_and(|c| ExactEvents::is(&**c)) {
             return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
         }
         if problem.load_steps.is_empty() {
             return Some("nothing is loaded".into());
         }
-        (!problem.deforms()).then(|| {
-            "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them"
-                .into()
-        })
+        if !problem.deforms() {
+            let why = "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them";
+            return Some(why.into());
+        }
+        settings.continuation.as_ref().and_then(|strategy| resolve(problem, &strategy.monitors()).err())
     }
 }
 

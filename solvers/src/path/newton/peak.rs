@@ -1,13 +1,14 @@
 //! Peaks and troughs of the load within a step, by bisection.
 
+use crate::path::energy::load_size;
 use super::control::Control;
 use super::following::{Following, per_tangent};
-use super::loads::load_size;
 use super::measure::{increment_along, motion_size};
+use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
-use super::tracer::{Peak, Tracer, moved_along};
+use super::tracer::{Peak, Tracer, foreseen, moved_along};
 
 /// Bisects the step from the present state for the point where λ stops growing in the sense `direction`:
 /// the state there and the rate just beyond it.
@@ -17,7 +18,7 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
     let per_rate = per_tangent(tracer, rate, previous.as_ref());
     let (mut low, mut high) = (0.0, length);
     let mut best = (tracer.state.clone(), rate.clone());
-    let mut behind = rate.clone();
+    let mut beyond = rate.clone();
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         let control = Control::Strategy { strategy: strategy.clone(), previous, length: middle };
@@ -29,38 +30,37 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
             best = (state, here);
         } else {
             high = middle;
-            behind = here;
+            beyond = here;
         }
         let gain = best.1.factor.abs() * (high - low);
         if low > 0.0 && gain <= 1e-11 * best.0.factor.abs().max(1e-6 * tracer.system.units().factor) {
             break;
         }
     }
-    (best.0, behind)
+    (best.0, beyond)
 }
 
-/// Where the load rises again behind a peak with finite displacements: the least load between, if it is
+/// Where the load rises again after a peak with finite displacements: the least load between, if it is
 /// lower than any before and the path has not risen by much since.
 pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
     let direction = following.direction;
     let lower =
         |factor: f64| tracer.post_peak.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
     if !tracer.post_peak.risen && lower(tracer.state.factor) {
-        let (state, behind) = locate_peak(tracer, following, -direction);
-        tracer.post_peak.trough = Some(peak_at(tracer, state, &behind));
+        let (state, beyond) = locate_peak(tracer, following, -direction);
+        tracer.post_peak.trough = Some(peak_at(tracer, state, &beyond));
     }
 }
 
-/// A peak at a state between the last one and the next, with the rate just behind it.
-pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, behind: &Tangent) -> Peak {
+/// A peak at a state between the last one and the next, with the rate just beyond it.
+pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -> Peak {
     let gradient = tracer.system.gradient(&state);
-    let mut ledger = tracer.record.energy;
-    ledger.add(&tracer.system, &tracer.state, &state, [&tracer.record.gradient, &gradient]);
+    let (energy, _) = foreseen(tracer, &state, &gradient);
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut state);
-    let recorded = ledger.recorded(&tracer.system, tracer.load_step, &state, &gradient);
-    let motion = scaled_motion(tracer, &state, behind);
-    Peak { factor: state.factor, state: recorded, motion }
+    let seen = recorded(&energy, &tracer.system, tracer.load_step, &state, &gradient);
+    let motion = scaled_motion(tracer, &state, beyond);
+    Peak { factor: state.factor, state: seen, motion }
 }
 
 /// Keeps the present state as the first peak, where there was none, with the rate just beyond it.

@@ -17,6 +17,8 @@
 //! and Dirkse & Ferris (1995, Optim. Methods Software 5) on this path as a globally convergent Newton
 //! method for complementarity problems.
 
+use crate::path::shuffle::Shuffle;
+use crate::path::walk::{Met, Standing, Walk};
 use super::control::Control;
 use super::control_row::{control_row, control_value};
 use super::frame::Frame;
@@ -26,8 +28,6 @@ use super::linearised::residual_of;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_without_gaps;
-use crate::path::shuffle::Shuffle;
-use crate::path::walk::{Met, Standing, Walk};
 use voussoir_core::path::ContactLaw;
 
 /// Sizes of the shift of the guess that are tried, relative to forces.

@@ -12,12 +12,12 @@
 //! an opening facet with strength is open already its multiplier has any sign: it belongs to the
 //! factorised modes, and only the point's other facets are pairs.
 
+use crate::path::complementarity::{Complementarity, Known};
+use nalgebra::{DMatrix, DVector};
 use super::law::ContactMode;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
-use crate::path::complementarity::{Complementarity, Known};
-use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 

@@ -8,11 +8,12 @@
 use super::control::LocalControl;
 use super::measure::increment_along;
 use super::peak::peak_at;
+use super::recorded::recorded;
 use super::response::{local_control_of_step, local_controls, tractions_dissipate};
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
-use super::tracer::{Peak, Tracer, moved_along};
+use super::tracer::{Peak, Tracer, foreseen, moved_along};
 use voussoir_core::path::PathState;
 
 /// Energy that the trapezoidal rule may lose in a step, as a share of all energy so far.
@@ -28,9 +29,8 @@ pub(super) fn energy_accuracy(tracer: &mut Tracer, next: &State) -> f64 {
         return f64::INFINITY;
     }
     let gradient = tracer.system.gradient(next);
-    let mut ledger = tracer.record.energy;
-    ledger.add(&tracer.system, &tracer.state, next, [&tracer.record.gradient, &gradient]);
-    let after = ledger.recorded(&tracer.system, tracer.load_step, next, &gradient);
+    let (energy, _) = foreseen(tracer, next, &gradient);
+    let after = recorded(&energy, &tracer.system, tracer.load_step, next, &gradient);
     let of = |state: &PathState| state.work - state.stored - state.dissipated;
     let lost = (of(&after) - of(&tracer.record.state)).abs();
     let whole = after.stored.abs() + after.dissipated.abs();
@@ -105,7 +105,7 @@ pub(super) fn forget_lower_peak(tracer: &mut Tracer, direction: f64) {
         tracer
             .record
             .notes
-            .push(format!("behind a limit point at factor {} the load rises above it again", peak.factor));
+            .push(format!("after a limit point at factor {} the load rises above it again", peak.factor));
     }
 }
 
@@ -120,7 +120,7 @@ pub(super) fn softening_peak(tracer: &mut Tracer, next: &State, falls: bool, dir
     let earlier = tracer.limit.peak.as_ref().map(|peak| peak.factor);
     let Some(local) = local_control_of_step(&tracer.system, &start, next) else { return };
     let (mut low, mut high) = (0.0, 1.0);
-    let (mut best, mut behind) = (start.clone(), None);
+    let (mut best, mut beyond) = (start.clone(), None);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         let control = local.control(middle);
@@ -134,11 +134,11 @@ pub(super) fn softening_peak(tracer: &mut Tracer, next: &State, falls: bool, dir
                 break;
             }
         } else {
-            (high, behind) = (middle, Some(here));
+            (high, beyond) = (middle, Some(here));
         }
     }
-    let behind = match behind {
-        Some(behind) => behind,
+    let beyond = match beyond {
+        Some(beyond) => beyond,
         None => match tangent_at(&mut tracer.system, &start, next, &local.control(1.0)) {
             Some(rate) => rate,
             None => return,
@@ -146,9 +146,9 @@ pub(super) fn softening_peak(tracer: &mut Tracer, next: &State, falls: bool, dir
     };
     if earlier.is_none_or(|earlier| higher(best.factor, earlier)) {
         if let Some(earlier) = earlier {
-            tracer.record.notes.push(format!("behind a limit point at factor {earlier} the load rises above it again"));
+            tracer.record.notes.push(format!("after a limit point at factor {earlier} the load rises above it again"));
         }
-        tracer.limit.peak = Some(peak_at(tracer, best, &behind));
+        tracer.limit.peak = Some(peak_at(tracer, best, &beyond));
     }
 }
 

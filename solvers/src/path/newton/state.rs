@@ -1,7 +1,9 @@
 //! A state of a step, what it remembers, and its rate along the path.
 
 use super::blocks::YieldingBlock;
+use super::geometry::Place;
 use super::law::ContactMode;
+use super::loads::Loads;
 use super::tractions::TractionUpdates;
 
 /// A state with its history.
@@ -21,6 +23,11 @@ pub(super) struct State {
 }
 
 impl State {
+    /// Where derivatives at it are taken.
+    pub fn place<'a>(&'a self, loads: &'a Loads<'a>) -> Place<'a> {
+        Place { force: &self.force, motion: &self.motion, loads, blocks: &self.blocks }
+    }
+
     /// Whether a block yields in the step that ends here.
     pub fn yields(&self) -> bool {
         self.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)

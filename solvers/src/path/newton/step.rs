@@ -7,7 +7,7 @@ use super::pivot::by_homotopy;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
 
-/// Newton's method from a guess. Regimes change all at once as long as their number falls, else
+/// Newton's method from a guess. Modes change all at once as long as their number falls, else
 /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
 /// Res. 21), so that modes that flip for ever are seen. Where that fails, by a line search, then
 /// with one change at a time from the beginning; with small displacements and a given factor by

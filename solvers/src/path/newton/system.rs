@@ -1,16 +1,18 @@
 //! The system of a step as data: units, laws, loads, geometry; and what the last evaluations leave to the next.
 
+use crate::path::energy::load_size;
+use std::rc::Rc;
 use super::blocks::{YieldingBlock, undeformed};
+use super::control::MonitorWeights;
 use super::derivatives::{Gradient, Hessian};
 use super::factors::Factorised;
 use super::geometry::Geometry;
 use super::kinematics::{gradient, hessian};
 use super::law::{ContactMode, Polygon};
-use super::loads::{StagedLoads, load_size};
+use super::loads::StagedLoads;
 use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
 use super::unknowns::{Units, Unknowns};
-use std::rc::Rc;
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{ContactLaw, Loading, PathProblem};
 
@@ -42,6 +44,8 @@ pub(super) struct StepSystem<'a> {
     /// Undeformed bodies whose material yields.
     blocks: Vec<Option<YieldingBlock>>,
     pub cache: Cache,
+    /// What the strategy watches.
+    pub monitors: Vec<MonitorWeights>,
     pub counters: Counters,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
@@ -130,6 +134,7 @@ impl<'a> StepSystem<'a> {
             line_search: true,
             blocks: undeformed(problem)?,
             cache: Cache::default(),
+            monitors: Vec::new(),
         })
     }
 
@@ -248,7 +253,8 @@ impl<'a> StepSystem<'a> {
 
     /// First derivatives of Π at a state.
     pub fn gradient(&self, state: &State) -> Gradient {
-        gradient(&self.geometry, &state.force, &state.motion, &self.loads.at(state.factor), &state.blocks)
+        let loads = self.loads.at(state.factor);
+        gradient(&self.geometry, &state.place(&loads))
     }
 
     /// Second derivatives of Π at a state.
@@ -258,7 +264,7 @@ impl<'a> StepSystem<'a> {
             return constant.clone();
         }
         let loads = self.loads.at(state.factor);
-        let hessian = hessian(&self.geometry, &state.force, &state.motion, &loads, gradient, &state.blocks);
+        let hessian = hessian(&self.geometry, &state.place(&loads), gradient);
         let hessian = Rc::new(hessian);
         if !self.finite() && !yields {
             self.cache.hessian = Some(hessian.clone());

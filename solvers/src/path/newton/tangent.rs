@@ -30,7 +30,7 @@ fn add_step(system: &StepSystem, force: &mut [[f64; 2]], motion: &mut [[f64; 3]]
     }
 }
 
-/// Regimes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
+/// Modes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
 /// associated the nearest mode need not be the return.
 pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (Vec<ContactMode>, bool) {
     system.count("law_evaluations", state.gap.len() as u64);
@@ -59,7 +59,7 @@ pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State
     (modes, holds)
 }
 
-/// Regimes that a small share of a rate asks for, from a converged state.
+/// Modes that a small share of a rate asks for, from a converged state.
 pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State) -> Vec<ContactMode> {
     let mut ahead = ahead.clone();
     ahead.gap = system.gradient(&ahead).gap;

@@ -1,5 +1,7 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
+use crate::path::continuation::arc_length::ArcLength;
+use std::sync::Arc;
 use super::control::Control;
 use super::limit_point::test_limit_point;
 use super::measure::{increment_along, motion_size};
@@ -11,9 +13,7 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
-use super::tracer::{Outcome, Tracer, end_path, moved_along};
-use crate::path::continuation::arc_length::ArcLength;
-use std::sync::Arc;
+use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, LoadStep};
 
@@ -21,7 +21,7 @@ use voussoir_core::path::{Continuation, LoadStep};
 const RISES: f64 = 0.1;
 
 /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
-pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent, direction: f64) -> Outcome {
+pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent, direction: f64) -> LoadStepEnding {
     let points: Vec<String> = failure
         .cycling
         .iter()
@@ -35,7 +35,7 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
         return end_path(
             tracer,
             Status::Collapse,
-            format!("the branch behind the peak was not followed further: {why}"),
+            format!("the branch after the peak was not followed further: {why}"),
         );
     }
     if !tracer.strategy.passes_limit_points()
@@ -109,7 +109,7 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
             tracer
                 .record
                 .notes
-                .push(format!("behind the limit point the path ends in a mechanism at factor {}", tracer.state.factor));
+                .push(format!("after the limit point the path ends in a mechanism at factor {}", tracer.state.factor));
         }
         return true;
     }
@@ -124,7 +124,7 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
         );
         if tracer.limit.peak.is_some() {
             tracer.record.notes.push(format!(
-                "behind the limit point the load grows without bound from factor {}",
+                "after the limit point the load grows without bound from factor {}",
                 tracer.state.factor
             ));
         }
@@ -155,7 +155,7 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
     })
 }
 
-/// Whether the path went as far behind its peak as was asked for.
+/// Whether the path went as far after its peak as was asked for.
 pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let Some(peak) = &tracer.limit.peak else {
@@ -172,7 +172,7 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     if !tracer.system.laws.responses.is_empty() && (factor - peak.factor) * direction > 0.0 {
         return false;
     }
-    let behind = (displacement - peak.state.displacement).abs();
+    let beyond = (displacement - peak.state.displacement).abs();
     if let Some(trough) = &tracer.post_peak.trough {
         tracer.post_peak.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
     }
@@ -180,10 +180,10 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     let done = match (stop_displacement, stop_factor) {
         (None, None) => {
             let grown = (peak.factor - load_step.start).abs();
-            (peak.factor - factor) * direction >= 0.1 * grown || behind >= peak.state.displacement.abs()
+            (peak.factor - factor) * direction >= 0.1 * grown || beyond >= peak.state.displacement.abs()
         }
         (most, least) => {
-            most.is_some_and(|most| behind >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
+            most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
     if !done && tracer.system.finite() {

@@ -1,21 +1,22 @@
 //! The state of a trace: the last converged state, what is recorded of the path, and how it ended.
 
+use crate::path::energy::{EnergyBalance, WorkState};
+use std::sync::Arc;
 use super::cycle_detector::CycleDetector;
 use super::derivatives::Gradient;
-use super::energy::EnergyBalance;
 use super::events::events;
+use super::recorded::{energy_after, recorded, work_state};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, PathEvent, PathObserver, PathSettings, PathState};
 
-/// Greatest contact force behind a peak of finite displacements, by that at the peak, with which the blocks have
+/// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
 /// come apart: what is left is rounding.
 const APART: f64 = 1e-6;
 
 /// How a load step ended.
-pub(super) enum Outcome {
+pub(super) enum LoadStepEnding {
     /// At its factor.
     Reached,
     /// The path ends here.
@@ -32,8 +33,8 @@ pub(super) struct Peak {
 /// What is written down of a path.
 pub(super) struct Record {
     pub energy: EnergyBalance,
-    /// Gradient at the last converged state.
-    pub gradient: Gradient,
+    /// The last converged state as the work of the next step needs it.
+    pub work: WorkState,
     /// The last converged state as others read it.
     pub state: PathState,
     pub events: Vec<PathEvent>,
@@ -93,7 +94,7 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         end_path(
             tracer,
             Status::Collapse,
-            "behind the peak the blocks come apart: no forces are left between them".into(),
+            "after the peak the blocks come apart: no forces are left between them".into(),
         );
         return false;
     }
@@ -102,12 +103,13 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     }
     let gradient = tracer.system.gradient(&next);
     tracer.record.events.extend(events(&tracer.system, tracer.load_step, &tracer.state, &next));
-    tracer.record.energy.add(&tracer.system, &tracer.state, &next, [&tracer.record.gradient, &gradient]);
+    let (energy, work) = foreseen(tracer, &next, &gradient);
+    tracer.record.energy = energy;
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut next);
-    tracer.record.state = tracer.record.energy.recorded(&tracer.system, tracer.load_step, &next, &gradient);
+    tracer.record.state = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
     tracer.state = next;
-    tracer.record.gradient = gradient;
+    tracer.record.work = work;
     tracer.system.count("steps", 1);
     if !tracer.observer.state(tracer.system.problem, &tracer.record.state) {
         end_path(tracer, Status::Stalled, "stopped by the observer".into());
@@ -123,13 +125,20 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     true
 }
 
+/// Energies at the end of a step from the last state, and what the next one needs of it.
+pub(super) fn foreseen(tracer: &Tracer, state: &State, gradient: &Gradient) -> (EnergyBalance, WorkState) {
+    let work = work_state(&tracer.system, state, gradient);
+    let start = (&tracer.state, &tracer.record.work);
+    (energy_after(tracer.record.energy, &tracer.system, start, (state, &work)), work)
+}
+
 /// Ends the path with a status.
-pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Outcome {
+pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> LoadStepEnding {
     tracer.ending.status = status;
     if !note.is_empty() {
         tracer.record.notes.push(note);
     }
-    Outcome::Ended
+    LoadStepEnding::Ended
 }
 
 /// A pressed point that has slipped further than its pairing holds.

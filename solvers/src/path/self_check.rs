@@ -5,10 +5,10 @@
 //! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the
 //!   dead load is no proof: with friction that is not associated another path may carry it;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;
-//! - limit point: no modes of the points at the verge of a change have a rate with growing λ
+//! - limit point: no modes of the active points have a rate with growing λ
 //!   (`rising`).
 
-use super::loads::load_size;
+use super::energy::load_size;
 use voussoir_core::certificate::{PathChecker, flow_residual, power_residual, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
