@@ -5,7 +5,9 @@ use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::law::{Formulation, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, check_as};
+use voussoir_core::plugin::{
+    Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
+};
 
 /// A mortared joint with fracture energies.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -223,8 +225,11 @@ voussoir_core::inventory::submit! {
             Parameter::number("tensile_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy that opening takes per area, mode I"),
             Parameter::number("shear_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy that shearing the bond takes per area without friction, mode II"),
         ],
-        provides: &[Capability::Response],
-        requires: &[],
+        provides: &[Capability::RESPONSE],
+        claims: &[Property::DISSIPATIVE],
+        samples: &[
+            Sample::new("friction = 0.6\ntensile_strength = 3e5\ncohesion = 5e5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9\ntensile_fracture_energy = 20.0\nshear_fracture_energy = 150.0", 1.5e-4, &["elastic", "softening", "sliding", "softening_sliding"]),
+        ],
         sources: &[
             "Alfano & Crisfield 2001, Int. J. Numer. Meth. Engng 50 (bilinear mixed-mode damage)",
             "Alfano & Sacco 2006, Int. J. Numer. Meth. Engng 68 (friction on the damaged share)",
@@ -232,5 +237,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         page: include_str!("cohesive.md"),
         check: |value| check_as::<Cohesive>(value, Cohesive::validate),
+        ..Card::BLANK
     }
 }

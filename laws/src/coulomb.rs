@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, check_as};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Sample, check_as};
 
 /// Dry friction, non-associated by default.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -45,13 +45,18 @@ voussoir_core::inventory::submit! {
         tag: "coulomb",
         summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle says so",
         parameters: PARAMETERS,
-        provides: &[Capability::Facets],
-        requires: &[],
+        provides: &[Capability::FACETS],
+        claims: &[Property::DISSIPATIVE],
+        samples: &[
+            Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
+            Sample::new("friction_angle = 30.0\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
+        ],
         sources: &["Coulomb 1776", "Drucker 1954, J. Appl. Mech. 21"],
         file: file!(),
         page: include_str!("coulomb.md"),
         check: |value| check_as::<Coulomb>(value, |law| {
             validate_friction(law.friction, law.friction_angle, Some(law.dilatancy_angle))
         }),
+        ..Card::BLANK
     }
 }

@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, PluginKind, check_as};
+use voussoir_core::plugin::{Capability, Card, PluginKind, Property, Sample, check_as};
 
 /// Dry friction with associated flow.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -39,13 +39,17 @@ voussoir_core::inventory::submit! {
         tag: "coulomb_associated",
         summary: "no tension, Coulomb friction with associated flow: slip opens the joint, as linear programs assume",
         parameters: &[FRICTION, FRICTION_ANGLE, NORMAL_STIFFNESS, SHEAR_STIFFNESS],
-        provides: &[Capability::Facets],
-        requires: &[],
+        provides: &[Capability::FACETS],
+        claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
+        samples: &[
+            Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
+        ],
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Drucker 1954, J. Appl. Mech. 21"],
         file: file!(),
         page: include_str!("coulomb_associated.md"),
         check: |value| check_as::<CoulombAssociated>(value, |law| {
             validate_friction(law.friction, law.friction_angle, None)
         }),
+        ..Card::BLANK
     }
 }

@@ -11,7 +11,9 @@ use std::sync::Arc;
 use surface::Surface;
 use update::{CapUpdate, Strength};
 use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressUpdate};
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
+use voussoir_core::plugin::{
+    Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape, check_as,
+};
 
 /// The modified Drucker–Prager model with a cap.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -293,8 +295,12 @@ voussoir_core::inventory::submit! {
             Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "G_c: p_b falls as the material crushes, and a band that crushes under hydrostatic pressure takes this energy per area").optional("crushing does not soften"),
             Parameter::number("residual_ratio", Quantity::Ratio, Range::new(0.0, true, 1.0, true), "p_b of crushed over p_b of intact material, with crushing_fracture_energy").default("0.1"),
         ],
-        provides: &[Capability::StressUpdate, Capability::RigidLimit],
-        requires: &[],
+        provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
+        claims: &[Property::DISSIPATIVE, Property::ISOTROPIC],
+        samples: &[
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7], [0.005, 2e7], [0.02, 3e7]]\ninitial_compaction = 0.001", 4e-3, &["elastic", "cap", "shear"]),
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nuniaxial_strength = 8e6\ncrushing_fracture_energy = 5000.0", 4e-3, &["elastic", "cap", "shear"]),
+        ],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",
             "Abaqus Theory Guide, Drucker-Prager/Cap model for geological materials (K = 1)",
@@ -304,5 +310,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         page: include_str!("drucker_prager_cap.md"),
         check: |value| check_as::<DruckerPragerCap>(value, DruckerPragerCap::validate),
+        ..Card::BLANK
     }
 }

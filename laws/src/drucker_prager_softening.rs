@@ -9,7 +9,7 @@ use std::sync::Arc;
 use voussoir_core::law::{
     BulkMaterial, Deformability, Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt,
 };
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
 
 /// Associated Drucker–Prager with linear softening.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -216,8 +216,12 @@ voussoir_core::inventory::submit! {
             Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy of softening in uniaxial compression per area").optional("ultimate_plastic_strain is given"),
             Parameter::number("ultimate_plastic_strain", Quantity::Ratio, Range::POSITIVE, "cumulated plastic strain at which softening ends, whatever the element size").optional("crushing_fracture_energy is given"),
         ],
-        provides: &[Capability::StressUpdate, Capability::RigidLimit],
-        requires: &[],
+        provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
+        claims: &[Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
+        samples: &[
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\npressure_coefficient = 0.3\nyield_stress = 1e7\nresidual_stress = 1e6\ncrushing_fracture_energy = 5000.0", 2e-3, &["elastic", "shear", "apex"]),
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\npressure_coefficient = 0.3\nyield_stress = 1e7\nresidual_stress = 1e6\nultimate_plastic_strain = 0.01", 2e-3, &["elastic", "shear", "apex"]),
+        ],
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",
             "code_aster R7.01.16, Intégration des comportements de Drucker-Prager",
@@ -226,5 +230,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         page: include_str!("drucker_prager_softening.md"),
         check: |value| check_as::<DruckerPragerSoftening>(value, DruckerPragerSoftening::validate),
+        ..Card::BLANK
     }
 }

@@ -9,7 +9,7 @@ use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, no_further_check};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample};
 
 /// A linear elastic material.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -76,11 +76,14 @@ voussoir_core::inventory::submit! {
             POISSON_RATIO,
             DENSITY,
         ],
-        provides: &[Capability::RigidLimit, Capability::Linear, Capability::StressUpdate],
-        requires: &[],
+        provides: &[Capability::RIGID_LIMIT, Capability::LINEAR, Capability::STRESS_UPDATE],
+        claims: &[Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
+        samples: &[
+            Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0", 1e-3, &["elastic"]),
+        ],
         sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
         file: file!(),
         page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them: limit analysis reads such blocks as rigid.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

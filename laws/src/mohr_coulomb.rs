@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
 
 /// A joint with strengths.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -65,13 +65,17 @@ voussoir_core::inventory::submit! {
             NORMAL_STIFFNESS,
             SHEAR_STIFFNESS,
         ],
-        provides: &[Capability::Facets],
-        requires: &[],
+        provides: &[Capability::FACETS],
+        claims: &[Property::DISSIPATIVE],
+        samples: &[
+            Sample::new("friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 2e-4, &["elastic", "sliding"]),
+        ],
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12 (rectangular stress block)"],
         file: file!(),
         page: include_str!("mohr_coulomb.md"),
         check: |value| check_as::<MohrCoulomb>(value, |law| {
             validate_friction(law.friction, law.friction_angle, law.dilatancy_angle)
         }),
+        ..Card::BLANK
     }
 }

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{BulkMaterial, Deformability};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, no_further_check};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, Sample};
 
 /// ρ, which every material has.
 pub(crate) const DENSITY: Parameter = Parameter::number(
@@ -40,11 +40,13 @@ voussoir_core::inventory::submit! {
         tag: "rigid",
         summary: "blocks that do not deform",
         parameters: &[DENSITY],
-        provides: &[Capability::RigidLimit, Capability::Linear],
-        requires: &[],
+        provides: &[Capability::RIGID_LIMIT, Capability::LINEAR],
+        samples: &[
+            Sample::new("density = 2200.0", 1e-3, &[]),
+        ],
         sources: &["Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),
         page: "# `rigid`\n\nBlocks that do not deform: ε = 0. Limit loads are those of rigid blocks.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape, no_further_check};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Property, Sample, Shape};
 
 /// What a closed joint does along itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,11 +58,15 @@ voussoir_core::inventory::submit! {
             NORMAL_STIFFNESS,
             SHEAR_STIFFNESS,
         ],
-        provides: &[Capability::Facets],
-        requires: &[],
+        provides: &[Capability::FACETS],
+        claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
+        samples: &[
+            Sample::new("tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["sliding"]),
+            Sample::new("tangential = \"stuck\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic"]),
+        ],
         sources: &["Signorini 1933", "Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),
         page: include_str!("unilateral.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -12,9 +12,7 @@ use voussoir_core::law::FlowRule;
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Target};
-use voussoir_core::path::{
-    ContactLaw, Displaced, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints,
-};
+use voussoir_core::path::{Displaced, PathAnswer, PathObserver, PathProblem, PathSolver, PathState, coarse_joints};
 
 /// Whether a residual is within its bound for results; NaN is not, where there is one.
 fn small(name: &str, value: f64) -> bool {
@@ -256,7 +254,7 @@ fn result(
         .contacts
         .iter()
         .zip(&field)
-        .filter(|(contact, _)| contact.law != ContactLaw::Bonded)
+        .filter(|(contact, _)| !contact.law.is_bonded())
         .map(|(_, force)| *force)
         .collect();
     CaseResult {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use voussoir_core::law::Tangential;
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::{Bond, Target, stage_loads};
-use voussoir_core::path::{ContactLaw, LoadStepEnd, PathProblem};
+use voussoir_core::path::{LoadStepEnd, PathProblem};
 
 /// The plan in words, for the first case; the others differ by their parameters only.
 pub fn plan(study: &Study) -> String {
@@ -98,7 +98,7 @@ fn plan_path(case: &Case, tag: &str, finite: bool, text: &mut String) {
         free().count() - elastic - yields,
     );
     let points = problem.contacts.len();
-    let bonded = problem.contacts.iter().filter(|contact| contact.law == ContactLaw::Bonded).count();
+    let bonded = problem.contacts.iter().filter(|contact| contact.law.is_bonded()).count();
     let softening = (0..points).filter(|contact| problem.response(*contact).is_some()).count();
     let _ = writeln!(
         text,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use voussoir_core::certificate::{Crushing, Mechanism};
 use voussoir_core::elastic::InelasticState;
 use voussoir_core::law::FacetMode;
-use voussoir_core::model::{Assembly, Bond};
+use voussoir_core::model::Assembly;
 use voussoir_core::path::{PathProblem, PathState, Yielded};
 
 /// Equivalent plastic strain under compression from which a Gauss point counts as crushed: a tenth of
@@ -105,9 +105,9 @@ pub fn with_crushing(
     yielded: &[Option<Yielded>],
 ) -> Mechanism {
     if problem.yields() {
-        mechanism.crushing.retain(|crushing| match assembly.joints[crushing.joint].bond {
-            Bond::Law(law) => problem.facets[law].iter().any(|facet| facet.mode == FacetMode::Crushing),
-            Bond::Bonded => false,
+        mechanism.crushing.retain(|crushing| {
+            let facets = assembly.law(&assembly.joints[crushing.joint]).and_then(|law| law.formulation().facets());
+            facets.unwrap_or_default().iter().any(|facet| facet.mode == FacetMode::Crushing)
         });
     }
     mechanism.with_crushing(assembly, crushing(assembly, problem, yielded))

@@ -6,6 +6,7 @@
 //! `cargo test --release -p voussoir-tests --test verification arch::`.
 
 pub mod random;
+pub mod samples;
 pub mod seen;
 pub mod written;
 

@@ -26,7 +26,7 @@
 //! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
 
 use crate::law::{Facet, FacetMode};
-use crate::path::{ContactLaw, Displaced, Loading, PathObserver, PathProblem, PathState};
+use crate::path::{Displaced, Loading, PathObserver, PathProblem, PathState, PointLaw};
 use std::collections::BTreeMap;
 
 /// How large a residual may be.
@@ -153,23 +153,27 @@ impl PathChecker {
         self.note("path_kinematics", apart / deformation);
         self.check_blocks(problem, state);
         let force_scale = largest.max(1e-300);
-        let asks: Vec<Asks> = problem.facets.iter().map(|facets| Asks::of(facets)).collect();
         let (mut bonded, mut strength) = (None, None);
         let (mut penetration, mut complementarity) = (None, None);
         let note = |worst: &mut Option<f64>, value: f64| worsen(worst.get_or_insert(0.0), value);
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
-            let ContactLaw::Law(law) = contact.law else {
-                (0..2).for_each(|i| note(&mut bonded, gap[i].abs() - rounding));
-                continue;
+            let facets = match &contact.law {
+                PointLaw::Bonded => {
+                    (0..2).for_each(|i| note(&mut bonded, gap[i].abs() - rounding));
+                    continue;
+                }
+                PointLaw::Response(_) => continue,
+                PointLaw::Facets(facets) => facets,
             };
-            for facet in &problem.facets[law] {
+            let asks = Asks::of(facets);
+            for facet in facets.iter() {
                 let excess = facet.normal[0] * force[0] + facet.normal[1] * force[1] - facet.bound * contact.area;
                 note(&mut strength, excess);
             }
-            if asks[law].penetration {
+            if asks.penetration {
                 note(&mut penetration, -gap[0] - rounding);
             }
-            if asks[law].complementarity {
+            if asks.complementarity {
                 let product = (force[0] / force_scale).max(0.0).min(((gap[0] - rounding) / deformation).max(0.0));
                 note(&mut complementarity, product);
             }
@@ -256,10 +260,8 @@ pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) 
             let body = if plus { contact.plus.body } else { contact.minus.body };
             (0..3).for_each(|i| sum[body][i] += rows[0][i] * r[0] + rows[1][i] * r[1]);
         }
-        if let ContactLaw::Law(law) = contact.law {
-            for facet in &problem.facets[law] {
-                worst = worst.max(facet.normal[0] * r[0] + facet.normal[1] * r[1]);
-            }
+        for facet in contact.law.facets().unwrap_or_default() {
+            worst = worst.max(facet.normal[0] * r[0] + facet.normal[1] * r[1]);
         }
     }
     for (w, _) in sum.iter().zip(&problem.bodies).filter(|(_, body)| !body.held) {
@@ -288,15 +290,16 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
         .collect();
     let size = jumps.iter().map(|j| j[0].hypot(j[1])).fold(1e-300, f64::max);
     let mut worst: f64 = 0.0;
-    for (index, ((contact, force), jump)) in problem.contacts.iter().zip(force).zip(&jumps).enumerate() {
-        if problem.response(index).is_some() {
-            continue;
-        }
-        let ContactLaw::Law(law) = contact.law else {
-            worst = worst.max(jump[0].hypot(jump[1]) / size);
-            continue;
+    for ((contact, force), jump) in problem.contacts.iter().zip(force).zip(&jumps) {
+        let facets = match &contact.law {
+            PointLaw::Bonded => {
+                worst = worst.max(jump[0].hypot(jump[1]) / size);
+                continue;
+            }
+            PointLaw::Response(_) => continue,
+            PointLaw::Facets(facets) => facets,
         };
-        let yielding: Vec<[f64; 2]> = problem.facets[law]
+        let yielding: Vec<[f64; 2]> = facets
             .iter()
             .filter(|f| {
                 let slack = f.bound * contact.area - f.normal[0] * force[0] - f.normal[1] * force[1];

@@ -11,6 +11,7 @@
 
 mod continuation;
 mod displaced;
+mod point_law;
 mod problem;
 mod response;
 mod sliding;
@@ -19,7 +20,8 @@ mod state;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
 pub use self::displaced::Displaced;
-pub use self::problem::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
+pub use self::point_law::PointLaw;
+pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::response::{SoftensOver, coarse_joints};
 pub use self::sliding::Sliding;
 pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, Unobserved};

@@ -1,9 +1,10 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, load steps.
 
+use super::point_law::PointLaw;
 use super::sliding::{Sliding, face, sliding};
 use super::state::PathState;
 use crate::elastic::{Condenser, InelasticBody, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
-use crate::law::{Deformability, Facet, Formulation, InterfaceResponse, PlanarUpdate};
+use crate::law::{Deformability, InterfaceResponse, PlanarUpdate};
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, cross, turned};
 use crate::model::{Assembly, Bond, Stage, Target, root};
@@ -41,15 +42,6 @@ pub struct Attachment {
     pub slot: Option<usize>,
 }
 
-/// The law of a contact point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactLaw {
-    /// g = 0.
-    Bonded,
-    /// The law with this index in the problem's list.
-    Law(usize),
-}
-
 /// A contact point.
 #[derive(Debug, Clone)]
 pub struct Contact {
@@ -69,8 +61,9 @@ pub struct Contact {
     pub area: f64,
     /// Initial gap \[m\].
     pub gap: f64,
-    /// Its law.
-    pub law: ContactLaw,
+    /// Its law. Where that gives tractions from gaps, the gap holds the compliance of the joint too: it
+    /// is part of the law.
+    pub law: PointLaw,
     /// Compliance of the joint at this point, normal and tangential \[m/N\].
     pub compliance: [f64; 2],
     /// How it slides with finite displacements.
@@ -121,11 +114,6 @@ pub struct PathProblem {
     pub body_of: Vec<usize>,
     /// Contact points, those of a joint next to each other and in order along it.
     pub contacts: Vec<Contact>,
-    /// Facets of the laws, by index of the catalogue; empty where a law is none of facets.
-    pub facets: Vec<Vec<Facet>>,
-    /// Laws of tractions from gaps, by index of the catalogue; `None`, or nothing, elsewhere. At their
-    /// points the gap holds the compliance of the joint too: it is part of the law.
-    pub responses: Vec<Option<Arc<dyn InterfaceResponse>>>,
     /// Load histories in order.
     pub load_steps: Vec<LoadStep>,
     /// Length scale \[m\].
@@ -191,8 +179,6 @@ impl PathProblem {
             }
         }
         let mut problem = PathProblem {
-            facets: Vec::new(),
-            responses: Vec::new(),
             contacts: Vec::new(),
             load_steps: Vec::new(),
             length: assembly.size(),
@@ -200,14 +186,6 @@ impl PathProblem {
             bodies,
             body_of,
         };
-        for (_, law) in &assembly.catalogue.laws {
-            let (facets, response) = match law.formulation() {
-                Formulation::Facets(facets) => (facets, None),
-                Formulation::Response(response) => (Vec::new(), Some(response)),
-            };
-            problem.facets.push(facets);
-            problem.responses.push(response);
-        }
         problem.contact_points(assembly, &elastic)?;
         problem.load_steps(stages, &elastic)?;
         problem.condense(assembly, &elastic)?;
@@ -215,6 +193,7 @@ impl PathProblem {
     }
 
     fn contact_points(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
+        let laws: Vec<PointLaw> = assembly.catalogue.laws.iter().map(|(_, law)| law.formulation().into()).collect();
         let mut nonmatching = BTreeSet::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
             let sides = [joint.minus, joint.plus];
@@ -261,6 +240,14 @@ impl PathProblem {
                     });
                     Attachment { body, slot }
                 };
+                let law = match joint.bond {
+                    Bond::Bonded => PointLaw::Bonded,
+                    Bond::Law(law) => laws[law].clone(),
+                };
+                let compliance = match &law {
+                    PointLaw::Response(_) => [0.0; 2],
+                    _ => stiffness.map_or([0.0; 2], |k| k.map(|k| 1.0 / (k * area))),
+                };
                 self.contacts.push(Contact {
                     joint: index,
                     position: point,
@@ -270,17 +257,10 @@ impl PathProblem {
                     plus: attach(joint.plus),
                     area,
                     gap: joint.gap.at(position * height),
-                    law: match joint.bond {
-                        Bond::Bonded => ContactLaw::Bonded,
-                        Bond::Law(law) => ContactLaw::Law(law),
-                    },
-                    compliance: stiffness.map_or([0.0; 2], |k| k.map(|k| 1.0 / (k * area))),
+                    law,
+                    compliance,
                     sliding: sliding(faces, height, position),
                 });
-                let last = self.contacts.len() - 1;
-                if self.response(last).is_some() {
-                    self.contacts[last].compliance = [0.0; 2];
-                }
             }
         }
         self.regularise_nonmatching_joints(assembly, nonmatching);
@@ -288,8 +268,8 @@ impl PathProblem {
     }
 
     /// Where two meshes do not match, or joints meet at a corner, more points than nodes meet and the
-    /// flexibility is singular: springs far stiffer than the blocks shares the forces. It is part of
-    /// the model, proportional to area (a uniform pressure stays uniform), and moves no limit load.
+    /// flexibility is singular: springs far stiffer than the blocks share the forces. They are part of
+    /// the model, proportional to area (a uniform pressure stays uniform), and move no limit load.
     fn regularise_nonmatching_joints(&mut self, assembly: &Assembly, mut nonmatching: BTreeSet<usize>) {
         let grid = 1e-7 * self.length;
         let mut met: HashMap<[i64; 2], usize> = HashMap::new();
@@ -300,10 +280,8 @@ impl PathProblem {
                 _ => _ = met.insert(key, contact.joint),
             }
         }
-        let follows_gaps: Vec<bool> = (0..self.contacts.len()).map(|c| self.response(c).is_some()).collect();
-        let contacts = self.contacts.iter_mut().zip(follows_gaps);
-        let stiff = |c: &Contact| nonmatching.contains(&c.joint) && c.compliance == [0.0; 2];
-        for (contact, _) in contacts.filter(|(c, follows_gap)| stiff(c) && !follows_gap) {
+        let rigid = |c: &Contact| c.compliance == [0.0; 2] && c.law.response().is_none();
+        for contact in self.contacts.iter_mut().filter(|c| nonmatching.contains(&c.joint) && rigid(c)) {
             let joint = &assembly.joints[contact.joint];
             let sides = [joint.minus, joint.plus].into_iter();
             let softest = sides.filter_map(|side| modulus(assembly, side)).fold(f64::INFINITY, f64::min);
@@ -422,15 +400,12 @@ impl PathProblem {
     /// before its collapse.
     pub fn deforms(&self) -> bool {
         self.bodies.iter().any(|body| body.flexibility.is_some())
-            || (0..self.contacts.len()).any(|c| self.contacts[c].compliance[0] > 0.0 || self.response(c).is_some())
+            || self.contacts.iter().any(|c| c.compliance[0] > 0.0 || c.law.response().is_some())
     }
 
     /// The law of a contact point, where it gives tractions from gaps.
     pub fn response(&self, contact: usize) -> Option<&dyn InterfaceResponse> {
-        match self.contacts[contact].law {
-            ContactLaw::Bonded => None,
-            ContactLaw::Law(law) => self.responses.get(law)?.as_deref(),
-        }
+        self.contacts[contact].law.response().map(|law| &**law)
     }
 
     /// How much of each load step's loading is applied at a factor of one of them.

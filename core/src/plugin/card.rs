@@ -6,44 +6,84 @@
 
 use super::schema::{Parameter, PluginKind};
 
-/// What laws offer and solvers ask for; compared when a study is loaded.
+/// Something that a plug-in offers and a solver may ask for; compared when a study is loaded. The list
+/// is open: a law or solver with something new declares a constant of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Capability {
-    /// The interface law is given by facets a·t ≤ b.
-    Facets,
-    /// The interface law is given by tractions from gaps, with state.
-    Response,
-    /// The interface law is of either of these two forms. Asked for only: a law gives one of the forms.
-    FacetsOrResponse,
-    /// The bulk material gives stresses from strains at a point, with state.
-    StressUpdate,
-    /// The material is linear elastic, or rigid.
-    Linear,
-    /// Bodies may be read as rigid without changing the answer.
-    RigidLimit,
-    /// Equilibrium in displaced positions.
-    FiniteDisplacements,
-    /// Imposed movements of supports.
-    Settlement,
+pub struct Capability {
+    /// The kind of plug-in that offers it.
+    pub of: PluginKind,
+    /// In words.
+    pub words: &'static str,
 }
 
 impl Capability {
-    /// In words.
-    pub fn describe(self) -> &'static str {
-        match self {
-            Capability::Facets => "facets",
-            Capability::Response => "tractions from gaps",
-            Capability::FacetsOrResponse => "facets or tractions from gaps",
-            Capability::StressUpdate => "stresses from strains at a point",
-            Capability::Linear => "a linear law",
-            Capability::RigidLimit => "a rigid limit",
-            Capability::FiniteDisplacements => "finite displacements",
-            Capability::Settlement => "settlements",
-        }
+    /// The interface law is given by facets a·t ≤ b.
+    pub const FACETS: Self = Self::new(PluginKind::InterfaceLaw, "facets");
+    /// The interface law is given by tractions from gaps, with state.
+    pub const RESPONSE: Self = Self::new(PluginKind::InterfaceLaw, "tractions from gaps");
+    /// The bulk material gives stresses from strains at a point, with state.
+    pub const STRESS_UPDATE: Self = Self::new(PluginKind::BulkMaterial, "stresses from strains at a point");
+    /// The material is linear elastic, or rigid.
+    pub const LINEAR: Self = Self::new(PluginKind::BulkMaterial, "a linear law");
+    /// Bodies may be read as rigid without changing the answer.
+    pub const RIGID_LIMIT: Self = Self::new(PluginKind::BulkMaterial, "a rigid limit");
+    /// Equilibrium in displaced positions.
+    pub const FINITE_DISPLACEMENTS: Self = Self::new(PluginKind::PathSolver, "finite displacements");
+    /// Imposed movements of supports.
+    pub const SETTLEMENT: Self = Self::new(PluginKind::PathSolver, "settlements");
+    /// The bounds of limit analysis for flow that is not associated.
+    pub const NON_ASSOCIATED: Self = Self::new(PluginKind::LimitSolver, "flow that is not associated");
+
+    /// One that plug-ins of a kind offer.
+    pub const fn new(of: PluginKind, words: &'static str) -> Self {
+        Capability { of, words }
     }
 }
 
-/// What a plug-in says of itself.
+/// What a solver asks of a law: one of these.
+pub type Requirement = &'static [Capability];
+
+/// A requirement in words.
+pub fn describe(requirement: Requirement) -> String {
+    requirement.iter().map(|capability| capability.words).collect::<Vec<_>>().join(" or ")
+}
+
+/// What a law claims of itself whatever its parameters. The conformance tests check every claim that they
+/// know on every sample; the list is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Property(pub &'static str);
+
+impl Property {
+    /// Flow is normal to the facet it happens on: the bound theorems of limit analysis hold.
+    pub const ASSOCIATED: Self = Self("associated");
+    /// No update creates energy: what is dissipated is never negative.
+    pub const DISSIPATIVE: Self = Self("dissipative");
+    /// The material has no axes: turned strains give turned stresses.
+    pub const ISOTROPIC: Self = Self("isotropic");
+    /// The tangent of an update is symmetric.
+    pub const SYMMETRIC_TANGENT: Self = Self("symmetric_tangent");
+}
+
+/// A law with numbers, for the conformance tests: walks of steps about as large as `size` meet every branch
+/// in `branches`.
+#[derive(Debug, Clone, Copy)]
+pub struct Sample {
+    /// The law's keys in TOML, without the tag.
+    pub table: &'static str,
+    /// Strain, or gap \[m\], at which something happens.
+    pub size: f64,
+    /// Names of branches that the walks must meet.
+    pub branches: &'static [&'static str],
+}
+
+impl Sample {
+    /// From its three parts.
+    pub const fn new(table: &'static str, size: f64, branches: &'static [&'static str]) -> Self {
+        Sample { table, size, branches }
+    }
+}
+
+/// What a plug-in says of itself. A card states what it has; the rest is that of [`Card::BLANK`].
 #[derive(Debug)]
 pub struct Card {
     /// Which trait it implements.
@@ -56,8 +96,15 @@ pub struct Card {
     pub parameters: &'static [Parameter],
     /// What it offers.
     pub provides: &'static [Capability],
-    /// What it asks of the laws it meets.
-    pub requires: &'static [Capability],
+    /// What it asks of the laws it meets: all of these. Where a law offers several capabilities of one
+    /// requirement, the solver takes the first.
+    pub requires: &'static [Requirement],
+    /// What a law claims of itself.
+    pub claims: &'static [Property],
+    /// Laws: numbers for the conformance tests.
+    pub samples: &'static [Sample],
+    /// Solvers: `auto` takes the cheapest that fits; `None` is for those taken by name only.
+    pub cost: Option<u32>,
     /// Where its equations come from.
     pub sources: &'static [&'static str],
     /// Its source file (`file!()`).
@@ -70,23 +117,40 @@ pub struct Card {
 }
 
 impl Card {
-    /// Whether it offers what a solver asks for.
-    pub fn gives(&self, need: Capability) -> bool {
-        match need {
-            Capability::FacetsOrResponse => {
-                self.provides.contains(&Capability::Facets) || self.provides.contains(&Capability::Response)
-            }
-            need => self.provides.contains(&need),
-        }
+    /// Nothing but defaults, for `..Card::BLANK`.
+    pub const BLANK: Card = Card {
+        kind: PluginKind::Scene,
+        tag: "",
+        summary: "",
+        parameters: &[],
+        provides: &[],
+        requires: &[],
+        claims: &[],
+        samples: &[],
+        cost: None,
+        sources: &[],
+        file: "",
+        page: "",
+        check: |_| Vec::new(),
+    };
+
+    /// Whether it offers a capability.
+    pub fn offers(&self, capability: Capability) -> bool {
+        self.provides.contains(&capability)
+    }
+
+    /// Whether it meets a requirement of a solver; one that concerns other kinds of plug-in is met.
+    pub fn meets(&self, requirement: Requirement) -> bool {
+        requirement.iter().all(|one| one.of != self.kind) || requirement.iter().any(|one| self.offers(*one))
+    }
+
+    /// Whether it claims a property.
+    pub fn claims(&self, property: Property) -> bool {
+        self.claims.contains(&property)
     }
 }
 
 inventory::collect!(Card);
-
-/// For cards without a check of their own.
-pub fn no_further_check(_: &serde_json::Value) -> Vec<(String, String)> {
-    Vec::new()
-}
 
 /// The checks of a concrete type with `fn validate(&self) -> Vec<(String, String)>`.
 pub fn check_as<T: serde::de::DeserializeOwned>(
@@ -169,18 +233,7 @@ fn audit_of(all: &[&Card]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    const ONE: Card = Card {
-        kind: PluginKind::Scene,
-        tag: "arch",
-        summary: "",
-        parameters: &[],
-        provides: &[],
-        requires: &[],
-        sources: &[],
-        file: "here.rs",
-        page: "",
-        check: no_further_check,
-    };
+    const ONE: Card = Card { kind: PluginKind::Scene, tag: "arch", file: "here.rs", ..Card::BLANK };
 
     #[test]
     fn the_audit_finds_an_empty_kind_and_a_duplicate_tag() {

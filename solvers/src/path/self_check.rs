@@ -103,7 +103,7 @@ mod tests {
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
     use voussoir_core::path::{
-        Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathSettings, PathSolver, Sliding,
+        Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathSettings, PathSolver, PointLaw, Sliding,
         Unobserved,
     };
 
@@ -119,6 +119,8 @@ mod tests {
             flexibility: None,
             inelastic: None,
         };
+        let [left, right] = Facet::friction(0.5, 0.0, 0.0);
+        let law = PointLaw::Facets(vec![Facet::opening(0.0), left, right].into());
         let contact = |x: f64| Contact {
             joint: 0,
             position: Vec2::new(x, 0.0),
@@ -128,7 +130,7 @@ mod tests {
             plus: Attachment { body: 1, slot: None },
             area: 1.0,
             gap: 0.0,
-            law: ContactLaw::Law(0),
+            law: law.clone(),
             compliance: [1e-6, 2e-6],
             sliding: Sliding::middle(0.0),
         };
@@ -136,17 +138,14 @@ mod tests {
         let pole = Vec2::new(0.0, 0.5);
         let live = Loading { forces: vec![(1, None, pole, force)], ..Loading::default() };
         let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
-        let [left, right] = Facet::friction(0.5, 0.0, 0.0);
         PathProblem {
             bodies: vec![body(true, Vec2::zeros(), 0.0), body(false, pole, 1.0)],
             body_of: vec![0, 1],
             contacts: vec![contact(-1.0), contact(1.0)],
-            facets: vec![vec![Facet::opening(0.0), left, right]],
             load_steps: vec![
                 load_step(0, true, dead, LoadStepEnd::Factor(1.0)),
                 load_step(1, false, live, LoadStepEnd::Collapse(f64::INFINITY)),
             ],
-            responses: vec![],
             length: 2.0,
             counters: Counters::new(),
         }

@@ -2,7 +2,7 @@
 
 use super::{FINE, NO_ACCESS, WRONG_INPUT, files, say};
 use std::path::Path;
-use voussoir::core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, nearest};
+use voussoir::core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, describe, nearest};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {
@@ -71,14 +71,14 @@ fn print_card(card: &Card) {
         };
         say(format!("  {}{unit}  {} ({need})", parameter.name, parameter.doc));
     }
-    let words = |all: &[voussoir::core::plugin::Capability]| {
-        all.iter().map(|capability| capability.describe()).collect::<Vec<_>>().join(", ")
-    };
-    if !card.provides.is_empty() {
-        say(format!("offers: {}", words(card.provides)));
-    }
-    if !card.requires.is_empty() {
-        say(format!("asks of laws: {}", words(card.requires)));
+    for (heading, all) in [
+        ("offers", card.provides.iter().map(|capability| capability.words.to_string()).collect::<Vec<_>>()),
+        ("asks of laws", card.requires.iter().map(|need| describe(need)).collect()),
+        ("claims", card.claims.iter().map(|property| property.0.replace('_', " ")).collect()),
+    ] {
+        if !all.is_empty() {
+            say(format!("{heading}: {}", all.join(", ")));
+        }
     }
     card.sources.iter().for_each(|source| say(format!("source: {source}")));
     say(format!("file: {}\n\n{}", card.file, card.page));

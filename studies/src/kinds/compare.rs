@@ -7,7 +7,7 @@ use crate::config::report::suggest;
 use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
 use crate::study::{Outline, Study, VARIANT};
 use voussoir_core::limit::Status;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape, no_further_check};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
 
 struct Compare;
 
@@ -38,12 +38,9 @@ voussoir_core::inventory::submit! {
         tag: "compare",
         summary: "several laws and solvers (variants) on one or several scenes: one table with ratios, one figure",
         parameters: KEYS,
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: include_str!("compare.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

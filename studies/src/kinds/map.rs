@@ -7,7 +7,7 @@ use super::{KindEntry, Observer, StudyKind};
 use crate::figures::format::key_with_unit;
 use crate::results::{CaseResult, Comparison, MapAxes};
 use crate::study::{Outline, Study};
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape, no_further_check};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
 
 struct Map;
 
@@ -36,12 +36,9 @@ voussoir_core::inventory::submit! {
         tag: "map",
         summary: "several laws and solvers (variants) over two swept numbers: regions of mechanisms, contours of ratios",
         parameters: KEYS,
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: include_str!("map.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

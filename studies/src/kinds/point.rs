@@ -11,7 +11,7 @@ pub use study::{PointCase, PointStudy, is_point, load, schema};
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
-use voussoir_core::plugin::{Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Card, PluginKind};
 use voussoir_solvers::point::{Control, DrivenPoint, PointLaw};
 
 voussoir_core::inventory::submit! {
@@ -20,15 +20,12 @@ voussoir_core::inventory::submit! {
         tag: "point",
         summary: "drives one law at one point through strains, stresses or both: voussoir point STUDY.toml",
         parameters: study::POINT,
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: "# `point`\n\nDrives a material or a joint through `[[point.path]]`, segment by segment. Each segment moves the components it names, \
                in `steps` equal steps, to the strains (gaps) or stresses (tractions) given; a component that is not named keeps \
                the strain or the stress it was controlled by last, at first a strain of zero. Strains are tension positive with \
                engineering shears; a joint's gap opens and its traction presses positive.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::path::{Continuation, PathObserver, PathProblem, PathSettings, PathSolver, PathState, Unobserved};
-use voussoir_core::plugin::{Card, PluginKind, card, no_further_check};
+use voussoir_core::plugin::{Card, PluginKind, card};
 
 struct Run;
 
@@ -21,12 +21,9 @@ voussoir_core::inventory::submit! {
         tag: "run",
         summary: "answers every case of the study (variants × sweep) on its own",
         parameters: &[],
-        provides: &[],
-        requires: &[],
-        sources: &[],
         file: file!(),
         page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case.\n",
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

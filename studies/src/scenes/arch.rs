@@ -164,12 +164,11 @@ voussoir_core::inventory::submit! {
         tag: "arch",
         summary: "a ring of voussoirs between two supports",
         parameters: PARAMETERS,
-        provides: &[],
-        requires: &[],
         sources: &["Heyman 1982, The Masonry Arch"],
         file: file!(),
         page: include_str!("arch.md"),
         check: |value| check_as::<Arch>(value, Arch::validate),
+        ..Card::BLANK
     }
 }
 

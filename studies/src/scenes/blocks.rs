@@ -381,12 +381,11 @@ voussoir_core::inventory::submit! {
         tag: "blocks",
         summary: "any assembly of polygonal blocks",
         parameters: PARAMETERS,
-        provides: &[],
-        requires: &[],
         sources: &["Livesley 1978, Int. J. Numer. Methods Eng. 12"],
         file: file!(),
         page: include_str!("blocks.md"),
         check: |value| check_as::<Blocks>(value, Blocks::validate),
+        ..Card::BLANK
     }
 }
 

@@ -279,12 +279,11 @@ voussoir_core::inventory::submit! {
         tag: "wall",
         summary: "bricks in running bond on the ground, with openings",
         parameters: PARAMETERS,
-        provides: &[],
-        requires: &[],
         sources: &["Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43 (walls given by rows)"],
         file: file!(),
         page: include_str!("wall.md"),
         check: |value| check_as::<Wall>(value, Wall::validate),
+        ..Card::BLANK
     }
 }
 

@@ -5,14 +5,16 @@ use super::{Kinematics, SolverChoice};
 use crate::config::overlay::join;
 use serde_json::{Map, Value as Json};
 use voussoir_core::model::{Assembly, Bond};
-use voussoir_core::plugin::{Capability, Card, PluginKind, candidate, candidates, card, cards_of};
+use voussoir_core::plugin::{
+    Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
+};
 
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
     candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
 }
 
 fn offers(capability: Capability) -> bool {
-    !solvers_that(|card| card.provides.contains(&capability)).is_empty()
+    !solvers_that(|card| card.offers(capability)).is_empty()
 }
 
 fn or_none(tags: &[&str]) -> String {
@@ -29,8 +31,8 @@ pub(super) fn choose_solver(
     let tag = solver["solver"].as_str()?.to_string();
     let chosen = candidate(PluginKind::LimitSolver, &tag);
     let kinematics = if solver["kinematics"] == "finite" { Kinematics::Finite } else { Kinematics::Small };
-    let finite = |card: &Card| card.provides.contains(&Capability::FiniteDisplacements);
-    if kinematics == Kinematics::Finite && !chosen.map_or_else(|| offers(Capability::FiniteDisplacements), finite) {
+    let finite = |card: &Card| card.offers(Capability::FINITE_DISPLACEMENTS);
+    if kinematics == Kinematics::Finite && !chosen.map_or_else(|| offers(Capability::FINITE_DISPLACEMENTS), finite) {
         let able = solvers_that(finite);
         let message = match able.is_empty() {
             true => "no registered solver offers finite displacements".to_string(),
@@ -41,7 +43,7 @@ pub(super) fn choose_solver(
         builder.wrong("solver.kinematics", message, "set kinematics = \"small\"");
     }
     // `auto` needs at least what every solver needs.
-    let everyone: Vec<Capability> = cards_of(PluginKind::LimitSolver)
+    let everyone: Vec<Requirement> = cards_of(PluginKind::LimitSolver)
         .iter()
         .flat_map(|card| card.requires)
         .filter(|need| solvers_that(|solver| !solver.requires.contains(need)).is_empty())
@@ -59,13 +61,11 @@ pub(super) fn choose_solver(
             let Some(card) = card(kind, law) else {
                 continue;
             };
-            let missing: Vec<_> = asked.iter().filter(|need| concerns(**need) == kind && !card.gives(**need)).collect();
-            for need in missing {
-                let takes = |need: &Capability| concerns(*need) != kind || card.gives(*need);
-                let able = solvers_that(|solver| solver.requires.iter().all(takes));
+            for need in asked.iter().filter(|need| !card.meets(need)) {
+                let able = solvers_that(|solver| solver.requires.iter().all(|need| card.meets(need)));
                 let message = format!(
                     "solver \"{tag}\" needs {}, which {} \"{law}\" of [{table}.{name}] does not give",
-                    need.describe(),
+                    describe(need),
                     kind.describe()
                 );
                 let help = format!("solvers that can take it: {}", or_none(&able));
@@ -129,14 +129,6 @@ fn needs_deformation(
             reason,
             "take limit analysis, or give a material a young_modulus (law = \"elastic\")",
         );
-    }
-}
-
-/// Which kind of law a capability is asked of.
-fn concerns(capability: Capability) -> PluginKind {
-    match capability {
-        Capability::RigidLimit | Capability::Linear | Capability::StressUpdate => PluginKind::BulkMaterial,
-        _ => PluginKind::InterfaceLaw,
     }
 }
 

@@ -75,12 +75,9 @@ macro_rules! register {
                 tag: $tag,
                 summary: $summary,
                 parameters: &[],
-                provides: &[],
-                requires: &[],
-                sources: &[],
                 file: file!(),
                 page: $page,
-                check: voussoir_core::plugin::no_further_check,
+                ..voussoir_core::plugin::Card::BLANK
             }
         }
         voussoir_core::inventory::submit! {

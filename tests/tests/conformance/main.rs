@@ -1,4 +1,5 @@
 //! Every plug-in, found by its card, keeps what its trait promises.
 
 mod cards;
+mod laws;
 mod state;

@@ -10,8 +10,8 @@ use voussoir::core::limit::Status;
 use voussoir::core::model::Bond;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
-    PathSolver, PathState, Sliding, Unobserved,
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings, PathSolver,
+    PathState, PointLaw, Sliding, Unobserved,
 };
 use voussoir::solvers::path::continuation::arc_length::ArcLength;
 use voussoir::solvers::path::continuation::load_control::LoadControl;
@@ -266,22 +266,21 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
         sliding: Sliding::middle(0.0),
         compliance,
     };
-    let foot = |x| contact(x, ContactLaw::Law(0), [1e-3 / k, feet.len() as f64 / k]);
+    let law =
+        PointLaw::Facets(std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect());
+    let foot = |x| contact(x, law.clone(), [1e-3 / k, feet.len() as f64 / k]);
     // Pulls sideways only: its other stiffness is nothing beside the feet's.
-    let pulling = contact(0.0, ContactLaw::Bonded, [1e9 / k, 1.0 / spring]);
+    let pulling = contact(0.0, PointLaw::Bonded, [1e9 / k, 1.0 / spring]);
     let load_step =
         |stage, gravity, loading, end| LoadStep { stage, gravity, loading, start: 0.0, end: LoadStepEnd::Factor(end) };
     let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
     let push = Loading { forces: vec![(1, None, Vec2::zeros(), Vec2::new(1.0, 0.0))], ..Loading::default() };
     let mut load_steps = vec![load_step(0, true, dead, 1.0)];
     load_steps.extend(history.iter().enumerate().map(|(stage, q)| load_step(stage + 1, false, push.clone(), *q)));
-    let facets = std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect();
     PathProblem {
         bodies: vec![body(true), body(false)],
         body_of: vec![0, 1],
         contacts: feet.iter().map(|x| foot(*x)).chain([pulling]).collect(),
-        facets: vec![facets],
-        responses: vec![],
         load_steps,
         length: 2.0,
         counters: BTreeMap::new(),

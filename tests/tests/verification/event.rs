@@ -7,8 +7,8 @@ use voussoir::core::law::Facet;
 use voussoir::core::limit::Status;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
-    PathSolver, PathState, Sliding,
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem, PathSolver,
+    PathState, PointLaw, Sliding,
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
@@ -122,12 +122,12 @@ fn two_degrees(friction: f64, forces: &[([f64; 2], LoadStepEnd)]) -> PathProblem
             plus: Attachment { body: 1, slot: Some(0) },
             area: 1.0,
             gap: 0.0,
-            law: ContactLaw::Law(0),
+            law: PointLaw::Facets(
+                std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect(),
+            ),
             compliance: [0.0; 2],
             sliding: Sliding::middle(0.0),
         }],
-        facets: vec![std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect()],
-        responses: Vec::new(),
         load_steps: forces.iter().enumerate().map(load_step).collect(),
         length: 1.0,
         counters: BTreeMap::new(),

@@ -6,8 +6,8 @@ use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::{Counters, Status};
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem,
-    PathSettings, PathSolver, PathState, Sliding,
+    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
+    PathSolver, PathState, PointLaw, Sliding,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Record;
@@ -57,7 +57,7 @@ fn two_bars(rise: f64) -> PathProblem {
         plus: Attachment { body: (joint + 1) % 3, slot: None },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Bonded,
+        law: PointLaw::Bonded,
         compliance,
         sliding: Sliding::middle(0.0),
     };
@@ -74,8 +74,6 @@ fn two_bars(rise: f64) -> PathProblem {
             contact(1, crown, Vec2::new(1.0, 0.0), [CROWN, PIN[1]]),
             contact(2, Vec2::new(SPAN, 0.0), mirrored, PIN),
         ],
-        facets: vec![],
-        responses: vec![],
         load_steps: vec![LoadStep {
             stage: 0,
             gravity: false,

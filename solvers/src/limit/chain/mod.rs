@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use simplex::{Outcome, Program, Solved};
 use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Limit analysis of chains.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -48,12 +48,12 @@ voussoir_core::inventory::submit! {
         tag: "limit_chain",
         summary: "limit analysis of arches and other chains of blocks in three redundants and λ, by simplex, to rounding",
         parameters: &[],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(20),
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Dantzig 1963, Linear Programming and Extensions"],
         file: file!(),
         page: include_str!("limit_chain.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

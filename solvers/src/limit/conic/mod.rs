@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use system::{Loads, System};
 use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;
@@ -38,12 +38,12 @@ voussoir_core::inventory::submit! {
         tag: "limit_conic",
         summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
         parameters: &[],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(30),
         sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
         file: file!(),
         page: include_str!("limit_conic.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

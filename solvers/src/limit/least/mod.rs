@@ -3,21 +3,20 @@
 
 mod bracket;
 mod descent;
-pub(crate) mod dictionary;
 mod products;
 mod search;
 
 use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
 use super::systems::{LARGEST, Systems};
 use super::{associated, combined};
+use crate::optimise::dense_simplex::Feasibility;
 use bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
 use descent::{Descent, State};
-use dictionary::Feasibility;
 use products::Bound;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, Status};
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, no_further_check};
+use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 /// Work of the search where it is not given.
 const SEARCH_LIMIT: f64 = 4.0;
@@ -76,8 +75,9 @@ voussoir_core::inventory::submit! {
                 need: Need::Default("12000"),
             },
         ],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        provides: &[Capability::NON_ASSOCIATED],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(10),
         sources: &[
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
@@ -85,7 +85,7 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("limit_least.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

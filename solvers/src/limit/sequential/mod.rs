@@ -1,16 +1,16 @@
 //! `limit_sequential`: a non-associated load by sequential linear programming.
 #![doc = include_str!("limit_sequential.md")]
 
-use super::least::dictionary::Feasibility;
 use super::systems::{LARGEST, Systems};
 use super::{Greatest, associated, combined, conic};
 use crate::limit::Engine;
+use crate::optimise::dense_simplex::Feasibility;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, NonAssociated, Status, Velocity,
 };
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
@@ -31,12 +31,11 @@ voussoir_core::inventory::submit! {
         tag: "limit_sequential",
         summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
         parameters: &[],
-        provides: &[Capability::RigidLimit],
-        requires: &[Capability::Facets, Capability::RigidLimit],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
         page: include_str!("limit_sequential.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

@@ -4,7 +4,7 @@
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range, no_further_check};
+use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
 
 /// c = √(motion² + ψ² Δλ²).
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -72,11 +72,9 @@ voussoir_core::inventory::submit! {
             FIRST_STEP,
             LARGEST_STEP,
         ],
-        provides: &[],
-        requires: &[],
         sources: &["Riks 1979, Int. J. Solids Struct. 15, 529-551", "Crisfield 1981, Computers & Structures 13, 55-62"],
         file: file!(),
         page: include_str!("arc_length.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -4,7 +4,7 @@
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Card, PluginKind};
 
 /// c = |Δu|, u the work-conjugate displacement of the load that grows.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -53,11 +53,9 @@ voussoir_core::inventory::submit! {
         tag: "displacement_control",
         summary: "steps of the load's own displacement; passes limit points, not snap-back",
         parameters: &[FIRST_STEP, LARGEST_STEP],
-        provides: &[],
-        requires: &[],
         sources: &["Batoz & Dhatt 1979, Int. J. Numer. Meth. Engng 14, 1262-1267"],
         file: file!(),
         page: include_str!("displacement_control.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -5,7 +5,7 @@ use super::arc_length::sphere;
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range, no_further_check};
+use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
 
 /// c = ΔD where the last step dissipated enough, else the arc length.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -73,14 +73,12 @@ voussoir_core::inventory::submit! {
             FIRST_STEP,
             LARGEST_STEP,
         ],
-        provides: &[],
-        requires: &[],
         sources: &[
             "Gutierrez 2004, Commun. Numer. Meth. Engng 20, 19-29",
             "Verhoosel, Remmers & Gutierrez 2009, Int. J. Numer. Meth. Engng 77, 1290-1321",
         ],
         file: file!(),
         page: include_str!("dissipation.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Card, PluginKind};
 
 /// The path is piecewise linear: the solver knows how far each piece goes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -37,11 +37,9 @@ voussoir_core::inventory::submit! {
         tag: "exact_events",
         summary: "from event to event of a piecewise linear path, without steps",
         parameters: &[],
-        provides: &[],
-        requires: &[],
         sources: &["Cocchetti & Maier 2003, Int. J. Numer. Meth. Engng 58 (piecewise linear paths as rate complementarity problems)"],
         file: file!(),
         page: include_str!("exact_events.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -4,7 +4,7 @@
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Card, PluginKind};
 
 /// c = |Δλ|.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -50,11 +50,9 @@ voussoir_core::inventory::submit! {
         tag: "load_control",
         summary: "steps of the load factor; stops at the first limit point and says so",
         parameters: &[FIRST_STEP, LARGEST_STEP],
-        provides: &[],
-        requires: &[],
         sources: &["Crisfield 1991, Non-linear Finite Element Analysis of Solids and Structures 1, section 1.2"],
         file: file!(),
         page: include_str!("load_control.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -1,22 +1,19 @@
 //! `event_path`: elastic blocks with facet laws and small displacements, exactly from event to event.
 //!
-//! Between events everything is linear. At an event the points at the verge of a change pose a rate
-//! problem (`rate.rs`); its solution is the direction of the next piece of the path. λ is no
+//! Between events everything is linear. At an event the points of the active set pose a rate
+//! problem (`rate`); its solution is the direction of the next mode of the path. λ is no
 //! parameter of the path: it may stand still (a mechanism) or fall.
 #![doc = include_str!("event_path.md")]
 
-mod base;
 mod direction;
 mod energy;
-mod homotopy;
-mod lcp;
-mod line_search;
-mod local;
-mod pairs;
+mod factorisation;
+mod follow;
+mod force_method;
+mod next_event;
 mod point;
-mod rate;
-mod redundants;
-mod step;
+mod rates;
+mod schur;
 mod system;
 mod trace;
 mod unique;
@@ -24,7 +21,7 @@ mod unique;
 use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// The exact path of piecewise linear problems.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -34,7 +31,7 @@ pub struct EventPath {}
 #[typetag::serde(name = "event_path")]
 impl PathSolver for EventPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
-        trace::Tracer::new(problem, settings, observer).run()
+        follow::follow(problem, settings, observer)
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
@@ -60,8 +57,9 @@ voussoir_core::inventory::submit! {
         tag: "event_path",
         summary: "exact path of elastic blocks and facet laws, small displacements, from event to event, to rounding",
         parameters: &[],
-        provides: &[Capability::Settlement],
-        requires: &[Capability::Facets, Capability::Linear],
+        provides: &[Capability::SETTLEMENT],
+        requires: &[&[Capability::FACETS], &[Capability::LINEAR]],
+        cost: Some(10),
         sources: &[
             "Klarbring 1990, Ingenieur-Archiv 60, 529-541 (the frictional rate problem)",
             "Maier 1970, Meccanica 5, 54-66 (piecewise linear laws as complementarity problems)",
@@ -70,6 +68,6 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("event_path.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -8,9 +8,9 @@
 //! always allows. Other points may then slide, and the path goes on at another place; if it comes back to
 //! the same fold it ends there.
 
+use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::inelastic::{plastic_power, update_blocks};
-use super::law::ContactMode;
 use super::measure::motion_size;
 use super::rising::{Rising, limit_point_test};
 use super::state::Tangent;

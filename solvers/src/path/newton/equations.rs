@@ -1,7 +1,8 @@
 //! Rows of gaps and balance in units, and of them the rows of contact points by mode.
 
-use crate::path::rows::Rows;
-use super::law::{ContactMode, Polygon};
+use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
+use crate::linear::csr::CsrMatrix;
 use super::unknowns::Unknowns;
 use voussoir_core::linear::Entries;
 
@@ -12,9 +13,9 @@ pub(super) const REGULARISATION: f64 = 1e-9;
 #[derive(Debug)]
 pub(super) struct Equations {
     /// Two rows per contact point: normal and tangential gap.
-    pub gaps: Rows,
+    pub gaps: CsrMatrix,
     /// Three rows per free body.
-    pub bodies: Rows,
+    pub bodies: CsrMatrix,
 }
 
 /// Entries of a row that is open, of the equations or of what is added to them.
@@ -43,7 +44,7 @@ impl Equations {
         for (i, value) in factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
             place(i, last, value * u.factor);
         }
-        Equations { gaps: Rows::new(base, &gaps), bodies: Rows::new(last - base, &bodies) }
+        Equations { gaps: CsrMatrix::new(base, &gaps), bodies: CsrMatrix::new(last - base, &bodies) }
     }
 
     /// Adds row k of a contact point in a mode to open rows: its equation, and what is added. The latter
@@ -51,7 +52,7 @@ impl Equations {
     /// it, those of open points have equations of their own, which can be condensed out.
     pub fn point(
         &self,
-        law: Option<&Polygon>,
+        law: Option<&YieldPolygon>,
         (c, k): (usize, usize),
         mode: ContactMode,
         whole: bool,
@@ -72,7 +73,7 @@ impl Equations {
                     equation.extend(gap(1, -d[0]));
                 }
             }
-            (ContactMode::Corner(_), Some(_)) => {
+            (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => {
                 equation.push((2 * c + k, 1.0));
                 shift.extend(gap(k, REGULARISATION).filter(|&(j, _)| whole || j >= forces || j / 2 == c));
             }
@@ -94,12 +95,12 @@ impl Equations {
     }
 
     /// Adds the rows of the bodies.
-    pub fn bodies(&self, equations: &mut Rows, shifts: &mut Rows) {
+    pub fn bodies(&self, equations: &mut CsrMatrix, shifts: &mut CsrMatrix) {
         let base = self.gaps.len();
         for row in 0..self.bodies.len() {
-            equations.open().extend_from_slice(self.bodies.row(row));
+            equations.open_row().extend_from_slice(self.bodies.row(row));
             equations.end_row();
-            shifts.open().push((base + row, -REGULARISATION));
+            shifts.open_row().push((base + row, -REGULARISATION));
             shifts.end_row();
         }
     }

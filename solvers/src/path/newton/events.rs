@@ -1,7 +1,7 @@
 //! Events of a step: what contact points begin and stop to do.
 
+use crate::contact::mode::ContactMode;
 use crate::path::events::{ContactStatus, transition};
-use super::law::ContactMode;
 use super::state::State;
 use super::system::StepSystem;
 use voussoir_core::law::{TractionPoint, UpdateBranch};
@@ -13,8 +13,8 @@ fn of_mode(system: &StepSystem, contact: usize, mode: ContactMode, gap: [f64; 2]
     match mode {
         ContactMode::Stick => ContactStatus::Sticks,
         ContactMode::Facet(i) => ContactStatus::of_facet(&law.facets[i as usize]),
-        ContactMode::Corner(_) if law.opens(mode) => ContactStatus::Open,
-        ContactMode::Corner(k) => ContactStatus::of_facet(&law.facets[law.pair(k, gap).0[0]]),
+        _ if law.opens(mode) => ContactStatus::Open,
+        _ => law.pair(mode, gap).map_or(ContactStatus::Sticks, |(pair, _)| ContactStatus::of_facet(&law.facets[pair[0]])),
     }
 }
 

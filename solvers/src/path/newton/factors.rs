@@ -1,8 +1,8 @@
 //! What one factorisation leaves to the next.
 
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::BorderedFactors;
 use std::rc::Rc;
-use super::border::Held;
-use super::law::ContactMode;
 use voussoir_core::linear::Analysis;
 
 /// Factors with what they are of.
@@ -10,7 +10,7 @@ pub(super) struct Kept {
     pub modes: Vec<ContactMode>,
     /// Normals and flows of the laws' facets.
     pub directions: Vec<[f64; 4]>,
-    pub held: Rc<Held>,
+    pub held: Rc<BorderedFactors>,
 }
 
 /// What the last factorisation leaves to the next.

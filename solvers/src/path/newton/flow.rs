@@ -1,25 +1,23 @@
 //! Flow that is not associated, turned into it from associated flow, with which every step is a monotone
 //! problem.
 
+use crate::contact::facet::with_flow_between;
+use crate::contact::yield_polygon::YieldPolygon;
 use super::control::Control;
-use super::law::Polygon;
 use super::state::State;
 use super::step::solve_step;
 use super::system::StepSystem;
-use voussoir_core::law::Facet;
 
 /// Takes slip to be associated; the laws as they were.
-pub(super) fn take_associated(system: &mut StepSystem) -> Vec<Polygon> {
+pub(super) fn take_associated(system: &mut StepSystem) -> Vec<YieldPolygon> {
     let own = system.laws.polygons.clone();
     blend(system, &own, 0.0);
     own
 }
 
 /// Turns the flow from the facets' normals (0) to the given laws' own (1).
-fn blend(system: &mut StepSystem, laws: &[Polygon], own: f64) {
-    let flow = |f: &Facet| [0, 1].map(|i| (1.0 - own) * f.normal[i] + own * f.flow[i]);
-    let turned =
-        |law: &Polygon| Polygon::new(&law.facets.iter().map(|f| Facet { flow: flow(f), ..*f }).collect::<Vec<_>>());
+fn blend(system: &mut StepSystem, laws: &[YieldPolygon], own: f64) {
+    let turned = |law: &YieldPolygon| YieldPolygon::new(&with_flow_between(&law.facets, own));
     system.laws.polygons = laws.iter().map(turned).collect();
 }
 

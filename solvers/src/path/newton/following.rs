@@ -1,8 +1,8 @@
 //! A load step that is followed by its strategy: predictor, length of the next step, and what has been tried.
 
+use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::control_row::work_along;
-use super::law::ContactMode;
 use super::measure::{increment_along, tangent_size};
 use super::response::update_at_rest;
 use super::state::Tangent;

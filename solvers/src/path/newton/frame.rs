@@ -7,20 +7,20 @@
 //! ```
 //!
 //! B: rows of the modes that were factorised, D: what the rows i of changed points are more than
-//! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::path::condensed)
+//! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::linear::condensed)
 //! takes out, and x_0 follows every change of f by Y: a pivot solves for two columns at most, all else
 //! are products. Rows that have not changed hold as exactly as B is solved; those that have are checked.
 //!
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
 //! that no combination of modes is without a direction.
 
-use crate::path::condensed::Condensed;
-use crate::path::rows::Rows;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::condensed::Condensed;
+use crate::linear::csr::CsrMatrix;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
-use super::border::{Bordered, Held};
 use super::equations::Equations;
-use super::law::ContactMode;
 use super::system::StepSystem;
 use voussoir_core::linear::Analysis;
 
@@ -44,7 +44,7 @@ struct Change {
 
 /// A factorisation with what has changed since.
 struct Base {
-    factors: Bordered,
+    factors: BorderedSystem,
     /// x_0.
     from: Vec<f64>,
     changes: Vec<Change>,
@@ -131,24 +131,24 @@ impl Frame {
         if let Some(x) = self.updated() {
             return Some((x, 0));
         }
-        let (mut rows, mut shifts) = (Rows::none(0), Rows::none(0));
+        let (mut rows, mut shifts) = (CsrMatrix::with_capacity(0), CsrMatrix::with_capacity(0));
         for c in 0..self.points {
             for k in 0..2 {
                 let law = system.law(c);
-                self.equations.point(law, (c, k), self.modes[c], true, rows.open(), shifts.open());
+                self.equations.point(law, (c, k), self.modes[c], true, rows.open_row(), shifts.open_row());
                 rows.end_row();
                 shifts.end_row();
             }
         }
         self.equations.bodies(&mut rows, &mut shifts);
-        let held = Held::new(
+        let held = BorderedFactors::new(
             rows.with(&shifts),
-            Rows::empty(self.control.len() - 1),
+            CsrMatrix::empty(self.control.len() - 1),
             self.points,
             &self.control,
             &mut self.analysis,
         )?;
-        let factors = Bordered::new(Rc::new(held), &self.control)?;
+        let factors = BorderedSystem::new(Rc::new(held), &self.control)?;
         let mut x = factors.apply(&self.right)?;
         let step = factors.apply(&factors.left(&self.right, &x).0)?;
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
@@ -194,6 +194,6 @@ impl Frame {
 
     /// Tangent of a contact point's gap in a solution, in units.
     pub fn gap(&self, contact: usize, x: &[f64]) -> [f64; 2] {
-        [0, 1].map(|k| self.equations.gaps.along(2 * contact + k, x))
+        [0, 1].map(|k| self.equations.gaps.row_dot(2 * contact + k, x))
     }
 }

@@ -1,10 +1,11 @@
 //! Newton's method on the contact modes of a step.
 
+use crate::contact::mode::ContactMode;
+use crate::optimise::line_search::LineSearch;
 use super::control::Control;
 use super::control_row::{control_row, control_value};
 use super::inelastic::{block_error, update_blocks};
-use super::law::ContactMode;
-use super::line_search::{LineSearch, advanced, searched};
+use super::line_search::{advanced, of_tractions, searched};
 use super::linearised::{residual_of, solve_linear};
 use super::response::{traction_error, traction_row, update_tractions};
 use super::state::State;
@@ -45,7 +46,7 @@ pub(super) fn iterate(
     mut search: Option<LineSearch>,
 ) -> Result<(State, u64), StepFailure> {
     if !system.laws.responses.is_empty() {
-        search = Some(LineSearch::of_tractions());
+        search = Some(of_tractions());
     }
     let (mut state, mut gradient) = first_state(system, start, guess, control)?;
     system.residuals.clear();
@@ -226,7 +227,7 @@ pub(super) fn relative_residual(system: &StepSystem, residual: &[f64], state: &S
             match state.mode[i / 2] {
                 ContactMode::Stick => false,
                 ContactMode::Facet(_) => i % 2 == 0,
-                ContactMode::Corner(_) => true,
+                ContactMode::Corner(..) | ContactMode::Open => true,
             }
         } else {
             i + 1 < residual.len()

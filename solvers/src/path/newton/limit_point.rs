@@ -1,6 +1,6 @@
 //! Whether a limit point is one: no rate with a growing factor leaves it.
 
-use super::law::ContactMode;
+use crate::contact::mode::ContactMode;
 use super::rising::{Rising, limit_point_test};
 use super::state::{State, Tangent};
 use super::tracer::Tracer;

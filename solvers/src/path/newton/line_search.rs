@@ -18,16 +18,16 @@
 //! ‖F(x + t Δx)‖ ≤ (1 − σ t) max ‖F‖ of the last m iterations
 //! ```
 //!
-//! (Armijo's rule for semismooth systems: De Luca, Facchinei & Kanzow 1996, Math. Programming 75, 407-439; frictional contact:
-//! Christensen, Klarbring, Pang & Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173; with the greatest of
-//! several merits, so that a step over a kink need not lower each: Grippo, Lampariello & Lucidi 1986, SIAM J. Numer.
-//! Anal. 23, 707-716). Where none of the halves does, the one with the least ‖F‖ is taken. A line search finds local
-//! minima of Ψ: what it ends in counts only if F = 0 there, by the test of `iterate`.
+//! ([`optimise::line_search`](crate::optimise::line_search); frictional contact: Christensen, Klarbring, Pang &
+//! Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173). A line search finds local minima of Ψ: what it ends in
+//! counts only if F = 0 there, by the test of `iterate`.
 
+use crate::optimise::line_search::LineSearch;
 use super::control::Control;
 use super::control_row::control_value;
 use super::derivatives::Gradient;
 use super::inelastic::{block_error, update_blocks};
+use super::kinematics::Gradient;
 use super::linearised::residual_of;
 use super::response::update_tractions;
 use super::state::State;
@@ -35,30 +35,13 @@ use super::system::{StepFailure, StepSystem};
 use super::tangent::apply_step;
 
 /// Merits below which whole steps are taken: what they leave is the linear equations' own accuracy.
-const NOTHING: f64 = 1e-9;
+pub(super) const NOTHING: f64 = 1e-9;
 
-/// The rule of a line search and the merits of its last iterations.
-pub(super) struct LineSearch {
-    /// σ.
-    decrease: f64,
-    /// Most halvings of one iteration.
-    halvings: i32,
-    /// m.
-    memory: usize,
-    merits: Vec<f64>,
+/// For laws of tractions from gaps: between the pieces of such a law whole iterations may cycle.
+pub(super) fn of_tractions() -> LineSearch {
+    LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing: NOTHING, merits: Vec::new() }
 }
 
-impl LineSearch {
-    /// For laws of tractions from gaps: between the pieces of such a law whole iterations may cycle.
-    pub fn of_tractions() -> Self {
-        LineSearch { decrease: 0.3, halvings: 4, memory: 1, merits: Vec::new() }
-    }
-
-    /// For modes that change all at once and do not settle.
-    pub fn of_modes() -> Self {
-        LineSearch { decrease: 1e-2, halvings: 8, memory: 3, merits: Vec::new() }
-    }
-}
 
 /// ‖F‖ of a state in the units of the unknowns.
 fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {
@@ -74,7 +57,7 @@ fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradi
             Some(law) => {
                 let r = state.force[c];
                 let z = [r[0] - pulled[0], r[1] - pulled[1]];
-                let (_, back) = law.returned(z, rho, system.problem.contacts[c].area);
+                let (_, back) = law.return_map(z, rho, system.problem.contacts[c].area);
                 [r[0] - back[0], r[1] - back[1]]
             }
             None => pulled,
@@ -115,51 +98,36 @@ pub(super) fn searched(
     if search.merits.is_empty() {
         search.merits.push(merit(system, start, state, gradient, control));
     }
-    let recent = search.merits.iter().rev().take(search.memory);
-    let reference = recent.fold(0.0, |a: f64, m| a.max(*m));
-    let mut best: Option<(f64, State, Gradient, bool)> = None;
-    let mut failure = None;
-    for halvings in 0..=search.halvings {
-        let share = most * 0.5f64.powi(halvings);
+    let at = |halvings: i32, share: f64| {
         match halvings {
             0 => {}
             1 => ["line_searches", "halvings"].into_iter().for_each(|what| system.count(what, 1)),
             _ => system.count("halvings", 1),
         }
-        let (next, gradient) = match advanced(system, start, state, step, share) {
-            Ok(next) => next,
-            Err(why) => {
-                failure = Some(why);
-                continue;
-            }
-        };
+        let (next, gradient) = advanced(system, start, state, step, share)?;
         let merit = merit(system, start, &next, &gradient, control);
-        if best.as_ref().is_none_or(|best| merit < best.0) {
-            best = Some((merit, next, gradient, halvings == 0));
-        }
-        if merit <= (1.0 - search.decrease * share) * reference || merit <= NOTHING {
-            break;
-        }
-    }
-    let unknown = StepFailure::new("an iteration left the numbers");
-    let Some((merit, next, gradient, whole)) = best else { return Err(failure.unwrap_or(unknown)) };
-    search.merits.push(merit);
+        Ok((merit, (next, gradient)))
+    };
+    let unknown = || StepFailure::new("an iteration left the numbers");
+    let ((next, gradient), whole) =
+        search.search(most, at).map_err(|failure: Option<StepFailure>| failure.unwrap_or_else(unknown))?;
     Ok((next, gradient, whole))
 }
+
 
 #[cfg(test)]
 mod tests {
     use super::super::control_row::control_row;
-    use super::super::law::ContactMode;
     use super::super::linearised::solve_linear;
     use super::super::loads::StagedLoads;
     use super::super::tangent::wanted_modes;
     use super::*;
-    use crate::path::shuffle::Shuffle;
+    use crate::contact::mode::ContactMode;
+    use crate::optimise::lcg::Lcg;
     use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
-    use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
+    use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw};
 
     /// A rigid block on three compliant points of the ground with friction that dilates, pushed down and aside.
     fn pushed() -> PathProblem {
@@ -172,6 +140,8 @@ mod tests {
             flexibility: None,
             inelastic: None,
         };
+        let [left, right] = Facet::friction(0.5, 0.0, 0.2);
+        let law = PointLaw::Facets(vec![Facet::opening(0.0), left, right].into());
         let contact = |x: f64| Contact {
             joint: 0,
             position: Vec2::new(x, 0.0),
@@ -181,20 +151,17 @@ mod tests {
             plus: Attachment { body: 1, slot: None },
             area: 1.0,
             gap: 0.0,
-            law: ContactLaw::Law(0),
+            law: law.clone(),
             sliding: voussoir_core::path::Sliding::middle(0.0),
             compliance: [1e-6, 2e-6],
         };
         let pole = Vec2::new(0.0, 0.5);
         let loading = Loading { forces: vec![(1, None, pole, Vec2::new(4.0, -10.0))], ..Loading::default() };
-        let [left, right] = Facet::friction(0.5, 0.0, 0.2);
         PathProblem {
             bodies: vec![body(true, Vec2::zeros()), body(false, pole)],
             body_of: vec![0, 1],
             contacts: vec![contact(-1.0), contact(0.2), contact(1.0)],
-            facets: vec![vec![Facet::opening(0.0), left, right]],
             load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
-            responses: vec![],
             length: 2.0,
             counters: Counters::new(),
         }
@@ -208,8 +175,8 @@ mod tests {
         for finite in [false, true] {
             let mut system = StepSystem::new(&problem, finite).expect("a system");
             system.load(StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 });
-            let (start, u) = (system.undeformed(), system.units());
-            let (mut random, mut compared) = (Shuffle::new(5), [0; 3]);
+            let (start, u) = (system.undeformed(), system.units);
+            let (mut random, mut compared) = (Lcg::new(5), [0; 3]);
             for _ in 0..600 {
                 let mut state = start.clone();
                 state.factor = 0.7;
@@ -242,7 +209,7 @@ mod tests {
                     compared[match mode {
                         ContactMode::Stick => 0,
                         ContactMode::Facet(_) => 1,
-                        ContactMode::Corner(_) => 2,
+                        ContactMode::Corner(..) | ContactMode::Open => 2,
                     }] += 1;
                 }
             }

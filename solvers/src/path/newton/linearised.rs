@@ -13,14 +13,14 @@
 //! Optim. 5) where modes repeat a condition or leave a motion free; iterative refinement against
 //! the true matrix removes the shift from the answer. Where refinement does not converge, the
 //! modes have no solution, and the step is refused. How it is factorised: see `border` and
-//! [`condensed`](crate::path::condensed).
+//! [`condensed`](crate::linear::condensed).
 
-use crate::path::rows::Rows;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::csr::CsrMatrix;
 use std::rc::Rc;
-use super::border::{Bordered, Held};
 use super::derivatives::{Gradient, Hessian};
 use super::factors::Kept;
-use super::law::ContactMode;
 use super::response::{traction_residual, traction_row};
 use super::state::State;
 use super::system::StepSystem;
@@ -47,8 +47,8 @@ pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gra
                 let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
                 [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
             }
-            (ContactMode::Corner(k), Some(law)) => {
-                let corner = law.corners[k as usize].0;
+            (mode @ (ContactMode::Corner(..) | ContactMode::Open), Some(law)) => {
+                let corner = law.corner(mode).unwrap_or_default();
                 [(r[0] - corner[0] * area) / u.force, (r[1] - corner[1] * area) / u.force]
             }
             _ => gap,
@@ -73,7 +73,7 @@ fn is_constant(system: &StepSystem, hessian: &Hessian) -> bool {
 
 /// The modes' linear equations, factorised: where nothing else than modes makes them, those of
 /// the same modes are taken again.
-fn factorise(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f64]) -> Option<(Rc<Held>, bool)> {
+fn factorise(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f64]) -> Option<(Rc<BorderedFactors>, bool)> {
     let again = system.laws.responses.is_empty() && is_constant(system, hessian);
     let directions: Vec<[f64; 4]> = system
         .laws
@@ -90,11 +90,11 @@ fn factorise(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f
     }
     let equations = hessian.rows(&system.unknowns);
     let capacity = hessian.entries.len();
-    let (mut rows, mut shifts) = (Rows::none(capacity), Rows::none(capacity));
+    let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(capacity));
     for (c, mode) in state.mode.iter().enumerate() {
         let answer = system.laws.responses.is(c).then(|| traction_row(system, state, c));
         for k in 0..2 {
-            let (equation, shift) = (rows.open(), shifts.open());
+            let (equation, shift) = (rows.open_row(), shifts.open_row());
             match &answer {
                 Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
                 None => equations.point(system.law(c), (c, k), *mode, false, equation, shift),
@@ -105,7 +105,7 @@ fn factorise(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f
     }
     equations.bodies(&mut rows, &mut shifts);
     system.count("factorisations", 1);
-    let held = Held::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.analysis)?;
+    let held = BorderedFactors::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.analysis)?;
     let held = Rc::new(held);
     system.cache.factors.last = again.then(|| Kept { modes: state.mode.clone(), directions, held: held.clone() });
     Some((held, false))
@@ -121,18 +121,18 @@ pub(super) fn solve_linear(
     right: &[f64],
 ) -> Option<(Vec<f64>, bool)> {
     let (held, again) = factorise(system, state, hessian, row)?;
-    let found = Bordered::new(held, row).and_then(|bordered| refined(&bordered, right));
+    let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
     if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
         return found;
     }
     // Another unknown held may serve this control better.
     system.cache.factors.last = None;
     let (held, _) = factorise(system, state, hessian, row)?;
-    refined(&Bordered::new(held, row)?, right)
+    refined(&BorderedSystem::new(held, row)?, right)
 }
 
 /// The solution of the equations without what was added, by refinement, and whether there is one.
-fn refined(bordered: &Bordered, right: &[f64]) -> Option<(Vec<f64>, bool)> {
+fn refined(bordered: &BorderedSystem, right: &[f64]) -> Option<(Vec<f64>, bool)> {
     let mut x = vec![0.0; right.len()];
     let mut rest = right.to_vec();
     let mut before = f64::INFINITY;

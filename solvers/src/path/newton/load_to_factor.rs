@@ -98,7 +98,7 @@ pub(super) fn is_proportional(tracer: &Tracer) -> bool {
     let problem = tracer.system.problem;
     let untouched = tracer.state.force.iter().flatten().chain(tracer.state.gap.iter().flatten()).all(|v| *v == 0.0);
     let linear = tracer.system.piecewise_linear();
-    linear && untouched && problem.facets.iter().flatten().all(|f| f.bound == 0.0)
+    linear && untouched && problem.shared_facets().0.into_iter().flatten().all(|f| f.bound == 0.0)
 }
 
 /// To a factor that is known to be carried, in equal steps of λ (associated flow: what carries a

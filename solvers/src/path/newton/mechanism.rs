@@ -11,7 +11,7 @@
 //! is a rate of solution with forces that stand still (the flow of limit analysis at a given field: Livesley
 //! 1978, Int. J. Numer. Meth. Engng 12): a linear program finds one where there is one.
 
-use crate::limit::least::dictionary::{Equations, Feasibility};
+use crate::optimise::dense_simplex::{Equations, Feasibility};
 use super::measure::load_displacement;
 use super::state::{State, Tangent};
 use super::system::StepSystem;

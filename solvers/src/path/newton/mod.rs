@@ -2,7 +2,6 @@
 #![doc = include_str!("newton_path.md")]
 
 mod blocks;
-mod border;
 mod branch_switching;
 mod control;
 mod control_row;
@@ -22,7 +21,6 @@ mod geometry;
 mod inelastic;
 mod iteration;
 mod kinematics;
-pub(super) mod law;
 mod limit_point;
 mod line_search;
 mod linearised;

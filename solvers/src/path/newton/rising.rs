@@ -12,9 +12,10 @@
 //! an opening facet with strength is open already its multiplier has any sign: it belongs to the
 //! factorised modes, and only the point's other facets are pairs.
 
-use crate::path::complementarity::{Complementarity, Known};
+use crate::contact::mode::ContactMode;
+use crate::optimise::branching::{LcpAnswer, solve_by_branching};
+use crate::optimise::lcp::Lcp;
 use nalgebra::{DMatrix, DVector};
-use super::law::ContactMode;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
@@ -43,7 +44,7 @@ struct Verge {
 
 /// The rate problem of a state.
 struct RateProblem {
-    problem: Complementarity,
+    problem: Lcp,
     /// Multiplier of each facet per unit of z.
     units: Vec<f64>,
     /// Rates of all unknowns but λ by each multiplier and, last, by λ̇ in the sense asked for.
@@ -68,14 +69,14 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
     let Some(rate) = rate_problem(system, state, &verge, direction) else {
         return Rising::Unknown(format!("the stiffness of {facets} facets at the verge of yielding was not found"));
     };
-    let (known, programs) = rate.problem.search(MOST);
+    let (known, programs) = solve_by_branching(&rate.problem, MOST);
     system.count("rate_programs", programs);
     match known {
-        Known::None => Rising::None,
-        Known::Undecided(why) => {
+        LcpAnswer::NoSolution => Rising::None,
+        LcpAnswer::Undecided(why) => {
             Rising::Unknown(format!("{facets} facets at the verge of yielding may let the load grow: {why}"))
         }
-        Known::Solution(z) => {
+        LcpAnswer::Solution(z) => {
             let mut x = rate.responses[facets].clone();
             for ((by, z), unit) in rate.responses.iter().zip(&z).zip(&rate.units) {
                 x.iter_mut().zip(by).for_each(|(x, by)| *x += z * unit * by);
@@ -95,15 +96,10 @@ fn modes_of(system: &StepSystem, verge: &Verge, z: &[f64]) -> Vec<ContactMode> {
     let mut modes = verge.modes.clone();
     for (&(c, i), _) in verge.facets.iter().zip(z).filter(|(_, z)| **z > 1e-9 * largest) {
         let Some(law) = system.law(c) else { continue };
-        let at = |j: u8| {
-            let pair = |p: &[usize; 2]| p.contains(&i) && p.contains(&(j as usize));
-            let own = law.corners.iter().position(|(_, pairs)| pairs.iter().any(pair));
-            // Both senses of slip at the apex: it opens.
-            own.or_else(|| law.corners.iter().position(|(place, _)| *place == [0.0; 2]))
-        };
         modes[c] = match modes[c] {
             ContactMode::Stick => ContactMode::Facet(i as u8),
-            ContactMode::Facet(j) => at(j).map_or(ContactMode::Facet(j), |k| ContactMode::Corner(k as u8)),
+            // Both senses of slip at the apex: it opens.
+            ContactMode::Facet(j) => law.mode_of_pair(i, j as usize).unwrap_or(ContactMode::Facet(j)),
             corner => corner,
         };
     }
@@ -176,7 +172,7 @@ fn rate_problem(system: &mut StepSystem, state: &State, verge: &Verge, direction
                 right[2 * c + 1] = driven[2 * c] * f.flow[1] - driven[2 * c + 1] * f.flow[0];
                 [vec![(2 * c, f.normal[0]), (2 * c + 1, f.normal[1])], weighted(c, [f.flow[1], -f.flow[0]])]
             }
-            (ContactMode::Corner(_), Some(_)) => {
+            (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => {
                 (0..2).for_each(|k| right[2 * c + k] = 0.0);
                 [vec![(2 * c, 1.0)], vec![(2 * c + 1, 1.0)]]
             }
@@ -231,7 +227,7 @@ fn rate_problem(system: &mut StepSystem, state: &State, verge: &Verge, direction
     let own: Vec<f64> = matrix.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
     let constant = DVector::from_fn(n, |i, _| constant[i] / own[i]);
     let size = if n > 0 { constant.amax().max(1e-300) } else { 1.0 };
-    let problem = Complementarity {
+    let problem = Lcp {
         matrix: DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (own[i] * own[j])),
         constant: constant / size,
     };

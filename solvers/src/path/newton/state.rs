@@ -1,8 +1,8 @@
 //! A state of a step, what it remembers, and its rate along the path.
 
+use crate::contact::mode::ContactMode;
 use super::blocks::YieldingBlock;
 use super::geometry::Place;
-use super::law::ContactMode;
 use super::loads::Loads;
 use super::tractions::TractionUpdates;
 

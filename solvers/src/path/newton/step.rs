@@ -1,8 +1,9 @@
 //! A step: Newton's method, then a line search, then the homotopy.
 
+use crate::optimise::line_search::LineSearch;
 use super::control::Control;
 use super::iteration::iterate;
-use super::line_search::LineSearch;
+use super::line_search::NOTHING;
 use super::pivot::by_homotopy;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
@@ -20,7 +21,7 @@ pub(super) fn solve_step(
 ) -> Result<(State, u64), StepFailure> {
     let found = iterate(system, start, guess.clone(), control, 8, None);
     if found.is_ok()
-        || (!system.laws.responses.is_empty() && system.laws.polygons.iter().all(|law| law.facets.is_empty()))
+        || (!system.laws.responses.is_empty() && system.laws.polygons.is_empty())
     {
         return found;
     }
@@ -43,13 +44,14 @@ pub(super) fn solve_step(
 }
 
 /// Newton's method with all modes changed at once and a line search.
-pub(super) fn line_searched(
-    system: &mut StepSystem,
-    start: &State,
-    guess: State,
-    control: &Control,
-) -> Result<(State, u64), StepFailure> {
-    let found = iterate(system, start, guess, control, u32::MAX, Some(LineSearch::of_modes()));
+pub(super) fn line_searched(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Result<(State, u64), StepFailure> {
+    let found = iterate(system, 
+        start,
+        guess,
+        control,
+        u32::MAX,
+        Some(LineSearch { nothing: NOTHING, ..LineSearch::of_pieces() }),
+    );
     system.count("line_searched_steps", u64::from(found.is_ok()));
     found
 }

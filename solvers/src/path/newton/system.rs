@@ -1,5 +1,7 @@
 //! The system of a step as data: units, laws, loads, geometry; and what the last evaluations leave to the next.
 
+use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
 use crate::path::energy::load_size;
 use std::rc::Rc;
 use super::blocks::{YieldingBlock, undeformed};
@@ -8,18 +10,19 @@ use super::derivatives::{Gradient, Hessian};
 use super::factors::Factorised;
 use super::geometry::Geometry;
 use super::kinematics::{gradient, hessian};
-use super::law::{ContactMode, Polygon};
 use super::loads::StagedLoads;
 use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
 use super::unknowns::{Units, Unknowns};
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{ContactLaw, Loading, PathProblem};
+use voussoir_core::path::{Loading, PathProblem};
 
 /// Laws of the contact points.
 pub(super) struct Laws {
-    /// Of facets, by index of the problem.
-    pub polygons: Vec<Polygon>,
+    /// Of facets, each once.
+    pub polygons: Vec<YieldPolygon>,
+    /// For each contact point the index of its polygon.
+    pub polygon_of: Vec<Option<usize>>,
     /// Of tractions from gaps.
     pub responses: Responses,
     /// Own compliance of every contact point, normal and tangential \[m/N\].
@@ -122,11 +125,12 @@ impl<'a> StepSystem<'a> {
         let force = size.unwrap_or(settlement / mean);
         let force = if force > 0.0 { force } else { 1.0 };
         let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
-        let polygons = problem.facets.iter().map(|f| Polygon::new(f)).collect();
+        let (facets, polygon_of) = problem.shared_facets();
+        let polygons = facets.into_iter().map(YieldPolygon::new).collect();
         Ok(StepSystem {
             geometry: Geometry::new(problem, finite),
             problem,
-            laws: Laws { polygons, responses, compliance },
+            laws: Laws { polygons, polygon_of, responses, compliance },
             unknowns: Unknowns { units, contacts: problem.contacts.len(), free, bodies },
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
@@ -184,7 +188,7 @@ impl<'a> StepSystem<'a> {
 
     /// Whether flow is associated everywhere: then every step is a monotone problem.
     pub fn monotone(&self) -> bool {
-        self.piecewise_linear() && self.laws.polygons.iter().all(|law| !law.has_other_flow())
+        self.piecewise_linear() && self.laws.polygons.iter().all(|law| !law.is_non_associated())
     }
 
     /// Whether with small displacements every law is one of facets.
@@ -227,12 +231,8 @@ impl<'a> StepSystem<'a> {
     }
 
     /// The facets of a contact point, where its law has that form.
-    pub fn law(&self, contact: usize) -> Option<&Polygon> {
-        match self.problem.contacts[contact].law {
-            ContactLaw::Bonded => None,
-            ContactLaw::Law(_) if self.laws.responses.is(contact) => None,
-            ContactLaw::Law(law) => Some(&self.laws.polygons[law]),
-        }
+    pub fn law(&self, contact: usize) -> Option<&YieldPolygon> {
+        self.laws.polygon_of[contact].map(|law| &self.laws.polygons[law])
     }
 
     /// ρ of a contact point: the inverse of its own compliance \[N/m\].

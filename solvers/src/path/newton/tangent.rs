@@ -1,9 +1,9 @@
 //! Rates of converged states with their contact modes held, and the modes that a state asks for.
 
+use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::control_row::{add_weighted_gaps, control_row, control_value};
 use super::derivatives::Hessian;
-use super::law::ContactMode;
 use super::linearised::solve_linear;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
@@ -118,7 +118,7 @@ pub(super) fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
 /// The rate of a solution of the linear equations.
 pub(super) fn tangent_from(system: &StepSystem, x: &[f64], state: &State, hessian: &Hessian) -> Tangent {
     let rows = &hessian.rows(&system.unknowns).gaps;
-    let along = |i: usize| rows.along(i, x) * system.units().displacement;
+    let along = |i: usize| rows.row_dot(i, x) * system.units().displacement;
     let gap = (0..state.gap.len()).map(|c| [along(2 * c), along(2 * c + 1)]).collect();
     Tangent { gap, ..tangent_without_gaps(system, x) }
 }

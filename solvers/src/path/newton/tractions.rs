@@ -12,7 +12,7 @@
 
 use std::sync::Arc;
 use voussoir_core::law::{InterfaceResponse, TractionPoint};
-use voussoir_core::path::{ContactLaw, PathProblem};
+use voussoir_core::path::PathProblem;
 
 /// Contact points of one law, and where their states stand.
 #[derive(Debug, Clone)]
@@ -45,22 +45,21 @@ pub(super) struct TractionUpdates {
 
 impl Responses {
     pub fn new(problem: &PathProblem) -> Self {
-        let mut groups: Vec<(usize, Group)> = Vec::new();
+        let mut groups: Vec<Group> = Vec::new();
         let mut is = vec![false; problem.contacts.len()];
         let mut place = 0;
         for (contact, c) in problem.contacts.iter().enumerate() {
-            let ContactLaw::Law(index) = c.law else { continue };
-            let Some(Some(law)) = problem.responses.get(index) else { continue };
+            let Some(law) = c.law.response() else { continue };
             is[contact] = true;
-            let at = groups.iter().position(|(of, _)| *of == index).unwrap_or_else(|| {
-                groups.push((index, Group { law: law.clone(), points: Vec::new(), places: Vec::new() }));
+            let at = groups.iter().position(|group| Arc::ptr_eq(&group.law, law)).unwrap_or_else(|| {
+                groups.push(Group { law: law.clone(), points: Vec::new(), places: Vec::new() });
                 groups.len() - 1
             });
-            groups[at].1.points.push(contact);
-            groups[at].1.places.push(place);
+            groups[at].points.push(contact);
+            groups[at].places.push(place);
             place += law.state_size();
         }
-        Responses { groups: groups.into_iter().map(|(_, group)| group).collect(), is }
+        Responses { groups, is }
     }
 
     pub fn is_empty(&self) -> bool {

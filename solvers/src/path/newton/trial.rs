@@ -1,12 +1,12 @@
 //! A step that is tried: its predictor, its control, Newton's method and what it falls back on, and whether
 //! what has converged lies along the path.
 
+use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::control_row::work_along;
 use super::creeping::refuse_creeping;
 use super::following::{Following, per_tangent};
 use super::inelastic::plastic_work;
-use super::law::ContactMode;
 use super::measure::{increment_along, tangent_size};
 use super::pivot::by_homotopy;
 use super::softening::softening_step;
@@ -185,7 +185,7 @@ fn judge(
     // Friction that is not associated: several states may belong to one load. A state far from
     // what both ends' rates can reach is another branch.
     let slides = (0..next.mode.len())
-        .any(|c| next.mode[c] != tracer.state.mode[c] && tracer.system.law(c).is_some_and(|law| law.has_other_flow()));
+        .any(|c| next.mode[c] != tracer.state.mode[c] && tracer.system.law(c).is_some_and(|law| law.is_non_associated()));
     if slides && !tracer.strategy.passes_limit_points() {
         let after = tangent_at(&mut tracer.system, &tracer.state, next, &Control::Factor(next.factor));
         let Some(after) = after else { return no("the state has no rate under growing load") };

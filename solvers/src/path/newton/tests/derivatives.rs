@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Rotation2};
 use super::body;
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathProblem, Sliding};
+use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, PointLaw, Sliding};
 
 /// A symmetric positive definite matrix of plausible entries.
 fn flexibility(rows: usize) -> DMatrix<f64> {
@@ -38,7 +38,7 @@ fn chain() -> PathProblem {
                 plus: Attachment { body: i + 1, slot: slots[i].1 },
                 area: 1.0,
                 gap: 0.01,
-                law: ContactLaw::Bonded,
+                law: PointLaw::Bonded,
                 compliance: [0.003, 0.007],
                 sliding: Sliding::middle(0.0),
             }
@@ -53,8 +53,6 @@ fn chain() -> PathProblem {
         bodies,
         body_of: vec![0, 1, 2, 3],
         contacts,
-        facets: vec![],
-        responses: Vec::new(),
         load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
         length: 3.0,
         counters: Counters::new(),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{Kept, body, settings};
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathProblem, PathSolver, Sliding, Unobserved};
+use voussoir_core::path::{Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathProblem, PathSolver, PointLaw, Sliding, Unobserved};
 
 /// Two rigid bars, hinged to each other at the crown and to the ground by a hinge of compliance c in
 /// both directions: the truss of von Mises.
@@ -28,7 +28,7 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         plus: Attachment { body: plus, slot: None },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Bonded,
+        law: PointLaw::Bonded,
         compliance: [compliance; 2],
         sliding: Sliding::middle(0.0),
     };
@@ -43,8 +43,6 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
         bodies,
         body_of: vec![0, 1, 2],
         contacts,
-        facets: vec![],
-        responses: Vec::new(),
         load_steps: vec![LoadStep {
             stage: 0,
             gravity: false,

@@ -11,7 +11,7 @@ use super::{Kept, settings};
 use voussoir_core::law::Facet;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, ContactLaw, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver, Sliding, Unobserved};
+use voussoir_core::path::{Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver, PointLaw, Sliding, Unobserved};
 
 /// One contact point on the ground, held by springs K over (t, n): the two-degree-of-freedom example.
 fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, LoadStepEnd)>) -> PathProblem {
@@ -43,7 +43,7 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, L
         plus: Attachment { body: 0, slot: Some(0) },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Law(0),
+        law: PointLaw::Facets(vec![Facet::opening(0.0), left, right].into()),
         compliance: [0.0; 2],
         sliding: Sliding::middle(0.0),
     };
@@ -51,8 +51,6 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, L
         bodies: vec![block, ground],
         body_of: vec![0, 1],
         contacts: vec![contact],
-        facets: vec![vec![Facet::opening(0.0), left, right]],
-        responses: Vec::new(),
         load_steps: load_steps
             .into_iter()
             .map(|(f, end)| LoadStep {

@@ -10,7 +10,7 @@ use voussoir_core::elastic::{Condenser, IsotropicElastic, MeshDensity};
 use voussoir_core::law::{Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises};
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, ContactLaw, LoadStep, LoadStepEnd, Loading, PathProblem, Sliding};
+use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, PointLaw, Sliding};
 
 /// Von Mises with linear hardening H = E / 10, radial return (Simo & Hughes 1998, box 3.2).
 #[derive(Debug)]
@@ -91,7 +91,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         plus: Attachment { body: 1, slot: Some(slot) },
         area: 1.0,
         gap: 0.0,
-        law: ContactLaw::Bonded,
+        law: PointLaw::Bonded,
         compliance: [0.0; 2],
         sliding: Sliding::middle(0.0),
     });
@@ -103,9 +103,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         bodies: vec![ground, block],
         body_of: vec![0, 1],
         contacts: contacts.collect(),
-        facets: Vec::new(),
         load_steps: vec![load_step],
-        responses: vec![],
         length: 1.0,
         counters: Counters::new(),
     };

@@ -1,14 +1,16 @@
-//! Cells of a contact point's law, their walls and which cell lies behind each wall.
+//! The normal fan of a law's yield polygon: its cells, their boundaries and the neighbour across each boundary.
 //!
 //! In a cell the law of a step is two linear equations: Δg = 0 (inside), a·r = b A and Δg ∥ d (on a
-//! facet), r = corner A (a pair of facets). Its walls are linear in (r, Δg): slack b A − a·r of other
-//! facets, multipliers γ of its own. The cells cover the plane of z = r − ρ Δg once.
+//! facet), r = corner A (a pair of facets). Its boundaries are linear in (r, Δg): slack b A − a·r of other
+//! facets, multipliers γ of its own. The cells cover the plane of z = r − ρ Δg once (Robinson 1992, Math.
+//! Operations Research 17: the normal manifold).
 
+use super::facet::dot;
 use voussoir_core::law::Facet;
 
-/// What a contact point does in a cell.
+/// A cell: the facets that are active in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::path) enum Cell {
+pub enum Cell {
     /// No facet.
     Inside,
     /// On one facet.
@@ -17,52 +19,53 @@ pub(in crate::path) enum Cell {
     Pair(usize, [usize; 2]),
 }
 
-/// A wall of a cell: slack = bound × area − force·r − gap·Δg ≥ 0 inside.
+/// A boundary of a cell: slack = bound × area − force·r − gap·Δg ≥ 0 inside.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::path) struct Wall {
+pub struct Boundary {
     bound: f64,
     force: [f64; 2],
     gap: [f64; 2],
-    /// The cell behind it, and which of that cell's walls this is from there.
-    pub behind: (usize, usize),
+    /// The cell across it, and which of that cell's boundaries this is from there.
+    pub neighbour: (usize, usize),
 }
 
-impl Wall {
-    fn slack_of(facet: &Facet) -> Wall {
-        Wall { bound: facet.bound, force: facet.normal, gap: [0.0; 2], behind: (0, 0) }
+impl Boundary {
+    fn slack_of(facet: &Facet) -> Boundary {
+        Boundary { bound: facet.bound, force: facet.normal, gap: [0.0; 2], neighbour: (0, 0) }
     }
 
-    fn multiplier(gap: [f64; 2]) -> Wall {
-        Wall { bound: 0.0, force: [0.0; 2], gap, behind: (0, 0) }
+    fn multiplier(gap: [f64; 2]) -> Boundary {
+        Boundary { bound: 0.0, force: [0.0; 2], gap, neighbour: (0, 0) }
     }
 
-    /// How far the state is from the wall.
+    /// How far a state is from the boundary.
     pub fn slack(&self, force: [f64; 2], gap: [f64; 2], area: f64) -> f64 {
-        self.bound * area + self.speed(force, gap)
+        self.bound * area + self.slack_rate(force, gap)
     }
 
     /// Rate of the slack.
-    pub fn speed(&self, force: [f64; 2], gap: [f64; 2]) -> f64 {
-        -(self.force[0] * force[0] + self.force[1] * force[1]) - (self.gap[0] * gap[0] + self.gap[1] * gap[1])
+    pub fn slack_rate(&self, force: [f64; 2], gap: [f64; 2]) -> f64 {
+        -dot(self.force, force) - dot(self.gap, gap)
     }
 }
 
 /// All cells of a law: inside, one per facet, one per pair of facets at a corner.
 #[derive(Debug, Clone, Default)]
-pub(in crate::path) struct Cells {
-    /// Cells and walls.
-    pub cells: Vec<(Cell, Vec<Wall>)>,
+pub struct NormalFan {
+    /// Cells with their boundaries.
+    pub cells: Vec<(Cell, Vec<Boundary>)>,
     /// (corner, facets) of the cells of pairs.
     pairs: Vec<(usize, [usize; 2])>,
     facets: usize,
 }
 
-impl Cells {
+impl NormalFan {
+    /// Of facets and corners, with the pairs of facets that may be active there.
     pub fn new(facets: &[Facet], corners: &[([f64; 2], Vec<[usize; 2]>)]) -> Self {
         let n = facets.len();
         let pairs: Vec<(usize, [usize; 2])> =
             corners.iter().enumerate().flat_map(|(k, (_, all))| all.iter().map(move |p| (k, *p))).collect();
-        // The walls of a facet: its multiplier, then the other facets of the pairs it is part of.
+        // The boundaries of a facet: its multiplier, then the other facets of the pairs it is part of.
         let on = |i: usize| -> Vec<(usize, usize)> {
             let other = |pair: &[usize; 2]| match *pair {
                 [a, b] if a == i => Some(b),
@@ -72,50 +75,51 @@ impl Cells {
             pairs.iter().enumerate().filter_map(|(p, (_, pair))| other(pair).map(|j| (p, j))).collect()
         };
         let mut cells = Vec::with_capacity(1 + n + pairs.len());
-        let inside = facets.iter().enumerate().map(|(i, f)| Wall { behind: (1 + i, 0), ..Wall::slack_of(f) });
+        let inside =
+            facets.iter().enumerate().map(|(i, f)| Boundary { neighbour: (1 + i, 0), ..Boundary::slack_of(f) });
         cells.push((Cell::Inside, inside.collect::<Vec<_>>()));
         for (i, f) in facets.iter().enumerate() {
             let square = f.flow[0] * f.flow[0] + f.flow[1] * f.flow[1];
-            let own = Wall { behind: (0, i), ..Wall::multiplier(f.flow.map(|d| d / square)) };
-            let mut walls = vec![own];
+            let own = Boundary { neighbour: (0, i), ..Boundary::multiplier(f.flow.map(|d| d / square)) };
+            let mut boundaries = vec![own];
             for (p, j) in on(i) {
                 let place = usize::from(pairs[p].1[1] == j);
-                walls.push(Wall { behind: (1 + n + p, place), ..Wall::slack_of(&facets[j]) });
+                boundaries.push(Boundary { neighbour: (1 + n + p, place), ..Boundary::slack_of(&facets[j]) });
             }
-            cells.push((Cell::Facet(i), walls));
+            cells.push((Cell::Facet(i), boundaries));
         }
         for (p, &(k, pair)) in pairs.iter().enumerate() {
             let (d, e) = (facets[pair[0]].flow, facets[pair[1]].flow);
             let determinant = d[0] * e[1] - d[1] * e[0];
             let rows = [[e[1] / determinant, -e[0] / determinant], [-d[1] / determinant, d[0] / determinant]];
-            let walls = (0..2).map(|side| {
+            let boundaries = (0..2).map(|side| {
                 // The multiplier of pair[side] ends: the other facet is left, or another pair with it.
                 let (ends, stays) = (pair[side], pair[1 - side]);
                 let another = pairs
                     .iter()
                     .enumerate()
                     .find(|(q, (l, other))| *q != p && *l == k && other.contains(&stays) && !other.contains(&ends));
-                let behind = match another {
+                let neighbour = match another {
                     Some((q, (_, other))) => (1 + n + q, usize::from(other[0] == stays)),
                     None => {
-                        let walls = on(stays);
-                        (1 + stays, 1 + walls.iter().position(|(q, _)| *q == p).unwrap_or(0))
+                        let boundaries = on(stays);
+                        (1 + stays, 1 + boundaries.iter().position(|(q, _)| *q == p).unwrap_or(0))
                     }
                 };
-                Wall { behind, ..Wall::multiplier(rows[side]) }
+                Boundary { neighbour, ..Boundary::multiplier(rows[side]) }
             });
-            cells.push((Cell::Pair(k, pair), walls.collect()));
+            cells.push((Cell::Pair(k, pair), boundaries.collect()));
         }
-        Cells { cells, pairs, facets: n }
+        NormalFan { cells, pairs, facets: n }
     }
 
-    /// Takes the walls away at which a facet stops flowing: its multiplier may have any sign.
-    pub fn free(&mut self, facet: usize) {
-        for (cell, walls) in &mut self.cells {
+    /// Takes the boundaries away at which a facet stops flowing: its multiplier may have any sign.
+    pub fn free_multiplier(&mut self, facet: usize) {
+        for (cell, boundaries) in &mut self.cells {
             match *cell {
-                Cell::Facet(i) if i == facet => walls[0].bound = f64::INFINITY,
+                Cell::Facet(i) if i == facet => boundaries[0].bound = f64::INFINITY,
                 Cell::Pair(_, pair) => {
-                    (0..2).filter(|k| pair[*k] == facet).for_each(|k| walls[k].bound = f64::INFINITY);
+                    (0..2).filter(|k| pair[*k] == facet).for_each(|k| boundaries[k].bound = f64::INFINITY);
                 }
                 _ => {}
             }
@@ -131,12 +135,12 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::newton::law::Polygon;
+    use crate::contact::yield_polygon::YieldPolygon;
 
-    /// Going through a wall and back ends where it began; but the opening facet of dry friction has no
+    /// Crossing a boundary and back ends where it began; but the opening facet of dry friction has no
     /// width, and is left for the apex only.
     #[test]
-    fn walls_are_walls_from_both_sides() {
+    fn neighbours_share_their_boundary() {
         let laws = [
             vec![Facet::opening(0.0)],
             [vec![Facet::opening(0.0)], Facet::friction(0.6, 0.0, 0.2).to_vec()].concat(),
@@ -144,11 +148,11 @@ mod tests {
         ];
         let (mut both, mut one) = (0, 0);
         for facets in laws {
-            let cells = Polygon::new(&facets).cells.cells;
-            for (index, (_, walls)) in cells.iter().enumerate() {
-                for (k, wall) in walls.iter().enumerate() {
-                    let (to, back) = wall.behind;
-                    if cells[to].1[back].behind == (index, k) {
+            let cells = YieldPolygon::new(&facets).fan.cells;
+            for (index, (_, boundaries)) in cells.iter().enumerate() {
+                for (k, boundary) in boundaries.iter().enumerate() {
+                    let (to, back) = boundary.neighbour;
+                    if cells[to].1[back].neighbour == (index, k) {
                         both += 1;
                     } else {
                         one += 1;

@@ -1,21 +1,22 @@
-//! The rate problem reduced to some points on a factorisation: ṙ = S ġ + s λ̇ over those whose piece
-//! is open, while all others keep theirs, whichever the factorised matrix has for them.
+//! The Schur complement of a factorisation on some contact points: ṙ = S ġ + s λ̇ over those whose mode is open,
+//! while all others keep theirs, whichever the factorised matrix has for them.
 
-use super::base::{Base, rows};
-use super::point::Point;
-use super::rate::{Piece, Rate, RateProblem};
+use super::factorisation::UpdatedFactorisation;
+use super::point::{Point, active_points};
 use super::system::{Load, System};
-use super::trace::Tracer;
+use crate::contact::mode::ContactMode;
+use crate::rate::problem::{Rate, RateProblem};
 use nalgebra::{DMatrix, DVector};
 
 /// A rate problem over points with the way back to all unknowns.
-pub struct Local<'a> {
-    /// Over the points whose piece is open.
+pub struct SchurComplement<'a> {
+    /// Over the points whose mode is open.
     pub rate: RateProblem<'a>,
-    system: &'a System,
-    /// Those points, then others whose piece is not the factorised one.
+    /// The problem in its units.
+    pub system: &'a System,
+    /// Those points, then others whose mode is not the factorised one.
     points: Vec<usize>,
-    /// Number of points whose piece is open.
+    /// Number of points whose mode is open.
     open: usize,
     /// (ṙ, ġ) of all of them per ε and, last, λ̇.
     response: DMatrix<f64>,
@@ -23,7 +24,7 @@ pub struct Local<'a> {
     epsilon: DMatrix<f64>,
 }
 
-/// Rows that fix ε of points times what they see.
+/// Rows that fix ε of points times (ṙ, ġ) there.
 fn picked(picks: &[[[f64; 4]; 2]], seen: &DMatrix<f64>, columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(2 * picks.len(), columns, |i, j| {
         let (k, pick) = (i / 2, &picks[i / 2][i % 2]);
@@ -31,26 +32,26 @@ fn picked(picks: &[[[f64; 4]; 2]], seen: &DMatrix<f64>, columns: usize) -> DMatr
     })
 }
 
-impl<'a> Local<'a> {
-    /// Reduces to the `open` points; all others keep their `pieces`. `None` where linear algebra fails.
+impl<'a> SchurComplement<'a> {
+    /// Reduces to the `open` points; all others keep their `modes`. `None` where linear algebra fails.
     pub fn new(
         (system, all): (&'a System, &[Point]),
-        base: &mut Base,
+        base: &mut UpdatedFactorisation,
         (load_step, load): (usize, &Load),
         open: &[usize],
-        pieces: &[Piece],
+        modes: &[ContactMode],
         solves: &mut u64,
     ) -> Option<Self> {
         let mut points = open.to_vec();
-        let changed = (0..pieces.len()).filter(|c| pieces[*c] != base.pieces[*c]);
+        let changed = (0..modes.len()).filter(|c| modes[*c] != base.modes[*c]);
         points.extend(changed.filter(|c| !open.contains(c)));
         let (n, m) = (points.len(), open.len());
         base.respond(system, &points, solves)?;
         base.load_rate(system, load_step, load)?;
         let response = base.local(system, &points, load);
-        // Rows that fix ε: ġ of the open points, the piece of the others.
-        let piece = |(k, c): (usize, &usize)| rows(system, *c, if k < m { Piece::Stick } else { pieces[*c] });
-        let picks: Vec<[[f64; 4]; 2]> = points.iter().enumerate().map(piece).collect::<Option<_>>()?;
+        // Rows that fix ε: ġ of the open points, the mode of the others.
+        let mode = |(k, c): (usize, &usize)| system.rows(*c, if k < m { ContactMode::Stick } else { modes[*c] });
+        let picks: Vec<[[f64; 4]; 2]> = points.iter().enumerate().map(mode).collect::<Option<_>>()?;
         let fixed = picked(&picks, &response, 2 * n + 1);
         let mut right = DMatrix::zeros(2 * n, 2 * m + 1);
         (0..2 * m).for_each(|i| right[(i, i)] = 1.0);
@@ -62,16 +63,21 @@ impl<'a> Local<'a> {
         let responses = response.view((0, 0), (4 * m, 2 * n)) * &epsilon;
         let row = |i: usize| 4 * (i / 2) + i % 2;
         let rate = RateProblem {
-            points: Tracer::verges(system, all, open),
+            points: active_points(system, all, open),
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
             load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
         };
-        Some(Local { rate, system, points, open: m, response, epsilon })
+        Some(SchurComplement { rate, system, points, open: m, response, epsilon })
     }
 
     /// All unknowns of a solution. `None` where the response to the load is not known.
-    pub fn combine(&self, base: &mut Base, (load_step, load): (usize, &Load), rate: &Rate) -> Option<Vec<f64>> {
+    pub fn combine(
+        &self,
+        base: &mut UpdatedFactorisation,
+        (load_step, load): (usize, &Load),
+        rate: &Rate,
+    ) -> Option<Vec<f64>> {
         let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
         gaps.push(rate.factor);
         let epsilon = &self.epsilon * DVector::from_vec(gaps);
@@ -86,17 +92,23 @@ impl<'a> Local<'a> {
     }
 
     /// What takes away what a direction leaves of the equations: one step of refinement with the points'
-    /// `pieces`, or, where these are `still` (a mechanism: with its pieces nothing holds it), with the gaps
+    /// `modes`, or, where these are `still` (a mechanism: with its modes nothing holds it), with the gaps
     /// of the open points held. `None` where linear algebra fails.
-    pub fn mended(&self, base: &Base, pieces: &[Piece], still: bool, left: &[f64]) -> Option<Vec<f64>> {
+    pub fn refinement(
+        &self,
+        base: &UpdatedFactorisation,
+        modes: &[ContactMode],
+        still: bool,
+        left: &[f64],
+    ) -> Option<Vec<f64>> {
         let n = self.points.len();
         let mut right = left.to_vec();
         self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
         // Where only these points are left over, nothing else is to be solved.
         let y = if right.iter().any(|v| *v != 0.0) { base.kept(&right)? } else { base.nothing().1 };
         let held = |k: usize| still && k < self.open;
-        let piece = |(k, c): (usize, &usize)| rows(self.system, *c, if held(k) { Piece::Stick } else { pieces[*c] });
-        let picks: Vec<[[f64; 4]; 2]> = self.points.iter().enumerate().map(piece).collect::<Option<_>>()?;
+        let mode = |(k, c): (usize, &usize)| self.system.rows(*c, if held(k) { ContactMode::Stick } else { modes[*c] });
+        let picks: Vec<[[f64; 4]; 2]> = self.points.iter().enumerate().map(mode).collect::<Option<_>>()?;
         let seen = base.seen(self.system, &self.points, |c| [right[2 * c], right[2 * c + 1]], &y);
         let wanted = DVector::from_fn(2 * n, |i, _| {
             let (k, c) = (i / 2, self.points[i / 2]);

@@ -1,4 +1,4 @@
-//! Whether a linear complementarity problem has a solution: found, or proven to have none.
+//! Branching on a linear complementarity problem: a solution, or a proof that there is none.
 //!
 //! ```text
 //! w = q + M z,   w ≥ 0,   z ≥ 0,   w_i z_i = 0
@@ -12,8 +12,9 @@
 //! branched on again (conflict-directed backjumping: Prosser 1993, Computational Intelligence 9), and
 //! reasons are kept: a variable that one of them leaves no choice is decided at once.
 
-use crate::limit::least::dictionary::{Dictionary, Feasibility};
-use nalgebra::{DMatrix, DVector};
+use super::dense_simplex::{Dictionary, Feasibility};
+use super::lcp::Lcp;
+use nalgebra::DVector;
 
 /// w and z of solutions that are excluded are below this (entries of q and of the diagonal of M are of
 /// size one): multipliers that are rounding of zero are weighed with it.
@@ -25,19 +26,11 @@ const ROUNDING: f64 = 1e-14;
 /// Reasons that are kept.
 const KEPT: usize = 2000;
 
-/// w = `constant` + `matrix` z, to be scaled by the caller: both of size one.
-pub(in crate::path) struct Complementarity {
-    /// M.
-    pub matrix: DMatrix<f64>,
-    /// q.
-    pub constant: DVector<f64>,
-}
-
 /// What is known of the solutions.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::path) enum Known {
+pub enum LcpAnswer {
     /// There is none (with entries up to a million).
-    None,
+    NoSolution,
     /// z of one.
     Solution(Vec<f64>),
     /// The search ended before, and why.
@@ -45,59 +38,62 @@ pub(in crate::path) enum Known {
 }
 
 /// What a node of the search found.
-enum Found {
+enum Node {
     /// These variables cannot all be zero.
     Reason(Vec<usize>),
     Solution(Vec<f64>),
     Lost(String),
 }
 
-impl Complementarity {
-    /// Searches through at most so many nodes, each of which is a linear program; also how many there were.
-    pub fn search(&self, most: u64) -> (Known, u64) {
-        let n = self.constant.len();
-        let rows: Vec<f64> = (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|at| self.matrix[at]).collect();
-        let right = self.constant.iter().copied().collect();
-        let mut search = Search {
-            problem: self,
-            program: Dictionary::new(2 * n, (0..n).collect(), (n..2 * n).collect(), right, rows),
-            reasons: Vec::new(),
-            nodes: 0,
-            most,
-        };
-        let known = match search.node() {
-            Found::Reason(_) => Known::None,
-            Found::Solution(z) => Known::Solution(z),
-            Found::Lost(why) => Known::Undecided(why),
-        };
-        (known, search.nodes)
-    }
+/// Searches through at most so many nodes, each of which is a linear program; also how many there were. The
+/// problem is scaled by the caller: M and q of size one.
+pub fn solve_by_branching(problem: &Lcp, most: u64) -> (LcpAnswer, u64) {
+    let n = problem.constant.len();
+    let rows: Vec<f64> = (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|at| problem.matrix[at]).collect();
+    let right = problem.constant.iter().copied().collect();
+    let mut search = Search {
+        problem,
+        program: Dictionary::new(2 * n, (0..n).collect(), (n..2 * n).collect(), right, rows),
+        reasons: Vec::new(),
+        nodes: 0,
+        most,
+    };
+    let answer = match search.node() {
+        Node::Reason(_) => LcpAnswer::NoSolution,
+        Node::Solution(z) => LcpAnswer::Solution(z),
+        Node::Lost(why) => LcpAnswer::Undecided(why),
+    };
+    (answer, search.nodes)
+}
 
-    /// Variables that must be zero for the multipliers' contradiction; `None` where there is none beyond
-    /// rounding. `sense`: the sign of the coefficients that contradict.
-    fn reason(&self, multipliers: &[(usize, f64)], sense: f64, fixed: impl Fn(usize) -> bool) -> Option<Vec<usize>> {
-        let n = self.constant.len();
-        let mut y = DVector::zeros(n);
-        multipliers.iter().for_each(|&(i, value)| y[i] = sense * value);
-        let right = y.dot(&self.constant);
-        let by = -self.matrix.tr_mul(&y);
-        let coefficients = y.iter().chain(by.iter());
-        let size = coefficients.clone().fold(0.0, |a: f64, c| a.max(c.abs()));
-        // Σ c x = right < 0 with x ≥ 0: impossible where no c < 0 is left.
-        let (mut reason, mut against) = (Vec::new(), 0.0);
-        for (variable, &c) in coefficients.enumerate().filter(|(_, c)| **c < 0.0) {
-            if !fixed(variable) {
-                against -= c;
-            } else if c < -ROUNDING * size {
-                reason.push(variable);
-            }
+/// Variables that must be zero for the multipliers' contradiction; `None` where there is none beyond
+/// rounding. `sense`: the sign of the coefficients that contradict.
+fn reason(
+    problem: &Lcp,
+    multipliers: &[(usize, f64)],
+    sense: f64,
+    fixed: impl Fn(usize) -> bool,
+) -> Option<Vec<usize>> {
+    let mut y = DVector::zeros(problem.constant.len());
+    multipliers.iter().for_each(|&(i, value)| y[i] = sense * value);
+    let right = y.dot(&problem.constant);
+    let by = -problem.matrix.tr_mul(&y);
+    let coefficients = y.iter().chain(by.iter());
+    let size = coefficients.clone().fold(0.0, |a: f64, c| a.max(c.abs()));
+    // Σ c x = right < 0 with x ≥ 0: impossible where no c < 0 is left.
+    let (mut reason, mut against) = (Vec::new(), 0.0);
+    for (variable, &c) in coefficients.enumerate().filter(|(_, c)| **c < 0.0) {
+        if !fixed(variable) {
+            against -= c;
+        } else if c < -ROUNDING * size {
+            reason.push(variable);
         }
-        (right < 0.0 && LARGEST * against < -0.5 * right).then_some(reason)
     }
+    (right < 0.0 && LARGEST * against < -0.5 * right).then_some(reason)
 }
 
 struct Search<'a> {
-    problem: &'a Complementarity,
+    problem: &'a Lcp,
     /// Variables: w, then z.
     program: Dictionary,
     reasons: Vec<Vec<usize>>,
@@ -129,10 +125,10 @@ impl Search<'_> {
         Ok(forced)
     }
 
-    fn node(&mut self) -> Found {
+    fn node(&mut self) -> Node {
         let n = self.pairs();
         let forced = match self.known() {
-            Err(reason) => return Found::Reason(reason),
+            Err(reason) => return Node::Reason(reason),
             Ok(forced) => forced,
         };
         if let Some(x) = forced {
@@ -140,7 +136,7 @@ impl Search<'_> {
         }
         self.nodes += 1;
         if self.nodes > self.most {
-            return Found::Lost(format!("{} linear programs were not enough", self.most));
+            return Node::Lost(format!("{} linear programs were not enough", self.most));
         }
         let open = |this: &Self, i: usize| !this.program.is_fixed(i) && !this.program.is_fixed(i + n);
         let mut chosen = None;
@@ -155,13 +151,13 @@ impl Search<'_> {
                         // The smaller of the two first.
                         chosen = Some(if w[i] / most_w < z[i] / most_z { i } else { i + n });
                     }
-                    _ => return Found::Solution(z),
+                    _ => return Node::Solution(z),
                 }
             }
             Feasibility::Reason(_) => {
                 let reason = self.program.refutation().and_then(|(multipliers, sense)| {
                     let own: Vec<(usize, f64)> = multipliers.into_iter().filter(|(x, _)| *x < n).collect();
-                    self.problem.reason(&own, sense, |x| self.program.is_fixed(x))
+                    reason(self.problem, &own, sense, |x| self.program.is_fixed(x))
                 });
                 if let Some(reason) = reason {
                     return self.learnt(reason);
@@ -171,19 +167,19 @@ impl Search<'_> {
         }
         match chosen.or_else(|| (0..n).find(|i| open(self, *i))) {
             Some(x) if open(self, x % n) => self.branch(x),
-            _ => Found::Lost("a linear program is decided by rounding".into()),
+            _ => Node::Lost("a linear program is decided by rounding".into()),
         }
     }
 
-    fn learnt(&mut self, reason: Vec<usize>) -> Found {
+    fn learnt(&mut self, reason: Vec<usize>) -> Node {
         if self.reasons.len() < KEPT {
             self.reasons.push(reason.clone());
         }
-        Found::Reason(reason)
+        Node::Reason(reason)
     }
 
     /// First this variable is zero, then its partner.
-    fn branch(&mut self, first: usize) -> Found {
+    fn branch(&mut self, first: usize) -> Node {
         let mut both = Vec::new();
         for x in [first, self.partner(first)] {
             self.program.fix(x, true);
@@ -191,8 +187,8 @@ impl Search<'_> {
             self.program.fix(x, false);
             match found {
                 // Without it there is none either.
-                Found::Reason(reason) if !reason.contains(&x) => return Found::Reason(reason),
-                Found::Reason(reason) => both.extend(reason.into_iter().filter(|y| *y != x)),
+                Node::Reason(reason) if !reason.contains(&x) => return Node::Reason(reason),
+                Node::Reason(reason) => both.extend(reason.into_iter().filter(|y| *y != x)),
                 other => return other,
             }
         }
@@ -205,10 +201,11 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::shuffle::Shuffle;
+    use crate::optimise::lcg::Lcg;
+    use nalgebra::DMatrix;
 
     /// Whether every choice of one zero per pair has no solution, by solving each.
-    fn none_by_enumeration(problem: &Complementarity) -> bool {
+    fn none_by_enumeration(problem: &Lcp) -> bool {
         let n = problem.constant.len();
         (0..1usize << n).all(|choice| {
             let moving: Vec<usize> = (0..n).filter(|i| choice >> i & 1 == 1).collect();
@@ -224,27 +221,27 @@ mod tests {
         })
     }
 
-    fn random(n: usize, random: &mut Shuffle) -> Complementarity {
+    fn random(n: usize, random: &mut Lcg) -> Lcp {
         let matrix = DMatrix::from_fn(n, n, |i, j| if i == j { 1.0 } else { 1.5 * random.next() });
-        Complementarity { matrix, constant: DVector::from_fn(n, |_, _| random.next()) }
+        Lcp { matrix, constant: DVector::from_fn(n, |_, _| random.next()) }
     }
 
     #[test]
     fn agrees_with_every_combination() {
-        let mut shuffle = Shuffle::new(5);
+        let mut random_numbers = Lcg::new(5);
         let (mut with, mut without) = (0, 0);
         for number in 0..600 {
-            let mut problem = random(2 + number % 7, &mut shuffle);
+            let mut problem = random(2 + number % 7, &mut random_numbers);
             // Rows that only help: fewer solutions.
             (0..number % 3).for_each(|i| problem.constant[i] = -1.0);
-            let (known, nodes) = problem.search(10_000);
+            let (answer, nodes) = solve_by_branching(&problem, 10_000);
             assert!(nodes < 500, "{nodes}");
-            match known {
-                Known::None => {
+            match answer {
+                LcpAnswer::NoSolution => {
                     assert!(none_by_enumeration(&problem), "{number}");
                     without += 1;
                 }
-                Known::Solution(z) => {
+                LcpAnswer::Solution(z) => {
                     assert!(!none_by_enumeration(&problem), "{number}");
                     let z = DVector::from_vec(z);
                     let w = &problem.constant + &problem.matrix * &z;
@@ -253,7 +250,7 @@ mod tests {
                     assert!((0..w.len()).all(|i| w[i].min(z[i]) < 1e-7 * size), "{w} {z}");
                     with += 1;
                 }
-                Known::Undecided(why) => panic!("{number}: {why}"),
+                LcpAnswer::Undecided(why) => panic!("{number}: {why}"),
             }
         }
         assert!(with > 100 && without > 100, "{with} {without}");
@@ -262,19 +259,19 @@ mod tests {
     /// Problems made around a solution, degenerate ones too, are never said to have none.
     #[test]
     fn a_planted_solution_is_found() {
-        let mut shuffle = Shuffle::new(11);
+        let mut random_numbers = Lcg::new(11);
         for number in 0..200 {
             let n = 5 + number % 20;
-            let mut problem = random(n, &mut shuffle);
+            let mut problem = random(n, &mut random_numbers);
             if number % 4 == 0 {
                 let same = problem.matrix.row(0).clone_owned();
                 problem.matrix.set_row(1, &same);
             }
-            let z = DVector::from_fn(n, |_, _| shuffle.next().max(0.0));
-            let w = DVector::from_fn(n, |i, _| if z[i] > 0.0 { 0.0 } else { (shuffle.next() + 0.5).max(0.0) });
+            let z = DVector::from_fn(n, |_, _| random_numbers.next().max(0.0));
+            let w = DVector::from_fn(n, |i, _| if z[i] > 0.0 { 0.0 } else { (random_numbers.next() + 0.5).max(0.0) });
             problem.constant = &w - &problem.matrix * &z;
-            let (known, nodes) = problem.search(100_000);
-            assert!(matches!(known, Known::Solution(_)), "{number}: {known:?} after {nodes}");
+            let (answer, nodes) = solve_by_branching(&problem, 100_000);
+            assert!(matches!(answer, LcpAnswer::Solution(_)), "{number}: {answer:?} after {nodes}");
         }
     }
 }

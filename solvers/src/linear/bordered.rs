@@ -15,14 +15,13 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use crate::path::condensed::{Condensed, pair};
-use crate::path::rows::Rows;
+use super::condensed::{Condensed, pair};
+use super::csr::CsrMatrix;
 use std::rc::Rc;
 use voussoir_core::linear::Analysis;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
-
 /// Least rate of the unknown that is held, relative to the greatest.
 const MOVES: f64 = 1e-4;
 
@@ -35,14 +34,14 @@ enum Last {
 }
 
 /// Factorised equations without a control of their own: they serve every control that is a border.
-pub(super) struct Held {
+pub struct BorderedFactors {
     equations: Condensed,
     last: Last,
 }
 
 /// Factorised equations with a control.
-pub(super) struct Bordered {
-    held: Rc<Held>,
+pub struct BorderedSystem {
+    held: Rc<BorderedFactors>,
     /// The control's row with c·w, where it is not part of the matrix.
     border: Option<(Vec<f64>, f64)>,
 }
@@ -62,12 +61,12 @@ fn few(control: &[f64]) -> Option<Vec<(usize, f64)>> {
     (entries().nth(SPARSE).is_none()).then(|| entries().map(|(j, v)| (j, *v)).collect())
 }
 
-impl Held {
+impl BorderedFactors {
     /// Factorises the equations above the last row, which the rows do not hold, with what the `control`
     /// asks for in its place. `None` where they are singular.
     pub fn new(
-        mut rows: Rows,
-        mut shifts: Rows,
+        mut rows: CsrMatrix,
+        mut shifts: CsrMatrix,
         contacts: usize,
         control: &[f64],
         analysis: &mut Analysis,
@@ -76,22 +75,22 @@ impl Held {
         let last = size - 1;
         shifts.end_row();
         if let Some(few) = few(control) {
-            rows.open().extend(&few);
+            rows.open_row().extend(&few);
             rows.end_row();
             let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
-            return Some(Held { equations, last: Last::Control(few) });
+            return Some(BorderedFactors { equations, last: Last::Control(few) });
         }
         let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
         let mut held = 2 * contacts + greatest(&control[2 * contacts..]);
         for again in [true, false] {
-            rows.open().push((held, 1.0));
+            rows.open_row().push((held, 1.0));
             rows.end_row();
             let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
             if let Some(w) = equations.apply(&end) {
                 let most = 2 * contacts + greatest(&w[2 * contacts..]);
                 if !again || w[held].abs() >= MOVES * w[most].abs() {
                     let kept = equations.kept_of(&w);
-                    return Some(Held { equations, last: Last::Unknown(w, kept) });
+                    return Some(BorderedFactors { equations, last: Last::Unknown(w, kept) });
                 }
                 held = most;
             } else {
@@ -113,14 +112,14 @@ impl Held {
     }
 }
 
-impl Bordered {
+impl BorderedSystem {
     /// With a control that the factorised equations serve. `None` where it is orthogonal to w.
-    pub fn new(held: Rc<Held>, control: &[f64]) -> Option<Self> {
+    pub fn new(held: Rc<BorderedFactors>, control: &[f64]) -> Option<Self> {
         let border = match &held.last {
             Last::Control(_) => None,
             Last::Unknown(w, _) => Some((control.to_vec(), Some(dot(control, w)).filter(|along| *along != 0.0)?)),
         };
-        Some(Bordered { held, border })
+        Some(BorderedSystem { held, border })
     }
 
     /// The equations above the control, the control's row in them or an unknown held in its place.
@@ -163,7 +162,7 @@ impl Bordered {
         // The row in the control's place is the control's, not that of the unknown that is held.
         let last = right.len() - 1;
         let mut above = right.to_vec();
-        above[last] = self.held.equations.along(last, x);
+        above[last] = self.held.equations.row_dot(last, x);
         let (mut left, error) = self.held.equations.errors(&above, x);
         let (mut own, mut size) = (right[last], right[last].abs());
         for (c, x) in control.iter().zip(x) {

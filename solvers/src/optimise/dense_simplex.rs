@@ -1,11 +1,11 @@
-//! A dense dictionary of non-negative variables on an affine space: feasibility, least values and
-//! reasons of infeasibility, for thousands of questions that differ in which variables are zero.
+//! Simplex method on a dense dictionary of non-negative variables: feasibility, least values and reasons of
+//! infeasibility, for thousands of linear programs that differ in which variables are fixed at zero.
 //!
 //! x_B = β + M x_N with x ≥ 0; some variables are *fixed* at zero for the time being. The dual
 //! simplex method restores x ≥ 0 after a change, the primal one minimises a linear form. A row
 //! whose right-hand side is negative and which no variable that is not fixed can raise refutes the
 //! system; the fixed variables that could are the reason. Equations and free variables are
-//! eliminated beforehand, so that a pivot is one sweep over a matrix of (redundants) × (rows).
+//! eliminated beforehand, so that a pivot is one sweep over a dense matrix.
 
 /// Bounds may be violated by this.
 pub const FEASIBLE: f64 = 1e-10;

@@ -1,6 +1,6 @@
 //! One section between events: its tangent, and the states of its points, brought up to date when asked.
 //!
-//! As long as no point changes its piece, everything in a section follows from its resultant:
+//! As long as no point changes its mode, everything in a section follows from its resultant:
 //!
 //! ```text
 //! h = H ξ̇         ṙ = −S h         ġ = C ṙ + h
@@ -8,13 +8,13 @@
 //! stick S = C⁻¹   free S = 0   facet S = t (d⊥)ᵀ / (d⊥·C t), t ⟂ a
 //! ```
 
+use super::progress::Progress;
 use super::section::{Place, Section};
-use crate::path::event::base::across;
-use crate::path::event::point::{Point, opening};
-use crate::path::event::rate::Piece;
-use crate::path::event::system::PointFacet;
+use crate::contact::facet::across;
+use crate::contact::mode::ContactMode;
+use crate::path::event::point::Point;
 use nalgebra::{Matrix2, Matrix3, Matrix3xX, Vector2, Vector3};
-use voussoir_core::law::FacetMode;
+use voussoir_core::law::{Facet, FacetMode};
 
 /// Condition of K, relative to all points stuck, above which its twist is an unknown of its own.
 const WEAK: f64 = 1e5;
@@ -46,12 +46,12 @@ pub struct Joint {
     /// Sense of the slip of open points that dilate, where it is the same for all of them: a section is looked
     /// at when it turns.
     pub slips: Option<f64>,
-    /// Whether a point has changed its piece since the tangent was found.
-    pub dirty: bool,
+    /// Whether a point has changed its mode since the tangent was found.
+    pub stale: bool,
     /// Whether points stand at facets that they may leave at any time.
-    pub restless: bool,
-    /// Number of points at the verge of a change.
-    pub verges: usize,
+    pub may_leave: bool,
+    /// Number of points of the active set.
+    pub active: usize,
     /// ṙ of each point when it was last looked at.
     pub rates: Vec<[f64; 2]>,
 }
@@ -66,13 +66,13 @@ pub struct Change {
     pub dissipated: f64,
 }
 
-/// S of a piece. `None` where the flow of a facet has no rate.
-fn tangent(place: &Place, facets: Option<&[PointFacet]>, piece: Piece) -> Option<Matrix2<f64>> {
-    Some(match piece {
-        Piece::Stick => place.stiffness,
-        Piece::Free | Piece::Corner(..) => Matrix2::zeros(),
-        Piece::Facet(f) => {
-            let facet = facets?.get(f)?;
+/// S of a mode. `None` where the flow of a facet has no rate.
+fn tangent(place: &Place, facets: Option<&[Facet]>, mode: ContactMode) -> Option<Matrix2<f64>> {
+    Some(match mode {
+        ContactMode::Stick => place.stiffness,
+        ContactMode::Open | ContactMode::Corner(..) => Matrix2::zeros(),
+        ContactMode::Facet(f) => {
+            let facet = facets?.get(f as usize)?;
             let (t, n) = (Vector2::new(-facet.normal[1], facet.normal[0]), Vector2::from(across(facet.flow)));
             let along = place.compliance * t;
             let rate = n.dot(&along);
@@ -100,19 +100,19 @@ impl Joint {
             allowed: 0.0,
             deadline: 0.0,
             slips: None,
-            dirty: true,
-            restless: true,
-            verges: 0,
+            stale: true,
+            may_leave: true,
+            active: 0,
             rates: vec![[0.0; 2]; n],
         }
     }
 
-    /// Finds the tangent of the points' pieces. `None` where a point has no rate of its own.
-    pub fn refresh(&mut self, section: &Section, facets: &[Option<Vec<PointFacet>>], points: &[Point]) -> Option<()> {
+    /// Finds the tangent of the points' modes. `None` where a point has no rate of its own.
+    pub fn refresh(&mut self, section: &Section, facets: &[Option<Vec<Facet>>], points: &[Point]) -> Option<()> {
         let (mut stuck, mut stiffness) = (Matrix3::zeros(), Matrix3::zeros());
         for (k, place) in section.places.iter().enumerate() {
             let point = &points[place.contact];
-            let s = tangent(place, facets[place.contact].as_deref(), point.piece)?;
+            let s = tangent(place, facets[place.contact].as_deref(), point.mode)?;
             self.tangents[k] = s;
             stiffness += place.rows.transpose() * s * place.rows;
             stuck += place.rows.transpose() * place.stiffness * place.rows;
@@ -130,22 +130,22 @@ impl Joint {
             .try_inverse()
             .filter(serves)
             .map(|inverse| Matrix3::from_fn(|i, j| inverse[(i, j)] * unit[i] * unit[j]));
-        self.dirty = false;
+        self.stale = false;
         Some(())
     }
 
-    /// Counts points at the verge of a change, and sees whether a piece is no longer the one of its tangent.
+    /// Counts points of the active set, and sees whether a mode is no longer the one of its tangent.
     pub fn count(&mut self, section: &Section, points: &[Point]) {
-        (self.restless, self.verges) = (false, 0);
+        (self.may_leave, self.active) = (false, 0);
         for place in &section.places {
             let point = &points[place.contact];
-            self.dirty |= point.settled().is_some_and(|piece| piece != point.piece);
-            self.verges += usize::from(point.settled().is_none());
-            self.restless |= match point.piece {
-                Piece::Stick => !point.active.is_empty(),
-                Piece::Free => !point.open(),
-                Piece::Facet(_) => !point.open() && point.active.len() > 1,
-                Piece::Corner(..) => point.active.len() > 2,
+            self.stale |= point.settled().is_some_and(|mode| mode != point.mode);
+            self.active += usize::from(point.settled().is_none());
+            self.may_leave |= match point.mode {
+                ContactMode::Stick => !point.active.is_empty(),
+                ContactMode::Open => !point.open(),
+                ContactMode::Facet(_) => !point.open() && point.active.len() > 1,
+                ContactMode::Corner(..) => point.active.len() > 2,
             };
         }
     }
@@ -161,18 +161,18 @@ impl Joint {
         Some(-(flexibility * rate))
     }
 
-    /// Brings its points up to date: with the clock's z = (X, s) and ∫ z dzᵀ, or, where the tangent cannot be
+    /// Brings its points up to date: with z = (X, s) and ∫ z dzᵀ, or, where the tangent cannot be
     /// inverted, by a `step` of the arc with a given ξ̇. Returns what each point gains.
-    pub fn touch(
+    pub fn update(
         &mut self,
         section: &Section,
-        (facets, points): (&[Option<Vec<PointFacet>>], &[Point]),
-        clock: &super::Clock,
+        (facets, points): (&[Option<Vec<Facet>>], &[Point]),
+        progress: &Progress,
         step: Option<(Vector3<f64>, f64)>,
         forces: &[f64],
     ) -> Vec<Change> {
-        let resultant = &self.statics * &clock.place;
-        let whole = &self.statics * &clock.area * self.statics.transpose();
+        let resultant = &self.statics * &progress.place;
+        let whole = &self.statics * &progress.area * self.statics.transpose();
         let (moved, area) = match (&self.flexibility, step) {
             (Some(flexibility), _) => {
                 let gained = resultant - self.stamp.0;
@@ -194,7 +194,7 @@ impl Joint {
             let c = place.contact;
             let own = facets[c].as_deref().unwrap_or_default();
             let force = Vector2::new(forces[2 * c], forces[2 * c + 1]);
-            self.change(k, place, (own, points[c].piece), force, &moved, &area)
+            self.change(k, place, (own, points[c].mode), force, &moved, &area)
         };
         section.places.iter().enumerate().map(change).collect()
     }
@@ -203,7 +203,7 @@ impl Joint {
         &self,
         k: usize,
         place: &Place,
-        (facets, piece): (&[PointFacet], Piece),
+        (facets, mode): (&[Facet], ContactMode),
         force: Vector2<f64>,
         moved: &Vector3<f64>,
         area: &Matrix3<f64>,
@@ -211,20 +211,21 @@ impl Joint {
         let h = &place.rows;
         let by_force = -(self.tangents[k] * h);
         let mut change = Change { force: by_force * moved, opening: 0.0, dissipated: 0.0 };
-        if piece == Piece::Stick {
+        if mode == ContactMode::Stick {
             return change;
         }
         let by_gap = place.compliance * by_force + h;
-        let opens = Vector2::from(opening(piece, facets, self.senses[k]));
+        let opens = Vector2::from(mode.opening(facets, self.senses[k]));
         change.opening = opens.dot(&(by_gap * moved));
-        if piece == Piece::Free {
+        if mode == ContactMode::Open {
             return change;
         }
         // Opening is reversible: what is left of the gap dissipates, −∫ r·dg_p.
-        let flow = match piece {
-            Piece::Facet(f) if facets[f].mode == FacetMode::Opening => facets[f].flow,
-            Piece::Corner(i, _) if facets[i].mode == FacetMode::Opening => facets[i].flow,
-            Piece::Corner(_, j) if facets[j].mode == FacetMode::Opening => facets[j].flow,
+        let is_opening = |f: u8| facets[f as usize].mode == FacetMode::Opening;
+        let flow = match mode {
+            ContactMode::Facet(f) if is_opening(f) => facets[f as usize].flow,
+            ContactMode::Corner(i, _) if is_opening(i) => facets[i as usize].flow,
+            ContactMode::Corner(_, j) if is_opening(j) => facets[j as usize].flow,
             _ => [0.0; 2],
         };
         let by_slip = by_gap + Vector2::from(flow) * (opens.transpose() * by_gap);
@@ -235,23 +236,23 @@ impl Joint {
     }
 
     /// h, ṙ and ġ of a point for ξ̇.
-    pub fn rates_of(&self, k: usize, place: &Place, piece: Piece, twist: &Vector3<f64>) -> [Vector2<f64>; 2] {
+    pub fn rates_of(&self, k: usize, place: &Place, mode: ContactMode, twist: &Vector3<f64>) -> [Vector2<f64>; 2] {
         let h = place.rows * twist;
         let force = -(self.tangents[k] * h);
-        let gap = if piece == Piece::Stick { Vector2::zeros() } else { place.compliance * force + h };
+        let gap = if mode == ContactMode::Stick { Vector2::zeros() } else { place.compliance * force + h };
         [force, gap]
     }
 
     /// By how much ṙ and ġ of a point change at most with a change of h of 1.
-    pub fn sensitivity(&self, k: usize, place: &Place, piece: Piece) -> [f64; 2] {
+    pub fn sensitivity(&self, k: usize, place: &Place, mode: ContactMode) -> [f64; 2] {
         let s = self.tangents[k];
-        let gap = if piece == Piece::Stick { 0.0 } else { (Matrix2::identity() - place.compliance * s).norm() };
+        let gap = if mode == ContactMode::Stick { 0.0 } else { (Matrix2::identity() - place.compliance * s).norm() };
         [s.norm(), gap]
     }
 
     /// By how much o changes at most with a change of ġ of 1.
-    pub fn opening_sensitivity(&self, k: usize, facets: &[PointFacet], piece: Piece) -> f64 {
-        Vector2::from(opening(piece, facets, self.senses[k])).norm()
+    pub fn opening_sensitivity(&self, k: usize, facets: &[Facet], mode: ContactMode) -> f64 {
+        Vector2::from(mode.opening(facets, self.senses[k])).norm()
     }
 
     /// Notes the sense of slip of an open point.

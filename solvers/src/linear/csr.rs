@@ -2,14 +2,14 @@
 
 use voussoir_core::linear::Entries;
 
-/// Rows of (column, value); repeated entries stay apart and add up in products.
+/// CsrMatrix of (column, value); repeated entries stay apart and add up in products.
 #[derive(Debug, Clone, Default)]
-pub(in crate::path) struct Rows {
+pub struct CsrMatrix {
     start: Vec<usize>,
     entries: Vec<(usize, f64)>,
 }
 
-impl Rows {
+impl CsrMatrix {
     /// Entries sorted by row, otherwise in their order.
     pub fn new(rows: usize, unsorted: &Entries) -> Self {
         let mut start = vec![0; rows + 1];
@@ -25,12 +25,12 @@ impl Rows {
             entries[next[i]] = (j, value);
             next[i] += 1;
         }
-        Rows { start, entries }
+        CsrMatrix { start, entries }
     }
 
     /// From rows one by one.
-    pub fn collect(rows: &[Vec<(usize, f64)>]) -> Self {
-        let mut all = Rows { start: vec![0], entries: Vec::with_capacity(rows.iter().map(Vec::len).sum()) };
+    pub fn from_rows(rows: &[Vec<(usize, f64)>]) -> Self {
+        let mut all = CsrMatrix { start: vec![0], entries: Vec::with_capacity(rows.iter().map(Vec::len).sum()) };
         for row in rows {
             all.entries.extend(row);
             all.start.push(all.entries.len());
@@ -39,18 +39,18 @@ impl Rows {
     }
 
     /// No row.
-    pub fn none(capacity: usize) -> Self {
-        Rows { start: vec![0], entries: Vec::with_capacity(capacity) }
+    pub fn with_capacity(capacity: usize) -> Self {
+        CsrMatrix { start: vec![0], entries: Vec::with_capacity(capacity) }
     }
 
-    /// Rows without entries.
+    /// CsrMatrix without entries.
     pub fn empty(rows: usize) -> Self {
-        Rows { start: vec![0; rows + 1], entries: Vec::new() }
+        CsrMatrix { start: vec![0; rows + 1], entries: Vec::new() }
     }
 
-    /// Rows with those of others added.
-    pub fn with(&self, others: &Rows) -> Self {
-        let mut both = Rows::none(self.entries.len() + others.entries.len());
+    /// CsrMatrix with those of others added.
+    pub fn with(&self, others: &CsrMatrix) -> Self {
+        let mut both = CsrMatrix::with_capacity(self.entries.len() + others.entries.len());
         for i in 0..self.len() {
             both.entries.extend_from_slice(self.row(i));
             both.entries.extend_from_slice(others.row(i));
@@ -59,8 +59,8 @@ impl Rows {
         both
     }
 
-    /// Entries of the row that [`Rows::end_row`] ends, behind those of the rows before.
-    pub fn open(&mut self) -> &mut Vec<(usize, f64)> {
+    /// Entries of the row that [`CsrMatrix::end_row`] ends, after those of the rows before.
+    pub fn open_row(&mut self) -> &mut Vec<(usize, f64)> {
         &mut self.entries
     }
 
@@ -88,7 +88,7 @@ impl Rows {
     }
 
     /// Row i times a vector.
-    pub fn along(&self, i: usize, x: &[f64]) -> f64 {
+    pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
         self.row(i).iter().map(|&(j, value)| value * x[j]).sum()
     }
 }

@@ -15,7 +15,7 @@
 //! the size of the motions: residuals are those of all the equations, and one or two steps of iterative
 //! refinement leave the accuracy of the equations before condensation.
 
-use super::rows::Rows;
+use super::csr::CsrMatrix;
 use voussoir_core::linear::{Analysis, Entries, SparseLu};
 
 /// Own equations of a point must be at least this strong, relative to the others in its rows.
@@ -39,9 +39,9 @@ impl Point {
     }
 }
 
-/// SparseLdlt equations, with the equations themselves for residuals.
-pub(in crate::path) struct Condensed {
-    rows: Rows,
+/// Factorised equations, with the equations themselves for residuals.
+pub struct Condensed {
+    rows: CsrMatrix,
     points: Vec<Point>,
     /// E: kept column, values in both rows of a point.
     across: Vec<(usize, [f64; 2])>,
@@ -57,7 +57,7 @@ pub(in crate::path) struct Condensed {
 }
 
 /// A value in one of two places.
-pub(in crate::path) fn pair(k: usize, value: f64) -> [f64; 2] {
+pub fn pair(k: usize, value: f64) -> [f64; 2] {
     if k == 0 { [value, 0.0] } else { [0.0, value] }
 }
 
@@ -66,12 +66,12 @@ impl Condensed {
     /// points, with something added that refinement takes out again. `None` where they are singular in
     /// their pattern.
     pub fn new(size: usize, contacts: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
-        let (rows, shifts) = (Rows::new(size, entries), Rows::new(size, shift));
+        let (rows, shifts) = (CsrMatrix::new(size, entries), CsrMatrix::new(size, shift));
         Condensed::of(rows, &shifts, contacts, &mut Analysis::default())
     }
 
     /// The same from rows, by the analysis of what was factorised before.
-    pub fn of(rows: Rows, shifts: &Rows, contacts: usize, analysis: &mut Analysis) -> Option<Self> {
+    pub fn of(rows: CsrMatrix, shifts: &CsrMatrix, contacts: usize, analysis: &mut Analysis) -> Option<Self> {
         let size = rows.len();
         let forces = 2 * contacts;
         let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
@@ -208,13 +208,13 @@ impl Condensed {
     }
 
     /// The equations themselves.
-    pub fn into_rows(self) -> Rows {
+    pub fn into_rows(self) -> CsrMatrix {
         self.rows
     }
 
     /// One row times a vector.
-    pub fn along(&self, row: usize, x: &[f64]) -> f64 {
-        self.rows.along(row, x)
+    pub fn row_dot(&self, row: usize, x: &[f64]) -> f64 {
+        self.rows.row_dot(row, x)
     }
 
     /// Number of contact points.
@@ -310,6 +310,6 @@ impl Condensed {
 
     /// What the equations without what was added leave of a right-hand side.
     pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
-        right.iter().enumerate().map(|(i, right)| right - self.rows.along(i, x)).collect()
+        right.iter().enumerate().map(|(i, right)| right - self.rows.row_dot(i, x)).collect()
     }
 }

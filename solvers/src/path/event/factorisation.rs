@@ -1,6 +1,6 @@
-//! One factorisation for many events: every contact point has a piece of its law in the factorised
-//! matrix, and points that have changed since enter as right-hand sides of their own two rows. Contact
-//! forces with equations of their own are condensed out ([`condensed`](crate::path::condensed)): of the
+//! One factorisation for many events: every contact point has a mode in the factorised matrix, and points that have
+//! changed theirs since enter as right-hand sides of their own two rows. Contact
+//! forces with equations of their own are condensed out ([`condensed`](crate::linear::condensed)): of the
 //! responses to changed points only what is kept is stored.
 //!
 //! ```text
@@ -9,16 +9,17 @@
 //! bodies  Gᵀ ṙ = −λ̇ p
 //! ```
 
-use super::rate::Piece;
 use super::system::{Load, System};
-use crate::path::condensed::Condensed;
+use crate::contact::facet::across;
+use crate::contact::mode::ContactMode;
+use crate::linear::condensed::Condensed;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 use voussoir_core::linear::Entries;
 
 /// Added to the flexibility of stuck points, relative to its mean, and taken out again by
 /// refinement: forces that equilibrium and flexibility leave open are shared evenly.
-const SHARING: f64 = 1e-11;
+const REGULARISATION: f64 = 1e-11;
 /// Steps of refinement of the response to a load.
 const REFINEMENTS: usize = 3;
 
@@ -31,55 +32,38 @@ struct Column {
 }
 
 /// A factorised system.
-pub struct Base {
-    /// Piece of each contact point in the matrix.
-    pub pieces: Vec<Piece>,
+pub struct UpdatedFactorisation {
+    /// ContactMode of each contact point in the matrix.
+    pub modes: Vec<ContactMode>,
     /// Whether responses to single points are refined, as what is claimed of the rate problem needs.
-    pub careful: bool,
+    pub refine_columns: bool,
     equations: Condensed,
     columns: BTreeMap<usize, [Column; 2]>,
     load_rate: Option<(usize, Vec<f64>)>,
 }
 
-/// d⊥, unit.
-pub fn across(flow: [f64; 2]) -> [f64; 2] {
-    let l = flow[0].hypot(flow[1]);
-    [-flow[1] / l, flow[0] / l]
-}
-
-/// The two rows of a piece over (ṙ_n, ṙ_t, ġ_n, ġ_t) of its point. `None` where it has no such facet.
-pub fn rows(system: &System, c: usize, piece: Piece) -> Option<[[f64; 4]; 2]> {
-    Some(match piece {
-        Piece::Stick => [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
-        Piece::Free | Piece::Corner(..) => [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
-        Piece::Facet(f) => {
-            let facet = system.facets[c].as_ref()?.get(f)?;
-            let (a, n) = (facet.normal, across(facet.flow));
-            [[-a[0], -a[1], 0.0, 0.0], [0.0, 0.0, n[0], n[1]]]
-        }
-    })
-}
-
-impl Base {
+impl UpdatedFactorisation {
     /// Assembles and factorises. `None` where the system is singular.
-    pub fn new(system: &System, pieces: Vec<Piece>, careful: bool) -> Option<Self> {
+    pub fn new(system: &System, modes: Vec<ContactMode>, refine_columns: bool) -> Option<Self> {
         let nc = system.contacts;
-        let (mut entries, mut sharing): (Entries, Entries) = (Vec::new(), Vec::new());
+        let (mut entries, mut regularisation): (Entries, Entries) = (Vec::new(), Vec::new());
         let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
             entries.extend(system.flexibility.row(2 * c + i).iter().map(|&(j, v)| (row, j, factor * v)));
             entries.extend(system.kinematics.row(2 * c + i).iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
         };
-        for (c, piece) in pieces.iter().enumerate() {
-            match piece {
-                Piece::Stick => {
+        for (c, mode) in modes.iter().enumerate() {
+            match mode {
+                ContactMode::Stick => {
                     for i in 0..2 {
                         gap_row(c, i, 2 * c + i, 1.0, &mut entries);
-                        sharing.push((2 * c + i, 2 * c + i, SHARING));
+                        regularisation.push((2 * c + i, 2 * c + i, REGULARISATION));
                     }
                 }
-                Piece::Free | Piece::Corner(..) => entries.extend((0..2).map(|i| (2 * c + i, 2 * c + i, 1.0))),
-                Piece::Facet(f) => {
-                    let facet = &system.facets[c].as_ref()?[*f];
+                ContactMode::Open | ContactMode::Corner(..) => {
+                    entries.extend((0..2).map(|i| (2 * c + i, 2 * c + i, 1.0)))
+                }
+                ContactMode::Facet(f) => {
+                    let facet = &system.facets[c].as_ref()?[*f as usize];
                     entries.extend((0..2).map(|i| (2 * c, 2 * c + i, -facet.normal[i])));
                     let n = across(facet.flow);
                     for (i, n) in n.into_iter().enumerate() {
@@ -91,11 +75,11 @@ impl Base {
         for row in 0..2 * nc {
             entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
-        let equations = Condensed::new(system.size(), nc, &entries, &sharing)?;
-        Some(Base { pieces, careful, equations, columns: BTreeMap::new(), load_rate: None })
+        let equations = Condensed::new(system.size(), nc, &entries, &regularisation)?;
+        Some(UpdatedFactorisation { modes, refine_columns, equations, columns: BTreeMap::new(), load_rate: None })
     }
 
-    /// x for λ̇ = 1 with every piece as factorised.
+    /// x for λ̇ = 1 with every mode as factorised.
     pub fn load_rate(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
         if self.load_rate.as_ref().is_none_or(|(i, _)| *i != index) {
             let right = self.right(system, load);
@@ -105,18 +89,18 @@ impl Base {
     }
 
     /// Another load comes.
-    pub fn forget_load_rate(&mut self) {
+    pub fn forget_load(&mut self) {
         self.load_rate = None;
     }
 
     fn right(&self, system: &System, load: &Load) -> Vec<f64> {
         let mut right = vec![0.0; system.size()];
-        for (c, piece) in self.pieces.iter().enumerate() {
-            match piece {
-                Piece::Stick => (0..2).for_each(|i| right[2 * c + i] = -load.gap[c][i]),
-                Piece::Facet(f) => {
+        for (c, mode) in self.modes.iter().enumerate() {
+            match mode {
+                ContactMode::Stick => (0..2).for_each(|i| right[2 * c + i] = -load.gap[c][i]),
+                ContactMode::Facet(f) => {
                     if let Some(facets) = &system.facets[c] {
-                        let n = across(facets[*f].flow);
+                        let n = across(facets[*f as usize].flow);
                         right[2 * c + 1] = -(n[0] * load.gap[c][0] + n[1] * load.gap[c][1]);
                     }
                 }
@@ -129,7 +113,7 @@ impl Base {
         right
     }
 
-    /// Kept unknowns for any right-hand side with every piece as factorised, not refined.
+    /// Kept unknowns for any right-hand side with every mode as factorised, not refined.
     pub fn kept(&self, right: &[f64]) -> Option<Vec<f64>> {
         Some(self.equations.condense(&[right.to_vec()])?.swap_remove(0))
     }
@@ -148,7 +132,7 @@ impl Base {
         let right: Vec<Vec<f64>> = new.iter().flat_map(|c| [unit(2 * c), unit(2 * c + 1)]).collect();
         *solves += right.len() as u64;
         let mut columns: Vec<Column> = Vec::with_capacity(right.len());
-        if self.careful {
+        if self.refine_columns {
             for right in &right {
                 let x = self.equations.solve(right, REFINEMENTS)?;
                 columns.push(Column { y: self.equations.kept_of(&x), x: Some(x) });
@@ -169,12 +153,12 @@ impl Base {
     }
 
     /// (ṙ, ġ) at `points`, 4 rows each, per ε of `points` (2 columns each) and, last, per λ̇.
-    /// Responses and load rate must be known.
+    /// Responses and the load rate must be known.
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
         let gap = |row: usize, x: &[f64]| {
-            system.flexibility.along(row, x) + system.kinematics.along(row, &x[2 * system.contacts..])
+            system.flexibility.row_dot(row, x) + system.kinematics.row_dot(row, &x[2 * system.contacts..])
         };
         let at = |x: &[f64], c: usize| [x[2 * c], x[2 * c + 1], gap(2 * c, x), gap(2 * c + 1, x)];
         for (k, own) in points.iter().enumerate() {

@@ -1,14 +1,22 @@
 //! Lemke's pivoting for linear complementarity problems: w = q + M z ≥ 0, z ≥ 0, z·w = 0.
 //!
-//! Lemke (1965), with a lexicographic ratio test, so that degenerate ties cannot cycle. Matrices of
-//! friction are neither symmetric nor monotone: a ray is a proof that there is no solution only
-//! where flow is associated.
+//! Lemke (1965), with a lexicographic ratio test, so that degenerate ties cannot cycle. A secondary ray proves
+//! that there is no solution only for copositive-plus matrices; others need [`branching`](super::branching).
 
 use nalgebra::{DMatrix, DVector};
 
-/// How the pivoting ended.
+/// w = `constant` + `matrix` z, w ≥ 0, z ≥ 0, z·w = 0.
+#[derive(Debug, Clone)]
+pub struct Lcp {
+    /// M.
+    pub matrix: DMatrix<f64>,
+    /// q.
+    pub constant: DVector<f64>,
+}
+
+/// How Lemke's algorithm ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Lemke {
+pub enum LemkeResult {
     /// A solution z.
     Solution(Vec<f64>),
     /// A secondary ray: the direction in z along which the almost complementary solutions go on.
@@ -18,11 +26,12 @@ pub enum Lemke {
 }
 
 /// Lemke's algorithm. `pivots` counts.
-pub fn lemke(m: &DMatrix<f64>, q: &DVector<f64>, pivots: &mut u64) -> Lemke {
+pub fn lemke(problem: &Lcp, pivots: &mut u64) -> LemkeResult {
+    let Lcp { matrix: m, constant: q } = problem;
     let n = q.len();
     let scale = q.amax();
     if q.iter().all(|v| *v >= 0.0) || scale == 0.0 {
-        return Lemke::Solution(vec![0.0; n]);
+        return LemkeResult::Solution(vec![0.0; n]);
     }
     // Tableau [I, −M, −1 | q] in the order w (0..n), z (n..2n), z_0 (2n), right-hand side (2n + 1);
     // the columns of w are the inverse of the basis, which the lexicographic rule reads.
@@ -55,7 +64,7 @@ pub fn lemke(m: &DMatrix<f64>, q: &DVector<f64>, pivots: &mut u64) -> Lemke {
             for (i, variable) in basis.iter().enumerate().filter(|(_, v)| (n..2 * n).contains(*v)) {
                 z[variable - n] = t[(i, last)].max(0.0) * scale;
             }
-            return Lemke::Solution(z);
+            return LemkeResult::Solution(z);
         }
         entering = if leaving < n { leaving + n } else { leaving - n };
         let size = t.column(entering).amax();
@@ -68,11 +77,11 @@ pub fn lemke(m: &DMatrix<f64>, q: &DVector<f64>, pivots: &mut u64) -> Lemke {
             for (i, variable) in basis.iter().enumerate().filter(|(_, v)| (n..2 * n).contains(*v)) {
                 z[variable - n] = -t[(i, entering)];
             }
-            return Lemke::Ray(z);
+            return LemkeResult::Ray(z);
         }
         row = least_ratio(&t, &candidates, entering, &basis);
     }
-    Lemke::Unfinished
+    LemkeResult::Unfinished
 }
 
 /// The row with the least ratio, ties by the lexicographic order of the rows of the basis inverse;
@@ -107,9 +116,15 @@ mod tests {
     #[test]
     fn a_monotone_problem_is_solved_and_an_infeasible_one_ends_in_a_ray() {
         let m = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
-        let Lemke::Solution(z) = lemke(&m, &DVector::from_vec(vec![-5.0, -6.0]), &mut 0) else { panic!() };
+        let LemkeResult::Solution(z) = lemke(&Lcp { matrix: m, constant: DVector::from_vec(vec![-5.0, -6.0]) }, &mut 0)
+        else {
+            panic!()
+        };
         assert!((z[0] - 4.0 / 3.0).abs() < 1e-14 && (z[1] - 7.0 / 3.0).abs() < 1e-14);
         let flat = DMatrix::from_row_slice(1, 1, &[0.0]);
-        assert_eq!(lemke(&flat, &DVector::from_vec(vec![-1.0]), &mut 0), Lemke::Ray(vec![1.0]));
+        assert_eq!(
+            lemke(&Lcp { matrix: flat, constant: DVector::from_vec(vec![-1.0]) }, &mut 0),
+            LemkeResult::Ray(vec![1.0])
+        );
     }
 }

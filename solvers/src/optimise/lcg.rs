@@ -1,12 +1,13 @@
-//! Numbers without pattern that are the same in every run.
+//! Pseudo-random numbers that are the same in every run.
 
 /// A linear congruential generator (Knuth 1997, The Art of Computer Programming 2, 3.3.4, MMIX).
-pub(in crate::path) struct Shuffle(u64);
+#[derive(Debug, Clone)]
+pub struct Lcg(u64);
 
-impl Shuffle {
-    /// The series of a seed.
+impl Lcg {
+    /// The sequence of a seed.
     pub fn new(seed: u64) -> Self {
-        Shuffle(seed)
+        Lcg(seed)
     }
 
     /// The next number in [−1, 1).

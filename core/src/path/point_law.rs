@@ -1,0 +1,64 @@
+//! The law of a contact point: what it can carry and how it moves.
+
+use super::problem::PathProblem;
+use crate::law::{Facet, Formulation, InterfaceResponse};
+use std::sync::Arc;
+
+/// The law of a contact point. Points of one law share it.
+#[derive(Debug, Clone)]
+pub enum PointLaw {
+    /// g = 0.
+    Bonded,
+    /// Facets a·t ≤ b with flow along d.
+    Facets(Arc<[Facet]>),
+    /// Tractions from gaps, with state.
+    Response(Arc<dyn InterfaceResponse>),
+}
+
+impl From<Formulation> for PointLaw {
+    fn from(formulation: Formulation) -> Self {
+        match formulation {
+            Formulation::Facets(facets) => PointLaw::Facets(facets.into()),
+            Formulation::Response(response) => PointLaw::Response(response),
+        }
+    }
+}
+
+impl PointLaw {
+    /// Its facets, where it has that form.
+    pub fn facets(&self) -> Option<&[Facet]> {
+        match self {
+            PointLaw::Facets(facets) => Some(facets),
+            _ => None,
+        }
+    }
+
+    /// The tractions from gaps, where it has that form.
+    pub fn response(&self) -> Option<&Arc<dyn InterfaceResponse>> {
+        match self {
+            PointLaw::Response(response) => Some(response),
+            _ => None,
+        }
+    }
+
+    /// Whether the bodies are one there.
+    pub fn is_bonded(&self) -> bool {
+        matches!(self, PointLaw::Bonded)
+    }
+}
+
+impl PathProblem {
+    /// Laws of facets, each once in the order of the contact points, and for each point the index of its own.
+    pub fn shared_facets(&self) -> (Vec<&[Facet]>, Vec<Option<usize>>) {
+        let mut laws: Vec<&[Facet]> = Vec::new();
+        let of = self.contacts.iter().map(|contact| {
+            let own = contact.law.facets()?;
+            Some(laws.iter().position(|law| std::ptr::eq(*law, own)).unwrap_or_else(|| {
+                laws.push(own);
+                laws.len() - 1
+            }))
+        });
+        let of = of.collect();
+        (laws, of)
+    }
+}
