@@ -32,7 +32,9 @@ impl fmt::Display for Monitor {
         match self {
             Monitor::Opening { joint, at: None } => write!(f, "mean opening of joint {joint}"),
             Monitor::Opening { joint, at: Some(at) } => write!(f, "opening of joint {joint} at {at} of its length"),
-            Monitor::Displacement { block, point: [x, y], .. } => write!(f, "displacement of block {block} at [{x}, {y}]"),
+            Monitor::Displacement { block, point: [x, y], .. } => {
+                write!(f, "displacement of block {block} at [{x}, {y}]")
+            }
         }
     }
 }

@@ -5,8 +5,8 @@ use voussoir::core::certificate::{PathChecker, TOLERANCES, Tolerance};
 use voussoir::core::limit::Status;
 use voussoir::core::path::{Continuation, PathAnswer, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
-    arc_length::ArcLength, crack_opening::CrackOpening, displacement_control::DisplacementControl, dissipation::Dissipation,
-    load_control::LoadControl,
+    arc_length::ArcLength, crack_opening::CrackOpening, displacement_control::DisplacementControl,
+    dissipation::Dissipation, load_control::LoadControl,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Seen;

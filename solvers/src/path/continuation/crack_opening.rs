@@ -5,7 +5,7 @@ use super::arc_length::sphere;
 use super::{FIRST_STEP, LARGEST_STEP, first_step};
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, no_further_check};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 /// c = Δg_n of the joint where it opened enough in the last step, else the arc length.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -81,7 +81,7 @@ voussoir_core::inventory::submit! {
                 shape: Shape::Integer { min: 0, max: 1_000_000 },
                 need: Need::Required,
             },
-            Parameter::number("at", Quantity::Ratio, Range::UNIT, "where, as a share of the joint's length from its first end")
+            Parameter::number("at", Quantity::Ratio, Range::new(0.0, false, 1.0, false), "where, as a share of the joint's length from its first end")
                 .optional("its mean opening"),
             Parameter::number(
                 "switch",
@@ -93,11 +93,9 @@ voussoir_core::inventory::submit! {
             FIRST_STEP,
             LARGEST_STEP,
         ],
-        provides: &[],
-        requires: &[],
         sources: &["de Borst 1987, Computers & Structures 25, 211-224", "Rots & de Borst 1987, J. Engng Mech. 113, 1739-1758"],
         file: file!(),
         page: include_str!("crack_opening.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }

@@ -8,7 +8,6 @@
 //! always allows. Other points may then slide, and the path goes on at another place; if it comes back to
 //! the same fold it ends there.
 
-use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::inelastic::{plastic_power, update_blocks};
 use super::measure::motion_size;
@@ -16,6 +15,7 @@ use super::rising::{Rising, limit_point_test};
 use super::state::Tangent;
 use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
 use super::tracer::{Tracer, moved_along};
+use crate::contact::mode::ContactMode;
 
 /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
 pub(super) fn yielding_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {

@@ -1,7 +1,7 @@
 //! What fixes a step: a factor, a continuation strategy, weighted gaps, or a mixed control.
 
-use std::sync::Arc;
 use super::state::State;
+use std::sync::Arc;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Continuation, Increment};
 

@@ -1,6 +1,5 @@
 //! The last row of the linear equations of a step: the gradient of its control.
 
-use crate::path::energy::load_size;
 use super::control::Control;
 use super::derivatives::Hessian;
 use super::inelastic::add_plastic_work;
@@ -9,6 +8,7 @@ use super::monitors::by_motion;
 use super::response::dissipation_gradient;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
+use crate::path::energy::load_size;
 use voussoir_core::path::{Constraint, Increment};
 
 /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.

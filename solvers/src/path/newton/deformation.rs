@@ -1,10 +1,10 @@
 //! What the deformation of bodies adds to gaps and equilibrium (see `kinematics`), with its derivatives.
 
-use nalgebra::{DMatrix, Matrix2};
 use super::blocks::YieldingBlock;
 use super::derivatives::{Gradient, Hessian};
 use super::geometry::{Geometry, Place, Side};
 use super::loads::Loads;
+use nalgebra::{DMatrix, Matrix2};
 use voussoir_core::model::geometry::{Vec2, turned};
 
 /// C of a body: of one that yields, its linearisation's.

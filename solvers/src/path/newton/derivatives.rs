@@ -1,9 +1,9 @@
 //! First and second derivatives of the potential of [`kinematics`](super::kinematics).
 
-use std::cell::OnceCell;
-use std::rc::Rc;
 use super::equations::Equations;
 use super::unknowns::Unknowns;
+use std::cell::OnceCell;
+use std::rc::Rc;
 
 /// First derivatives of Π.
 #[derive(Debug, Clone)]

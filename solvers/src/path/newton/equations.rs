@@ -1,9 +1,9 @@
 //! Rows of gaps and balance in units, and of them the rows of contact points by mode.
 
+use super::unknowns::Unknowns;
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::linear::csr::CsrMatrix;
-use super::unknowns::Unknowns;
 use voussoir_core::linear::Entries;
 
 /// What is added to the factorised matrix, relative to its units: refinement takes it out again.

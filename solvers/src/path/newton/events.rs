@@ -1,9 +1,9 @@
 //! Events of a step: what contact points begin and stop to do.
 
-use crate::contact::mode::ContactMode;
-use crate::path::events::{ContactStatus, transition};
 use super::state::State;
 use super::system::StepSystem;
+use crate::contact::mode::ContactMode;
+use crate::path::events::{ContactStatus, transition};
 use voussoir_core::law::{TractionPoint, UpdateBranch};
 use voussoir_core::path::PathEvent;
 
@@ -14,7 +14,9 @@ fn of_mode(system: &StepSystem, contact: usize, mode: ContactMode, gap: [f64; 2]
         ContactMode::Stick => ContactStatus::Sticks,
         ContactMode::Facet(i) => ContactStatus::of_facet(&law.facets[i as usize]),
         _ if law.opens(mode) => ContactStatus::Open,
-        _ => law.pair(mode, gap).map_or(ContactStatus::Sticks, |(pair, _)| ContactStatus::of_facet(&law.facets[pair[0]])),
+        _ => {
+            law.pair(mode, gap).map_or(ContactStatus::Sticks, |(pair, _)| ContactStatus::of_facet(&law.facets[pair[0]]))
+        }
     }
 }
 

@@ -1,12 +1,12 @@
 //! Flow that is not associated, turned into it from associated flow, with which every step is a monotone
 //! problem.
 
-use crate::contact::facet::with_flow_between;
-use crate::contact::yield_polygon::YieldPolygon;
 use super::control::Control;
 use super::state::State;
 use super::step::solve_step;
 use super::system::StepSystem;
+use crate::contact::facet::with_flow_between;
+use crate::contact::yield_polygon::YieldPolygon;
 
 /// Takes slip to be associated; the laws as they were.
 pub(super) fn take_associated(system: &mut StepSystem) -> Vec<YieldPolygon> {

@@ -1,6 +1,5 @@
 //! A load step that is followed by its strategy: predictor, length of the next step, and what has been tried.
 
-use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::control_row::work_along;
 use super::measure::{increment_along, tangent_size};
@@ -8,6 +7,7 @@ use super::response::update_at_rest;
 use super::state::Tangent;
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path};
+use crate::contact::mode::ContactMode;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 

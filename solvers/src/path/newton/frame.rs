@@ -14,14 +14,14 @@
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
 //! that no combination of modes is without a direction.
 
+use super::equations::Equations;
+use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
 use crate::linear::condensed::Condensed;
 use crate::linear::csr::CsrMatrix;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
-use super::equations::Equations;
-use super::system::StepSystem;
 use voussoir_core::linear::Analysis;
 
 /// Changed points above which the matrix is factorised anew.

@@ -1,8 +1,8 @@
 //! Rigid motions, frames of contact points and forces in the axes of a body.
 
-use nalgebra::Matrix2;
 use super::blocks::YieldingBlock;
 use super::loads::Loads;
+use nalgebra::Matrix2;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::PathProblem;
 

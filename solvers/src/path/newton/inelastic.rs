@@ -7,11 +7,11 @@
 //! unknowns together, the nodes condensed. What stresses leave of inner equilibrium counts in the
 //! residual of the step. History is that of the last converged step until [`StepSystem::keep`].
 
-use std::rc::Rc;
 use super::blocks::YieldingBlock;
 use super::deformation::by_forces;
 use super::state::{State, Tangent};
 use super::system::{StepFailure, StepSystem};
+use std::rc::Rc;
 
 /// The nodes of all blocks follow forces and motions; blocks are linearised where they come to lie.
 pub(super) fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), StepFailure> {

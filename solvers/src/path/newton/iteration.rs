@@ -1,9 +1,8 @@
 //! Newton's method on the contact modes of a step.
 
-use crate::contact::mode::ContactMode;
-use crate::optimise::line_search::LineSearch;
 use super::control::Control;
 use super::control_row::{control_row, control_value};
+use super::derivatives::Gradient;
 use super::inelastic::{block_error, update_blocks};
 use super::line_search::{advanced, of_tractions, searched};
 use super::linearised::{residual_of, solve_linear};
@@ -11,6 +10,8 @@ use super::response::{traction_error, traction_row, update_tractions};
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::wanted_modes;
+use crate::contact::mode::ContactMode;
+use crate::optimise::line_search::LineSearch;
 
 /// Contact points that want to change above which, twice running where eight times fewer did before, an
 /// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not

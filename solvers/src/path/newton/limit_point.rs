@@ -1,9 +1,9 @@
 //! Whether a limit point is one: no rate with a growing factor leaves it.
 
-use crate::contact::mode::ContactMode;
 use super::rising::{Rising, limit_point_test};
 use super::state::{State, Tangent};
 use super::tracer::Tracer;
+use crate::contact::mode::ContactMode;
 
 /// Branches with growing λ that are taken at one factor.
 const MOST_BRANCHES: u32 = 3;

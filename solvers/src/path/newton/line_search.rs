@@ -22,17 +22,16 @@
 //! Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173). A line search finds local minima of Ψ: what it ends in
 //! counts only if F = 0 there, by the test of `iterate`.
 
-use crate::optimise::line_search::LineSearch;
 use super::control::Control;
 use super::control_row::control_value;
 use super::derivatives::Gradient;
 use super::inelastic::{block_error, update_blocks};
-use super::kinematics::Gradient;
 use super::linearised::residual_of;
 use super::response::update_tractions;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::apply_step;
+use crate::optimise::line_search::LineSearch;
 
 /// Merits below which whole steps are taken: what they leave is the linear equations' own accuracy.
 pub(super) const NOTHING: f64 = 1e-9;
@@ -41,7 +40,6 @@ pub(super) const NOTHING: f64 = 1e-9;
 pub(super) fn of_tractions() -> LineSearch {
     LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing: NOTHING, merits: Vec::new() }
 }
-
 
 /// ‖F‖ of a state in the units of the unknowns.
 fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {
@@ -114,7 +112,6 @@ pub(super) fn searched(
     Ok((next, gradient, whole))
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::super::control_row::control_row;
@@ -175,7 +172,7 @@ mod tests {
         for finite in [false, true] {
             let mut system = StepSystem::new(&problem, finite).expect("a system");
             system.load(StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 });
-            let (start, u) = (system.undeformed(), system.units);
+            let (start, u) = (system.undeformed(), system.units());
             let (mut random, mut compared) = (Lcg::new(5), [0; 3]);
             for _ in 0..600 {
                 let mut state = start.clone();

@@ -15,15 +15,15 @@
 //! modes have no solution, and the step is refused. How it is factorised: see `border` and
 //! [`condensed`](crate::linear::condensed).
 
-use crate::contact::mode::ContactMode;
-use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::csr::CsrMatrix;
-use std::rc::Rc;
 use super::derivatives::{Gradient, Hessian};
 use super::factors::Kept;
 use super::response::{traction_residual, traction_row};
 use super::state::State;
 use super::system::StepSystem;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::csr::CsrMatrix;
+use std::rc::Rc;
 
 /// Backward error of every row that is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -73,7 +73,12 @@ fn is_constant(system: &StepSystem, hessian: &Hessian) -> bool {
 
 /// The modes' linear equations, factorised: where nothing else than modes makes them, those of
 /// the same modes are taken again.
-fn factorise(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f64]) -> Option<(Rc<BorderedFactors>, bool)> {
+fn factorise(
+    system: &mut StepSystem,
+    state: &State,
+    hessian: &Hessian,
+    row: &[f64],
+) -> Option<(Rc<BorderedFactors>, bool)> {
     let again = system.laws.responses.is_empty() && is_constant(system, hessian);
     let directions: Vec<[f64; 4]> = system
         .laws

@@ -1,8 +1,5 @@
 //! The load steps one after the other, converged states taken over, and the answer.
 
-use crate::path::energy::EnergyBalance;
-use crate::path::outcome::{Outcome, PathRecord, stalled};
-use std::sync::Arc;
 use super::follow::follow;
 use super::load_to_factor::load_to_factor;
 use super::loads::StagedLoads;
@@ -10,9 +7,12 @@ use super::monitors::resolve;
 use super::recorded::{recorded, work_state};
 use super::system::StepSystem;
 use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
+use crate::path::energy::EnergyBalance;
+use crate::path::outcome::{Outcome, PathRecord, stalled};
+use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
-use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::{Continuation, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Continuation, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings};
 
 /// Follows all load steps.
 pub(super) fn trace(
@@ -23,10 +23,11 @@ pub(super) fn trace(
 ) -> PathAnswer {
     let monitors = resolve(problem, &strategy.monitors());
     let built = monitors.and_then(|monitors| Ok((StepSystem::new(problem, settings.finite)?, monitors)));
-    let system = match built {
-        Ok((system, monitors)) => StepSystem { monitors, ..system },
+    let (mut system, monitors) = match built {
+        Ok(built) => built,
         Err(why) => return stalled(problem, why),
     };
+    system.monitors = monitors;
     let state = system.undeformed();
     let gradient = system.gradient(&state);
     let energy = EnergyBalance::default();

@@ -1,11 +1,11 @@
 //! Sizes of states, rates and steps in the units of the unknowns: what continuation strategies measure.
 
-use crate::path::energy;
 use super::inelastic::{plastic_power, plastic_work};
 use super::monitors::monitored;
 use super::response::dissipated_by_tractions;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
+use crate::path::energy;
 use voussoir_core::path::Increment;
 
 /// Work-conjugate displacement of the growing load \[m\].

@@ -11,11 +11,11 @@
 //! is a rate of solution with forces that stand still (the flow of limit analysis at a given field: Livesley
 //! 1978, Int. J. Numer. Meth. Engng 12): a linear program finds one where there is one.
 
-use crate::optimise::dense_simplex::{Equations, Feasibility};
 use super::measure::load_displacement;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
+use crate::optimise::dense_simplex::{Equations, Feasibility};
 
 /// Slack, relative to the greatest force, up to which a facet may yield.
 const YIELDING: f64 = 1e-9;

@@ -47,14 +47,14 @@ mod tractions;
 mod trial;
 mod unknowns;
 
-use crate::path::continuation::exact_events::ExactEvents;
 use self::monitors::resolve;
-use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 use super::continuation::arc_length::ArcLength;
 use super::outcome::stalled;
+use crate::path::continuation::exact_events::ExactEvents;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind, no_further_check};
+use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Steps with Newton's method.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -80,7 +80,8 @@ impl PathSolver for NewtonPath {
             return Some("nothing is loaded".into());
         }
         if !problem.deforms() {
-            let why = "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them";
+            let why =
+                "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them";
             return Some(why.into());
         }
         settings.continuation.as_ref().and_then(|strategy| resolve(problem, &strategy.monitors()).err())
@@ -93,8 +94,9 @@ voussoir_core::inventory::submit! {
         tag: "newton_path",
         summary: "steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements, peaks and falling branches",
         parameters: &[],
-        provides: &[Capability::FiniteDisplacements, Capability::Settlement],
-        requires: &[Capability::FacetsOrResponse],
+        provides: &[Capability::FINITE_DISPLACEMENTS, Capability::SETTLEMENT],
+        requires: &[&[Capability::FACETS, Capability::RESPONSE]],
+        cost: Some(20),
         sources: &[
             "Alart & Curnier 1991, Comput. Methods Appl. Mech. Engng 92, 353-375",
             "De Saxce & Feng 1998, Math. Comput. Modelling 28, 225-245",
@@ -110,7 +112,7 @@ voussoir_core::inventory::submit! {
         ],
         file: file!(),
         page: include_str!("newton_path.md"),
-        check: no_further_check,
+        ..Card::BLANK
     }
 }
 

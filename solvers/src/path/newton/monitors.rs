@@ -14,10 +14,9 @@ pub(super) fn resolve(problem: &PathProblem, monitors: &[Monitor]) -> Result<Vec
     let weights = |monitor: &Monitor| {
         let found = match *monitor {
             Monitor::Opening { joint, at } => opening(problem, joint, at),
-            Monitor::Displacement { block, point, direction } => problem
-                .body_of
-                .get(block)
-                .map(|body| MonitorWeights { point: Some((*body, point.into(), direction.into())), ..Default::default() }),
+            Monitor::Displacement { block, point, direction } => problem.body_of.get(block).map(|body| {
+                MonitorWeights { point: Some((*body, point.into(), direction.into())), ..Default::default() }
+            }),
         };
         found.ok_or_else(|| {
             let joints = problem.contacts.iter().map(|c| c.joint + 1).max().unwrap_or(0);
@@ -33,7 +32,8 @@ pub(super) fn resolve(problem: &PathProblem, monitors: &[Monitor]) -> Result<Vec
 
 /// Weights of the normal gaps of a joint: by areas, or between the two points beside a share of its length.
 fn opening(problem: &PathProblem, joint: usize, at: Option<f64>) -> Option<MonitorWeights> {
-    let points: Vec<(usize, &Contact)> = problem.contacts.iter().enumerate().filter(|(_, c)| c.joint == joint).collect();
+    let points: Vec<(usize, &Contact)> =
+        problem.contacts.iter().enumerate().filter(|(_, c)| c.joint == joint).collect();
     let (first, last) = (points.first()?.1, points.last()?.1);
     let gaps = match at {
         None => {

@@ -1,6 +1,5 @@
 //! Peaks and troughs of the load within a step, by bisection.
 
-use crate::path::energy::load_size;
 use super::control::Control;
 use super::following::{Following, per_tangent};
 use super::measure::{increment_along, motion_size};
@@ -9,6 +8,7 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
 use super::tracer::{Peak, Tracer, foreseen, moved_along};
+use crate::path::energy::load_size;
 
 /// Bisects the step from the present state for the point where λ stops growing in the sense `direction`:
 /// the state there and the rate just beyond it.

@@ -17,9 +17,6 @@
 //! and Dirkse & Ferris (1995, Optim. Methods Software 5) on this path as a globally convergent Newton
 //! method for complementarity problems.
 
-use crate::contact::mode::ContactMode;
-use crate::contact::piecewise_path::{PathEnd, PiecewiseLinear, PointInCell, follow};
-use crate::optimise::lcg::Lcg;
 use super::control::Control;
 use super::control_row::{control_row, control_value};
 use super::frame::Frame;
@@ -28,6 +25,9 @@ use super::linearised::residual_of;
 use super::state::{State, Tangent};
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_without_gaps;
+use crate::contact::mode::ContactMode;
+use crate::contact::piecewise_path::{PathEnd, PiecewiseLinear, PointInCell, follow};
+use crate::optimise::lcg::Lcg;
 
 /// Sizes of the shift of the guess that are tried, relative to forces.
 const SHIFTS: [f64; 3] = [1e-3, 0.03, 0.5];
@@ -140,9 +140,13 @@ impl PiecewiseLinear for StepPath<'_, '_> {
     }
 }
 
-
 /// A step by pivoting from a guess. The control must be linear.
-pub(super) fn by_homotopy(system: &mut StepSystem, start: &State, guess: &State, control: &Control) -> Result<(State, u64), StepFailure> {
+pub(super) fn by_homotopy(
+    system: &mut StepSystem,
+    start: &State,
+    guess: &State,
+    control: &Control,
+) -> Result<(State, u64), StepFailure> {
     let mut failure = StepFailure::new("pivoting does not apply");
     if !system.piecewise_linear() {
         return Err(failure);
@@ -228,7 +232,11 @@ fn followed_from(
 }
 
 /// Newton's method from what pivoting found.
-fn polished(system: &mut StepSystem, start: &State, state: State, control: &Control) -> Result<(State, u64), StepFailure> {
+fn polished(
+    system: &mut StepSystem,
+    start: &State,
+    state: State,
+    control: &Control,
+) -> Result<(State, u64), StepFailure> {
     iterate(system, start, state, control, 8, None)
 }
-

@@ -1,6 +1,5 @@
 //! What is written down at converged states: their energies, and the state as others read it.
 
-use crate::path::energy::{EnergyBalance, WorkState};
 use super::blocks::yielded;
 use super::derivatives::Gradient;
 use super::inelastic::plastic_work;
@@ -8,6 +7,7 @@ use super::measure::load_displacement;
 use super::response::{dissipated_by_tractions, stored_by_tractions};
 use super::state::State;
 use super::system::StepSystem;
+use crate::path::energy::{EnergyBalance, WorkState};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Loading, PathState};
 

@@ -12,13 +12,13 @@
 //! an opening facet with strength is open already its multiplier has any sign: it belongs to the
 //! factorised modes, and only the point's other facets are pairs.
 
+use super::state::{State, Tangent};
+use super::system::StepSystem;
+use super::tangent::tangent_from;
 use crate::contact::mode::ContactMode;
 use crate::optimise::branching::{LcpAnswer, solve_by_branching};
 use crate::optimise::lcp::Lcp;
 use nalgebra::{DMatrix, DVector};
-use super::state::{State, Tangent};
-use super::system::StepSystem;
-use super::tangent::tangent_from;
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
@@ -227,9 +227,7 @@ fn rate_problem(system: &mut StepSystem, state: &State, verge: &Verge, direction
     let own: Vec<f64> = matrix.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
     let constant = DVector::from_fn(n, |i, _| constant[i] / own[i]);
     let size = if n > 0 { constant.amax().max(1e-300) } else { 1.0 };
-    let problem = Lcp {
-        matrix: DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (own[i] * own[j])),
-        constant: constant / size,
-    };
+    let problem =
+        Lcp { matrix: DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (own[i] * own[j])), constant: constant / size };
     Some(RateProblem { problem, units: own.iter().map(|own| size / own).collect(), responses: x })
 }

@@ -1,10 +1,10 @@
 //! A state of a step, what it remembers, and its rate along the path.
 
-use crate::contact::mode::ContactMode;
 use super::blocks::YieldingBlock;
 use super::geometry::Place;
 use super::loads::Loads;
 use super::tractions::TractionUpdates;
+use crate::contact::mode::ContactMode;
 
 /// A state with its history.
 #[derive(Debug, Clone)]

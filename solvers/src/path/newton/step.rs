@@ -1,12 +1,12 @@
 //! A step: Newton's method, then a line search, then the homotopy.
 
-use crate::optimise::line_search::LineSearch;
 use super::control::Control;
 use super::iteration::iterate;
 use super::line_search::NOTHING;
 use super::pivot::by_homotopy;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
+use crate::optimise::line_search::LineSearch;
 
 /// Newton's method from a guess. Modes change all at once as long as their number falls, else
 /// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
@@ -20,9 +20,7 @@ pub(super) fn solve_step(
     control: &Control,
 ) -> Result<(State, u64), StepFailure> {
     let found = iterate(system, start, guess.clone(), control, 8, None);
-    if found.is_ok()
-        || (!system.laws.responses.is_empty() && system.laws.polygons.is_empty())
-    {
+    if found.is_ok() || (!system.laws.responses.is_empty() && system.laws.polygons.is_empty()) {
         return found;
     }
     if system.finite() || !system.piecewise_linear() {
@@ -44,8 +42,14 @@ pub(super) fn solve_step(
 }
 
 /// Newton's method with all modes changed at once and a line search.
-pub(super) fn line_searched(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Result<(State, u64), StepFailure> {
-    let found = iterate(system, 
+pub(super) fn line_searched(
+    system: &mut StepSystem,
+    start: &State,
+    guess: State,
+    control: &Control,
+) -> Result<(State, u64), StepFailure> {
+    let found = iterate(
+        system,
         start,
         guess,
         control,

@@ -1,9 +1,5 @@
 //! The system of a step as data: units, laws, loads, geometry; and what the last evaluations leave to the next.
 
-use crate::contact::mode::ContactMode;
-use crate::contact::yield_polygon::YieldPolygon;
-use crate::path::energy::load_size;
-use std::rc::Rc;
 use super::blocks::{YieldingBlock, undeformed};
 use super::control::MonitorWeights;
 use super::derivatives::{Gradient, Hessian};
@@ -14,6 +10,10 @@ use super::loads::StagedLoads;
 use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
 use super::unknowns::{Units, Unknowns};
+use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
+use crate::path::energy::load_size;
+use std::rc::Rc;
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{Loading, PathProblem};
 

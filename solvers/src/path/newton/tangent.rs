@@ -1,12 +1,12 @@
 //! Rates of converged states with their contact modes held, and the modes that a state asks for.
 
-use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::control_row::{add_weighted_gaps, control_row, control_value};
 use super::derivatives::Hessian;
 use super::linearised::solve_linear;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
+use crate::contact::mode::ContactMode;
 
 pub(super) fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);

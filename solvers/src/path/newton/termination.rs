@@ -1,7 +1,5 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
-use crate::path::continuation::arc_length::ArcLength;
-use std::sync::Arc;
 use super::control::Control;
 use super::limit_point::test_limit_point;
 use super::measure::{increment_along, motion_size};
@@ -14,6 +12,8 @@ use super::step::solve_step;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
+use crate::path::continuation::arc_length::ArcLength;
+use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, LoadStep};
 

@@ -1,13 +1,13 @@
 //! The state of a trace: the last converged state, what is recorded of the path, and how it ended.
 
-use crate::path::energy::{EnergyBalance, WorkState};
-use std::sync::Arc;
 use super::cycle_detector::CycleDetector;
 use super::derivatives::Gradient;
 use super::events::events;
 use super::recorded::{energy_after, recorded, work_state};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
+use crate::path::energy::{EnergyBalance, WorkState};
+use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, PathEvent, PathObserver, PathSettings, PathState};
 

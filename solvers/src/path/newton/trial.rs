@@ -1,7 +1,6 @@
 //! A step that is tried: its predictor, its control, Newton's method and what it falls back on, and whether
 //! what has converged lies along the path.
 
-use crate::contact::mode::ContactMode;
 use super::control::Control;
 use super::control_row::work_along;
 use super::creeping::refuse_creeping;
@@ -15,6 +14,7 @@ use super::step::solve_step;
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::tracer::{Tracer, moved_along};
+use crate::contact::mode::ContactMode;
 use voussoir_core::path::LoadStepEnd;
 
 /// Length, relative to the first step, from which on a line search helps. What shorter steps do not find is a corner,
@@ -184,8 +184,9 @@ fn judge(
     }
     // Friction that is not associated: several states may belong to one load. A state far from
     // what both ends' rates can reach is another branch.
-    let slides = (0..next.mode.len())
-        .any(|c| next.mode[c] != tracer.state.mode[c] && tracer.system.law(c).is_some_and(|law| law.is_non_associated()));
+    let slides = (0..next.mode.len()).any(|c| {
+        next.mode[c] != tracer.state.mode[c] && tracer.system.law(c).is_some_and(|law| law.is_non_associated())
+    });
     if slides && !tracer.strategy.passes_limit_points() {
         let after = tangent_at(&mut tracer.system, &tracer.state, next, &Control::Factor(next.factor));
         let Some(after) = after else { return no("the state has no rate under growing load") };

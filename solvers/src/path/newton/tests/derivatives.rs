@@ -1,10 +1,10 @@
 //! The derivatives of the potential against finite differences, and objectivity.
 
+use super::body;
 use crate::path::newton::geometry::{Geometry, Place};
 use crate::path::newton::kinematics::{gradient as gradient_of, hessian as hessian_of};
 use crate::path::newton::loads::Loads;
 use nalgebra::{DMatrix, Rotation2};
-use super::body;
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, PointLaw, Sliding};
@@ -90,7 +90,10 @@ fn the_tangent_is_the_derivative() {
         let factor = 0.7;
         settle(&mut motion, factor);
         let flat = |force: &[[f64; 2]], motion: &[[f64; 3]], factor: f64| {
-            let s = gradient_of(&geometry, &Place { force, motion, loads: &Loads { parts: vec![(factor, loading)] }, blocks: &[] });
+            let s = gradient_of(
+                &geometry,
+                &Place { force, motion, loads: &Loads { parts: vec![(factor, loading)] }, blocks: &[] },
+            );
             let mut all: Vec<f64> = s.gap.iter().flatten().copied().collect();
             all.extend(s.balance.iter().flatten());
             all
@@ -144,7 +147,10 @@ fn gaps_are_objective() {
     let (force, motion) = some_state();
     let loading = problem.load_steps[0].loading.clone();
     let geometry = Geometry::new(&problem, true);
-    let before = gradient_of(&geometry, &Place { force: &force, motion: &motion, loads: &Loads { parts: vec![(1.0, &loading)] }, blocks: &[] });
+    let before = gradient_of(
+        &geometry,
+        &Place { force: &force, motion: &motion, loads: &Loads { parts: vec![(1.0, &loading)] }, blocks: &[] },
+    );
     for angle in [1.0, 3.0, 40.0] {
         let turn = Rotation2::new(angle);
         let turned: Vec<[f64; 3]> = motion
@@ -158,7 +164,10 @@ fn gaps_are_objective() {
         let mut load = loading.clone();
         load.acceleration = turn * load.acceleration;
         load.forces.iter_mut().for_each(|f| f.3 = turn * f.3);
-        let after = gradient_of(&geometry, &Place { force: &force, motion: &turned, loads: &Loads { parts: vec![(1.0, &load)] }, blocks: &[] });
+        let after = gradient_of(
+            &geometry,
+            &Place { force: &force, motion: &turned, loads: &Loads { parts: vec![(1.0, &load)] }, blocks: &[] },
+        );
         for (a, b) in after.gap.iter().flatten().zip(before.gap.iter().flatten()) {
             assert!((a - b).abs() < 1e-13, "{a} {b}");
         }

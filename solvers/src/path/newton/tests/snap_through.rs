@@ -1,13 +1,16 @@
 //! The truss of von Mises with finite displacements.
 
+use super::{Kept, body, settings};
 use crate::path::continuation::dissipation::Dissipation;
 use crate::path::newton::NewtonPath;
 use nalgebra::Rotation2;
 use std::sync::Arc;
-use super::{Kept, body, settings};
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathProblem, PathSolver, PointLaw, Sliding, Unobserved};
+use voussoir_core::path::{
+    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathProblem, PathSolver, PointLaw, Sliding,
+    Unobserved,
+};
 
 /// Two rigid bars, hinged to each other at the crown and to the ground by a hinge of compliance c in
 /// both directions: the truss of von Mises.

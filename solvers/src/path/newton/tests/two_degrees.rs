@@ -1,5 +1,6 @@
 //! One contact point with friction, held by two springs.
 
+use super::{Kept, settings};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::dissipation::Dissipation;
 use crate::path::continuation::exact_events::ExactEvents;
@@ -7,11 +8,13 @@ use crate::path::continuation::load_control::LoadControl;
 use crate::path::newton::NewtonPath;
 use nalgebra::DMatrix;
 use std::sync::Arc;
-use super::{Kept, settings};
 use voussoir_core::law::Facet;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver, PointLaw, Sliding, Unobserved};
+use voussoir_core::path::{
+    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver, PointLaw,
+    Sliding, Unobserved,
+};
 
 /// One contact point on the ground, held by springs K over (t, n): the two-degree-of-freedom example.
 fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, LoadStepEnd)>) -> PathProblem {

@@ -1,13 +1,15 @@
 //! Convergence of steps in which a block yields.
 
+use super::body;
 use crate::path::newton::control::Control;
 use crate::path::newton::loads::StagedLoads;
 use crate::path::newton::step::solve_step;
 use crate::path::newton::system::StepSystem;
 use std::sync::Arc;
-use super::body;
 use voussoir_core::elastic::{Condenser, IsotropicElastic, MeshDensity};
-use voussoir_core::law::{Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises};
+use voussoir_core::law::{
+    Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises,
+};
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, PointLaw, Sliding};
