@@ -1,49 +1,39 @@
-//! Whether a rate with growing λ starts at a converged state (small displacements).
+//! The limit point test: whether a rate with growing λ starts at a converged state (small displacements).
 //!
-//! Points with slack in all facets stay stuck, open ones open. At the others, which are at the verge of a change,
-//!
-//! ```text
-//! ġ = −Σ γ_i d_i,   ṡ_i = −a_i·ṙ,   0 ≤ γ_i ⟂ ṡ_i ≥ 0   over the facets without slack
-//! ```
-//!
-//! (all three facets of dry friction at its apex together give opening and slip). With these points
-//! taken as stuck equilibrium and elasticity are one factorisation, ṡ = q λ̇ + M γ, and λ̇ = 1 leaves a
-//! linear complementarity problem (Klarbring 1990, Ing.-Arch. 60), which is searched to its end. Where
-//! an opening facet with strength is open already its multiplier has any sign: it belongs to the
-//! factorised regimes, and only the point's other facets are pairs.
+//! Points with slack in all facets stay stuck, open ones without strength open. With the others, the active set, taken
+//! as stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ + s λ̇ over them
+//! ([`rate::problem`](crate::rate::problem)); branching finds a rate with λ̇ = 1 or proves that there is none.
 
+use super::equations::Equations;
 use super::model::{Model, Rate, State};
+use crate::contact::active_point::ActivePoint;
+use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
-use crate::optimise::branching::{LcpAnswer, solve_by_branching};
-use crate::optimise::lcp::Lcp;
+use crate::rate::branching::{self, rising};
+use crate::rate::problem::RateProblem;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
-const VERGE: f64 = 1e-8;
+const ACTIVE: f64 = 1e-8;
+/// Multiplier of opening, relative to the unit of displacement, above which a point is open.
+const OPEN: f64 = 1e-9;
 /// Residual of a response, relative to what it is made of.
 const RESIDUAL: f64 = 1e-9;
-/// Shift of the factorised matrix, taken out by refinement.
-const SHIFT: f64 = 1e-11;
+/// Regularisation of the factorised matrix, taken out by refinement.
+const REGULARISATION: f64 = 1e-11;
 /// Linear programs of a search.
 const MOST: u64 = 20_000;
 
-/// Contact points at the verge of a change.
-struct Verge {
-    /// (contact point, facet) without slack.
-    facets: Vec<(usize, usize)>,
-    /// Regimes that are factorised.
-    regimes: Vec<ContactMode>,
-}
-
-/// The rate problem of a state.
-struct RateProblem {
-    problem: Lcp,
-    /// Multiplier of each facet per unit of z.
-    units: Vec<f64>,
-    /// Rates of all unknowns but λ by each multiplier and, last, by λ̇ in the sense asked for.
-    responses: Vec<Vec<f64>>,
+/// The active set of a state.
+struct ActiveSet {
+    /// Contact points.
+    contacts: Vec<usize>,
+    /// Facets of each without slack, and the opening facet where it is open with a strength.
+    facets: Vec<(Vec<usize>, Option<usize>)>,
+    /// Modes of all points with those of the active set stuck.
+    modes: Vec<ContactMode>,
 }
 
 /// What is known of rates with growing λ.
@@ -59,146 +49,104 @@ pub(super) enum Rising {
 impl Model<'_> {
     /// Looks for a rate with λ growing in the sense `direction` at a converged state, or proves that there is none.
     pub fn rising(&mut self, state: &State, direction: f64) -> Rising {
-        let verge = self.verge(state);
-        let facets = verge.facets.len();
+        let active = self.active_set(state);
+        let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
         self.count("factorisations", 1);
-        let Some(rate) = self.rate_problem(state, &verge, direction) else {
-            return Rising::Unknown(format!("the stiffness of {facets} facets at the verge of yielding was not found"));
-        };
-        let (known, programs) = solve_by_branching(&rate.problem, MOST);
-        self.count("rate_programs", programs);
-        match known {
-            LcpAnswer::NoSolution => Rising::None,
-            LcpAnswer::Undecided(why) => {
-                Rising::Unknown(format!("{facets} facets at the verge of yielding may let the load grow: {why}"))
-            }
-            LcpAnswer::Solution(z) => {
-                let mut x = rate.responses[facets].clone();
-                for ((by, z), unit) in rate.responses.iter().zip(&z).zip(&rate.units) {
-                    x.iter_mut().zip(by).for_each(|(x, by)| *x += z * unit * by);
-                }
-                x.push(direction);
-                let slopes = self.slopes(state);
-                let curvature = self.curvature(state, &slopes);
-                let found = self.rate_from(&x, state, &curvature);
-                Rising::Rate(found, self.regimes_of(&verge, &z))
-            }
-        }
-    }
-
-    /// Regimes in which the facets with z > 0 yield.
-    fn regimes_of(&self, verge: &Verge, z: &[f64]) -> Vec<ContactMode> {
-        let largest = z.iter().fold(0.0, |a: f64, z| a.max(*z));
-        let mut regimes = verge.regimes.clone();
-        for (&(c, i), _) in verge.facets.iter().zip(z).filter(|(_, z)| **z > 1e-9 * largest) {
-            let Some(law) = self.law(c) else { continue };
-            regimes[c] = match regimes[c] {
-                ContactMode::Stick => ContactMode::Facet(i as u8),
-                // Both senses of slip at the apex: it opens.
-                ContactMode::Facet(j) => law.mode_of_pair(i, j as usize).unwrap_or(ContactMode::Facet(j)),
-                corner => corner,
-            };
-        }
-        regimes
-    }
-
-    fn verge(&self, state: &State) -> Verge {
-        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-        let (mut facets, mut regimes) = (Vec::new(), state.regime.clone());
-        for (c, regime) in regimes.iter_mut().enumerate() {
-            let (Some(law), area, r) = (self.law(c), self.problem.contacts[c].area, state.force[c]) else { continue };
-            let slack = |i: usize| {
-                let f = &law.facets[i];
-                f.bound * area - f.normal[0] * r[0] - f.normal[1] * r[1]
-            };
-            let active = (0..law.facets.len()).filter(|i| slack(*i) <= VERGE * largest);
-            let (_, opening) = law.irreversible(state.regime[c], self.step_gap(state, state, c));
-            if !(law.opens(state.regime[c]) && opening > 1e-9 * self.units.displacement) {
-                *regime = ContactMode::Stick;
-                facets.extend(active.map(|i| (c, i)));
-                continue;
-            }
-            let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
-            if let Some(facet) = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0) {
-                *regime = ContactMode::Facet(facet as u8);
-                facets.extend(active.filter(|i| !opens(i)).map(|i| (c, i)));
-            }
-        }
-        Verge { facets, regimes }
-    }
-
-    /// Slack rates by multipliers and by λ̇ in the sense `direction`. `None` where linear algebra fails.
-    fn rate_problem(&mut self, state: &State, verge: &Verge, direction: f64) -> Option<RateProblem> {
         let slopes = self.slopes(state);
         let curvature = self.curvature(state, &slopes);
-        let (u, points) = (self.units, state.gap.len());
+        let Some(responses) = self.responses_of(&active, curvature.rows(self), direction) else {
+            return Rising::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
+        };
+        let mut programs = 0;
+        let found = rising(&self.rate_problem(&active, &responses), MOST, &mut programs);
+        self.count("rate_programs", programs);
+        match found {
+            branching::Rising::None => Rising::None,
+            branching::Rising::Undecided(why) => {
+                Rising::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
+            }
+            branching::Rising::Found(gaps, modes) => {
+                let mut x = responses[2 * gaps.len()].clone();
+                for (by, gap) in responses.iter().zip(gaps.iter().flatten()) {
+                    x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
+                }
+                x.push(direction);
+                let mut all = active.modes.clone();
+                for (c, mode) in active.contacts.iter().zip(modes) {
+                    // A corner has one mode, whichever two of its facets flow.
+                    let law = self.law(*c);
+                    all[*c] = match mode {
+                        ContactMode::Corner(i, j) => {
+                            law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode)
+                        }
+                        other => other,
+                    };
+                }
+                Rising::Rate(self.rate_from(&x, state, &curvature), all)
+            }
+        }
+    }
+
+    fn active_set(&self, state: &State) -> ActiveSet {
+        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+        let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.regime.clone() };
+        for c in 0..active.modes.len() {
+            let (Some(law), area, r) = (self.law(c), self.problem.contacts[c].area, state.force[c]) else { continue };
+            let (_, opening) = law.irreversible(state.regime[c], self.step_gap(state, state, c));
+            let is_open = law.opens(state.regime[c]) && opening > OPEN * self.units.displacement;
+            let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
+            let strength = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0);
+            if is_open && strength.is_none() {
+                continue;
+            }
+            active.modes[c] = ContactMode::Stick;
+            let open = strength.filter(|_| is_open);
+            let tight = |i: &usize| slack(&law.facets[*i], r, area) <= ACTIVE * largest;
+            let facets: Vec<usize> = (0..law.facets.len()).filter(tight).collect();
+            if !facets.is_empty() || open.is_some() {
+                active.contacts.push(c);
+                active.facets.push((facets, open));
+            }
+        }
+        active
+    }
+
+    /// Rates of all unknowns but λ by a unit gap rate in each of the two directions of every point of the active set
+    /// and, last, by λ̇ in the sense `direction`. `None` where linear algebra fails.
+    fn responses_of(&self, active: &ActiveSet, equations: &Equations, direction: f64) -> Option<Vec<Vec<f64>>> {
         let size = self.size() - 1;
-        let rotates = |row: usize| (row - 2 * points) % 3 == 2;
-        // Gap rows by the regimes, equilibrium of the bodies; and −∂/∂λ of both.
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); size];
-        let mut driven = vec![0.0; size];
-        let row_of = |i: usize, value: f64| {
-            if i < 2 * points {
-                return Some((i, value / u.displacement));
-            }
-            let (row, _) = self.column(i)?;
-            Some((row, value / if rotates(row) { u.force * u.length } else { u.force }))
-        };
-        for &(i, j, value) in &curvature.entries {
-            if let (Some((row, value)), Some((column, unit))) = (row_of(i, value), self.column(j)) {
-                rows[row].push((column, value * unit));
-            }
-        }
-        for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-            if let Some((row, value)) = row_of(i, value * u.factor) {
-                driven[row] -= value * direction;
-            }
-        }
-        let weighted = |c: usize, weight: [f64; 2]| {
-            let [n, t] = [0, 1].map(|k| rows[2 * c + k].iter().map(move |&(j, v)| (j, v * weight[k])));
-            n.chain(t).collect::<Vec<_>>()
-        };
+        let forces = equations.gaps.len();
+        // −∂/∂λ of gaps and balance.
+        let driven =
+            |row: &[(usize, f64)]| -> f64 { row.iter().filter(|e| e.0 == size).map(|e| -direction * e.1).sum() };
         let (mut entries, mut shift): (Entries, Entries) = (Vec::new(), Vec::new());
-        let mut right = driven.clone();
-        for (c, regime) in verge.regimes.iter().enumerate() {
-            let own: [Vec<(usize, f64)>; 2] = match (regime, self.law(c)) {
-                (ContactMode::Facet(i), Some(law)) => {
-                    let f = &law.facets[*i as usize];
-                    right[2 * c] = 0.0;
-                    right[2 * c + 1] = driven[2 * c] * f.flow[1] - driven[2 * c + 1] * f.flow[0];
-                    [vec![(2 * c, f.normal[0]), (2 * c + 1, f.normal[1])], weighted(c, [f.flow[1], -f.flow[0]])]
+        let mut right = vec![0.0; size];
+        let add = |i: usize, row: &[(usize, f64)], by: f64, entries: &mut Entries| {
+            entries.extend(row.iter().filter(|e| e.0 < size).map(|&(j, v)| (i, j, by * v)));
+        };
+        for (c, mode) in active.modes.iter().enumerate() {
+            let gap = [0, 1].map(|k| equations.gaps.row(2 * c + k));
+            let law = self.law(c).map_or(&[][..], |law| &law.facets);
+            for (k, own) in mode.rows(law)?.into_iter().enumerate() {
+                let i = 2 * c + k;
+                entries.extend((0..2).filter(|t| own[*t] != 0.0).map(|t| (i, 2 * c + t, own[t])));
+                for t in (0..2).filter(|t| own[2 + t] != 0.0) {
+                    add(i, gap[t], own[2 + t], &mut entries);
+                    right[i] += own[2 + t] * driven(gap[t]);
                 }
-                (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => {
-                    (0..2).for_each(|k| right[2 * c + k] = 0.0);
-                    [vec![(2 * c, 1.0)], vec![(2 * c + 1, 1.0)]]
+                if *mode == ContactMode::Stick {
+                    shift.push((i, i, REGULARISATION));
                 }
-                _ => {
-                    shift.extend((0..2).map(|k| (2 * c + k, 2 * c + k, SHIFT)));
-                    [weighted(c, [1.0, 0.0]), weighted(c, [0.0, 1.0])]
-                }
-            };
-            for (k, row) in own.into_iter().enumerate() {
-                entries.extend(row.into_iter().map(|(j, v)| (2 * c + k, j, v)));
             }
         }
-        for (row, own) in rows.iter().enumerate().skip(2 * points) {
-            entries.extend(own.iter().map(|&(j, v)| (row, j, v)));
-            shift.push((row, row, -SHIFT));
+        for row in 0..equations.bodies.len() {
+            let (i, own) = (forces + row, equations.bodies.row(row));
+            add(i, own, 1.0, &mut entries);
+            right[i] = driven(own);
+            shift.push((i, i, -REGULARISATION));
         }
-        let facet = |&(c, i): &(usize, usize)| self.law(c).map(|law| law.facets[i]);
-        let mut all = Vec::with_capacity(verge.facets.len() + 1);
-        for at in &verge.facets {
-            let (c, flow) = (at.0, facet(at)?.flow);
-            let mut unit = vec![0.0; size];
-            match (verge.regimes[c], self.law(c)) {
-                (ContactMode::Facet(o), Some(law)) => {
-                    let d = law.facets[o as usize].flow;
-                    unit[2 * c + 1] = -flow[0] * d[1] + flow[1] * d[0];
-                }
-                _ => (0..2).for_each(|k| unit[2 * c + k] = -flow[k]),
-            }
-            all.push(unit);
-        }
+        let unit = |i: usize| (0..size).map(|j| f64::from(u8::from(i == j))).collect();
+        let mut all: Vec<Vec<f64>> = active.contacts.iter().flat_map(|c| [2 * c, 2 * c + 1]).map(unit).collect();
         all.push(right);
         let x = SparseLu::shifted(size, &entries, &shift)?.solve(&all, 3)?;
         for (x, right) in x.iter().zip(&all) {
@@ -211,22 +159,29 @@ impl Model<'_> {
                 return None;
             }
         }
-        let n = verge.facets.len();
-        let slack = |i: usize, x: &[f64]| {
-            let (c, normal) = (verge.facets[i].0, facet(&verge.facets[i]).map_or([0.0; 2], |f| f.normal));
-            -normal[0] * x[2 * c] - normal[1] * x[2 * c + 1]
+        Some(x)
+    }
+
+    fn rate_problem(&self, active: &ActiveSet, responses: &[Vec<f64>]) -> RateProblem<'_> {
+        let n = 2 * active.contacts.len();
+        let force = |i: usize, x: &[f64]| x[2 * active.contacts[i / 2] + i % 2];
+        let point = |(c, (facets, open)): (&usize, &(Vec<usize>, Option<usize>))| {
+            let law = self.law(*c).map_or(&[][..], |law| &law.facets);
+            ActivePoint {
+                facets: law,
+                active: facets.clone(),
+                open: *open,
+                apex: open.is_none() && ActivePoint::is_apex(law, facets),
+                guess: ContactMode::Stick,
+                hit: true,
+                stiffness: 1.0,
+            }
         };
-        let matrix = DMatrix::from_fn(n, n, |i, j| slack(i, &x[j]));
-        let constant = DVector::from_fn(n, |i, _| slack(i, &x[n]));
-        // Entries of size one on the diagonal and in the constant.
-        let largest = if n > 0 { matrix.diagonal().amax() } else { 1.0 }.max(1e-300);
-        let own: Vec<f64> = matrix.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
-        let constant = DVector::from_fn(n, |i, _| constant[i] / own[i]);
-        let size = if n > 0 { constant.amax().max(1e-300) } else { 1.0 };
-        let problem = Lcp {
-            matrix: DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (own[i] * own[j])),
-            constant: constant / size,
-        };
-        Some(RateProblem { problem, units: own.iter().map(|own| size / own).collect(), responses: x })
+        RateProblem {
+            points: active.contacts.iter().zip(&active.facets).map(point).collect(),
+            s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
+            load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
+            from_nothing: false,
+        }
     }
 }
