@@ -2,7 +2,7 @@
 //! and what was noted on the way.
 
 use super::energy::{Snapshot, load_displacement, snapshot, work};
-use super::factorisation::UpdatedFactorisation;
+use super::factorisation::FactorisedModes;
 use super::point::Point;
 use super::system::System;
 use crate::contact::facet::dot;
@@ -36,7 +36,7 @@ impl State {
 #[derive(Default)]
 pub struct Factors {
     /// None before the first event.
-    pub present: Option<UpdatedFactorisation>,
+    pub present: Option<FactorisedModes>,
     /// Whether responses are refined one by one: close to a collapse.
     pub refine_columns: bool,
 }
