@@ -78,10 +78,7 @@ fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> 
         && determinant.abs() >= STRONG * size[0] * size[1]
         && determinant != 0.0;
     strong.then(|| {
-        [
-            [own[1][1] / determinant, -own[0][1] / determinant],
-            [-own[1][0] / determinant, own[0][0] / determinant],
-        ]
+        [[own[1][1] / determinant, -own[0][1] / determinant], [-own[1][0] / determinant, own[0][0] / determinant]]
     })
 }
 

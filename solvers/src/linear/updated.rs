@@ -112,11 +112,10 @@ impl<F: Factors> UpdatedFactorisation<F> {
         row.map(|(j, v)| v * value(j)).sum()
     }
 
-    /// Adds the responses of a point times ε to right-hand sides of all rows and their kept unknowns.
-    pub fn add(&self, contact: usize, epsilon: [f64; 2], (right, y): (&mut [f64], &mut [f64])) {
+    /// Adds the responses of a point times ε to kept unknowns.
+    pub fn add(&self, contact: usize, epsilon: [f64; 2], y: &mut [f64]) {
         let Some(columns) = self.columns.get(&contact) else { return };
         for (k, column) in columns.iter().enumerate() {
-            right[2 * contact + k] += epsilon[k];
             y.iter_mut().zip(&column.y).for_each(|(y, v)| *y += epsilon[k] * v);
         }
     }

@@ -111,7 +111,7 @@ fn holds(problem: &RateProblem, rate: &Rate) -> bool {
 fn laws(random: &mut Lcg) -> Vec<(Vec<Facet>, Vec<usize>, Option<usize>, bool)> {
     let mut all = Vec::new();
     for dilatancy in [0.0, 0.3, 1.0] {
-        let friction = 0.2 + 0.8 * random.next().abs();
+        let friction = 0.2 + 2.5 * random.next().abs();
         let dry = [vec![Facet::opening(0.0)], Facet::friction(friction, 0.0, dilatancy * friction).to_vec()].concat();
         let strong = [
             vec![Facet::opening(0.4)],
@@ -195,18 +195,30 @@ fn fuzzed_rate_problems_are_solved() {
         let columns = [2 * count, count + 1, 3 * count][number / 3 % 3];
         let root = DMatrix::from_fn(2 * count, columns, |_, _| random.next());
         let soft = [0.0, 1e-3, 0.1][number / 5 % 3];
-        let point = |k: &usize| {
+        let mut point = |k: &usize| {
             let (facets, active, open, apex) = &laws[*k];
             let guess = open.map_or(ContactMode::Stick, |f| ContactMode::Facet(f as u8));
-            ActivePoint { facets, active: active.clone(), open: *open, apex: *apex, guess, hit: true, stiffness: 1.0 }
+            let mut point = ActivePoint {
+                facets,
+                active: active.clone(),
+                open: *open,
+                apex: *apex,
+                guess,
+                hit: true,
+                stiffness: 1.0,
+            };
+            let candidates = point.candidates();
+            point.guess = candidates[((random.next() + 1.0) / 2.0 * candidates.len() as f64) as usize];
+            point
         };
+        let points: Vec<ActivePoint> = chosen.iter().map(&mut point).collect();
         let push = DVector::from_fn(columns, |_, _| random.next());
         let s = &root * root.transpose() + DMatrix::identity(2 * count, 2 * count) * soft;
         let load_rate = match number % 2 {
             0 => &root * push,
             _ => DVector::from_fn(2 * count, |_, _| random.next()),
         };
-        let problem = RateProblem { points: chosen.iter().map(point).collect(), s, load_rate, from_nothing: false };
+        let problem = RateProblem { points, s, load_rate, from_nothing: false };
         let tally = tallies.entry(family).or_default();
         tally.problems += 1;
         let outcome = solve(&problem, false, &mut tally.order);

@@ -182,7 +182,8 @@ impl FactorisedModes {
     pub fn combine(&self, points: &[usize], epsilon: &[f64], onto: (Vec<f64>, Vec<f64>)) -> Vec<f64> {
         let (mut right, mut y) = onto;
         for (c, epsilon) in points.iter().zip(epsilon.chunks_exact(2)) {
-            self.updated.add(*c, [epsilon[0], epsilon[1]], (&mut right, &mut y));
+            (0..2).for_each(|k| right[2 * c + k] += epsilon[k]);
+            self.updated.add(*c, [epsilon[0], epsilon[1]], &mut y);
         }
         self.updated.factors.expand(&right, &y)
     }

@@ -93,9 +93,7 @@ impl Frame {
             let rows = self.rows_of(model, contact, old);
             base.changes.push(Change { contact, rows: [rows.clone(), rows] });
         }
-        let mut unused = vec![0.0; self.right.len()];
-        let by = [right[0] - before[0], right[1] - before[1]];
-        base.updated.add(contact, by, (&mut unused, &mut base.from));
+        base.updated.add(contact, [right[0] - before[0], right[1] - before[1]], &mut base.from);
         for change in base.changes.iter_mut().filter(|change| change.contact == contact) {
             change.rows[0] = self.rows_of(model, contact, regime);
         }
@@ -164,7 +162,8 @@ impl Frame {
         let by = small.lu().solve(&DVector::from_fn(n, |i, _| difference(i, from, &present)))?;
         let (mut y, mut right) = (from.clone(), self.right.clone());
         for (change, w) in changes.iter().zip(by.as_slice().chunks_exact(2)) {
-            updated.add(change.contact, [-w[0], -w[1]], (&mut right, &mut y));
+            (0..2).for_each(|k| right[2 * change.contact + k] -= w[k]);
+            updated.add(change.contact, [-w[0], -w[1]], &mut y);
         }
         let changed = |c: usize| [right[2 * c], right[2 * c + 1]];
         let bound = RESIDUAL * norm(&self.right);
