@@ -20,7 +20,7 @@ const MOST: usize = 160;
 const PROGRAMS: u64 = 4000;
 
 /// What is known of rates with growing λ.
-pub enum Rising {
+pub enum RisingRate {
     /// There is none: a limit point.
     None,
     /// ġ with λ̇ = 1 and the modes.
@@ -31,9 +31,9 @@ pub enum Rising {
 
 /// The limit point test: whether there is a rate with λ growing, by at most so many linear programs, which are
 /// counted.
-pub fn rising(problem: &RateProblem, most: u64, programs: &mut u64) -> Rising {
+pub fn rising_rate(problem: &RateProblem, most: u64, programs: &mut u64) -> RisingRate {
     let Some(lcp) = rate_lcp(problem, false) else {
-        return Rising::Undecided("nothing holds the points that are open".into());
+        return RisingRate::Undecided("nothing holds the points that are open".into());
     };
     // Without a load on them the facets have nothing to do.
     let Lcp { matrix, constant } = &lcp.lcp;
@@ -42,11 +42,11 @@ pub fn rising(problem: &RateProblem, most: u64, programs: &mut u64) -> Rising {
     let (answer, took) = solve_by_branching(&scaled, most);
     *programs += took;
     match answer {
-        LcpAnswer::NoSolution => Rising::None,
-        LcpAnswer::Undecided(why) => Rising::Undecided(why),
+        LcpAnswer::NoSolution => RisingRate::None,
+        LcpAnswer::Undecided(why) => RisingRate::Undecided(why),
         LcpAnswer::Solution(z) => {
             let z: Vec<f64> = z.iter().map(|z| z * size).collect();
-            Rising::Found(gaps_of(problem, &lcp, &z, 1.0, false), modes_of_solution(problem, &lcp, &z))
+            RisingRate::Found(gaps_of(problem, &lcp, &z, 1.0, false), modes_of_solution(problem, &lcp, &z))
         }
     }
 }

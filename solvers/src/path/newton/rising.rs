@@ -9,7 +9,7 @@ use super::model::{Model, Rate, State};
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
-use crate::rate::branching::{self, rising};
+use crate::rate::branching::{RisingRate, rising_rate};
 use crate::rate::problem::RateProblem;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
@@ -58,14 +58,14 @@ impl Model<'_> {
             return Rising::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
         };
         let mut programs = 0;
-        let found = rising(&self.rate_problem(&active, &responses), MOST, &mut programs);
+        let found = rising_rate(&self.rate_problem(&active, &responses), MOST, &mut programs);
         self.count("rate_programs", programs);
         match found {
-            branching::Rising::None => Rising::None,
-            branching::Rising::Undecided(why) => {
+            RisingRate::None => Rising::None,
+            RisingRate::Undecided(why) => {
                 Rising::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
             }
-            branching::Rising::Found(gaps, modes) => {
+            RisingRate::Found(gaps, modes) => {
                 let mut x = responses[2 * gaps.len()].clone();
                 for (by, gap) in responses.iter().zip(gaps.iter().flatten()) {
                     x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
