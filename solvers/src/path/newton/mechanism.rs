@@ -1,10 +1,14 @@
-//! Mechanisms under constant forces where the regimes leave more than one motion.
+//! Mechanisms under constant forces where the modes leave more than one motion.
 //!
-//! Blocks that slide side by side move independently of each other. The rate of their regimes is then one
+//! Blocks that slide side by side move independently of each other. The rate of their modes is then one
 //! of many, and the one that linear algebra picks may close a point that is open: it does not go on for ever,
-//! and steps along it end nowhere. A linear program finds a mechanism where there is one ([`rate::mechanism`](crate::rate::mechanism)).
+//! and steps along it end nowhere. A linear program finds a mechanism where there is one
+//! ([`rate::mechanism`](crate::rate::mechanism)).
 
-use super::model::{Model, Rate, State};
+use super::measure::load_displacement;
+use super::state::{State, Tangent};
+use super::system::StepSystem;
+use super::tangent::tangent_from;
 use crate::contact::facet::slack;
 use crate::optimise::dense_simplex::Feasibility;
 use crate::rate::mechanism::mechanisms;
@@ -12,57 +16,55 @@ use crate::rate::mechanism::mechanisms;
 /// Slack, relative to the greatest force, up to which a facet may yield.
 const YIELDING: f64 = 1e-9;
 
-impl Model<'_> {
-    /// A motion on which the load does work and forces stay as they are (small displacements, laws of facets).
-    pub fn mechanism(&mut self, state: &State) -> Option<Rate> {
-        if self.finite() || !self.piecewise_linear() {
-            return None;
-        }
-        let slopes = self.slopes(state);
-        let curvature = self.curvature(state, &slopes);
-        let (points, bodies) = (state.gap.len(), 3 * self.bodies_free);
-        let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
-        let mut flows: Vec<(usize, [f64; 2])> = Vec::new();
-        for c in 0..points {
-            let Some(law) = self.law(c) else { continue };
-            let (r, area) = (state.force[c], self.problem.contacts[c].area);
-            for f in &law.facets {
-                if slack(f, r, area) <= YIELDING * largest {
-                    flows.push((c, f.flow));
-                }
-            }
-        }
-        // Rows of G in the units of the unknowns.
-        let mut rows: Vec<(usize, [Vec<f64>; 2])> =
-            (0..points).map(|c| (c, [vec![0.0; bodies], vec![0.0; bodies]])).collect();
-        for &(i, j, value) in curvature.entries.iter().filter(|e| e.0 < 2 * points && e.1 >= 2 * points) {
-            if let Some((column, unit)) = self.column(j) {
-                rows[i / 2].1[i % 2][column - 2 * points] += value * unit / self.units.displacement;
-            }
-        }
-        let works = |j: usize| {
-            let mut motion = vec![0.0; bodies];
-            motion[j] = 1.0;
-            self.displacement(&self.motion_of(&motion)) / self.units.displacement
-        };
-        let power: Vec<f64> = (0..bodies).map(works).collect();
-        let mut program = mechanisms(&rows, &flows, &power)?;
-        self.count("rate_programs", 1);
-        if program.feasible() != Feasibility::Point {
-            return None;
-        }
-        let values: Vec<f64> = (0..bodies).map(|j| program.value(j) - program.value(j + bodies)).collect();
-        let mut x = vec![0.0; 2 * points];
-        x.extend(values);
-        x.push(0.0);
-        Some(self.rate_from(&x, state, &curvature))
+/// A motion on which the load does work and forces stay as they are (small displacements, laws of facets).
+pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<Tangent> {
+    if system.finite() || !system.piecewise_linear() {
+        return None;
     }
+    let gradient = system.gradient(state);
+    let hessian = system.hessian(state, &gradient);
+    let (points, bodies) = (state.gap.len(), 3 * system.unknowns.bodies);
+    let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let mut flows: Vec<(usize, [f64; 2])> = Vec::new();
+    for c in 0..points {
+        let Some(law) = system.law(c) else { continue };
+        let (r, area) = (state.force[c], system.problem.contacts[c].area);
+        for f in &law.facets {
+            if slack(f, r, area) <= YIELDING * largest {
+                flows.push((c, f.flow));
+            }
+        }
+    }
+    // Rows of G in the units of the unknowns.
+    let mut rows: Vec<(usize, [Vec<f64>; 2])> =
+        (0..points).map(|c| (c, [vec![0.0; bodies], vec![0.0; bodies]])).collect();
+    for &(i, j, value) in hessian.entries.iter().filter(|e| e.0 < 2 * points && e.1 >= 2 * points) {
+        if let Some((column, unit)) = system.column(j) {
+            rows[i / 2].1[i % 2][column - 2 * points] += value * unit / system.units().displacement;
+        }
+    }
+    let works = |j: usize| {
+        let mut motion = vec![0.0; bodies];
+        motion[j] = 1.0;
+        load_displacement(system, &motion_of(system, &motion)) / system.units().displacement
+    };
+    let power: Vec<f64> = (0..bodies).map(works).collect();
+    let mut program = mechanisms(&rows, &flows, &power)?;
+    system.count("rate_programs", 1);
+    if program.feasible() != Feasibility::Point {
+        return None;
+    }
+    let values: Vec<f64> = (0..bodies).map(|j| program.value(j) - program.value(j + bodies)).collect();
+    let mut x = vec![0.0; 2 * points];
+    x.extend(values);
+    x.push(0.0);
+    Some(tangent_from(system, &x, state, &hessian))
+}
 
-    /// Motions of all bodies by those of the free ones in the units of the unknowns.
-    fn motion_of(&self, values: &[f64]) -> Vec<[f64; 3]> {
-        let u = self.units;
-        let unit = [u.displacement, u.displacement, u.displacement / u.length];
-        let of = |free: &Option<usize>| free.map_or([0.0; 3], |f| [0, 1, 2].map(|k| values[3 * f + k] * unit[k]));
-        self.free.iter().map(of).collect()
-    }
+/// Motions of all bodies by those of the free ones in the units of the unknowns.
+fn motion_of(system: &StepSystem, values: &[f64]) -> Vec<[f64; 3]> {
+    let u = system.units();
+    let unit = [u.displacement, u.displacement, u.displacement / u.length];
+    let of = |free: &Option<usize>| free.map_or([0.0; 3], |f| [0, 1, 2].map(|k| values[3 * f + k] * unit[k]));
+    system.unknowns.free.iter().map(of).collect()
 }

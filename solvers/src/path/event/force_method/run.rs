@@ -235,7 +235,7 @@ fn record(run: &mut Run, trace: &mut Trace) -> bool {
     }
     let [work, moved, factor] = run.since;
     let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
-    trace.state.work += (work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
+    trace.state.energy.work += (work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
     run.since = [0.0, 0.0, trace.state.factor];
     trace.record()
 }
