@@ -138,7 +138,7 @@ curve = true
 
 /// The factor of snap-through that the notes name.
 fn trough(notes: &[String]) -> f64 {
-    let start = "behind the peak the load falls to the factor ";
+    let start = "after the peak the load falls to the factor ";
     let note = notes.iter().find_map(|note| note.strip_prefix(start)).unwrap_or_else(|| panic!("{notes:?}"));
     note.split(' ').next().and_then(|number| number.parse().ok()).expect("a number")
 }
