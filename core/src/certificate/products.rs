@@ -116,7 +116,7 @@ impl Rows {
             if minus == plus {
                 continue;
             }
-            let facets = assembly.catalogue.laws[law].1.formulation().facets().unwrap_or_default();
+            let facets = assembly.catalogue.laws[law].1.facets().unwrap_or_default();
             let polygon = YieldPolygon::of(&facets);
             if polygon.greatest_normal().is_finite() || polygon.least_normal() == f64::NEG_INFINITY {
                 return Err("joints that crush, or never open, have no linear rows".into());

@@ -49,7 +49,7 @@ mod quadrature;
 mod shape;
 mod stress;
 
-pub use condensation::{Condensed, Condenser, IsotropicElastic};
+pub use condensation::{Condensed, Condenser};
 pub use inelastic::{InelasticBody, InelasticState, Linearisation, largest_element};
 pub use joint::{breaks_on_joint, joint_points, union_breaks};
 pub use mesh::{Mesh, MeshDensity, edge_breaks, edge_points};

@@ -3,8 +3,8 @@
 use super::point_law::PointLaw;
 use super::sliding::{Sliding, face, sliding};
 use super::state::PathState;
-use crate::elastic::{Condenser, InelasticBody, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
-use crate::law::{Deformability, InterfaceResponse, PlanarUpdate};
+use crate::elastic::{Condenser, InelasticBody, breaks_on_joint, joint_points, union_breaks};
+use crate::law::{InterfaceResponse, PlanarUpdate};
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, cross, turned};
 use crate::model::{Assembly, Bond, Stage, Target, root};
@@ -126,16 +126,10 @@ pub struct PathProblem {
 /// the joint.
 const REGULARISATION: f64 = 1e5;
 
-/// Young's modulus of a deformable block.
+/// The modulus of a deformable block.
 fn modulus(assembly: &Assembly, block: usize) -> Option<f64> {
-    match assembly.catalogue.materials[assembly.bodies[block].material].1.deformability() {
-        Deformability::LinearElastic { young_modulus, .. } | Deformability::Inelastic { young_modulus, .. }
-            if !assembly.bodies[block].fixed =>
-        {
-            Some(young_modulus)
-        }
-        _ => None,
-    }
+    let body = &assembly.bodies[block];
+    Some(assembly.catalogue.materials[body.material].1.elasticity().filter(|_| !body.fixed)?.modulus)
 }
 
 impl PathProblem {
@@ -193,7 +187,7 @@ impl PathProblem {
     }
 
     fn contact_points(&mut self, assembly: &Assembly, elastic: &dyn Fn(usize) -> bool) -> Result<(), String> {
-        let laws: Vec<PointLaw> = assembly.catalogue.laws.iter().map(|(_, law)| law.formulation().into()).collect();
+        let laws: Vec<Option<PointLaw>> = assembly.catalogue.laws.iter().map(|(_, law)| PointLaw::of(&**law)).collect();
         let mut nonmatching = BTreeSet::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
             let sides = [joint.minus, joint.plus];
@@ -242,7 +236,9 @@ impl PathProblem {
                 };
                 let law = match joint.bond {
                     Bond::Bonded => PointLaw::Bonded,
-                    Bond::Law(law) => laws[law].clone(),
+                    Bond::Law(law) => {
+                        laws[law].clone().ok_or("a joint law gives neither facets nor tractions from gaps")?
+                    }
                 };
                 let compliance = match &law {
                     PointLaw::Response(_) => [0.0; 2],
@@ -362,29 +358,23 @@ impl PathProblem {
             }
             let index = assembly.bodies[block].material;
             let material = &assembly.catalogue.materials[index].1;
-            let (young_modulus, poisson_ratio) = match material.deformability() {
-                Deformability::LinearElastic { young_modulus, poisson_ratio }
-                | Deformability::Inelastic { young_modulus, poisson_ratio } => (young_modulus, poisson_ratio),
-                Deformability::Rigid => continue,
-            };
-            let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
+            let Some(elasticity) = material.elasticity() else { continue };
             let vertices = &assembly.bodies[block].vertices;
-            if matches!(material.deformability(), Deformability::Inelastic { .. }) {
+            if let Some(law) = material.inelastic() {
                 let update = match updates.get(&index) {
                     Some(update) => update.clone(),
                     None => {
-                        let law = material.stress_update().ok_or("a material that yields has no stresses")?;
                         let update = PlanarUpdate::new(law, assembly.plane).map_err(|why| why.to_string())?;
                         updates.entry(index).or_insert(Arc::new(update)).clone()
                     }
                 };
                 assembly.fine_enough(block)?;
-                let inelastic = condenser.inelastic(vertices, elastic, update, &assembly.mesh, &body.points)?;
+                let inelastic = condenser.inelastic(vertices, &elasticity, update, &assembly.mesh, &body.points)?;
                 body.flexibility = Some(inelastic.flexibility());
                 body.inelastic = Some(Arc::new(inelastic));
                 continue;
             }
-            let condensed = condenser.condense(vertices, elastic, &assembly.mesh, &body.points)?;
+            let condensed = condenser.condense(vertices, &elasticity, &assembly.mesh, &body.points)?;
             body.flexibility = Some(Arc::new(condensed.flexibility));
         }
         self.counters.insert("condensation_factorisations".into(), condenser.factorisations());

@@ -9,6 +9,7 @@ pub(crate) mod flow_rule;
 pub(crate) mod homotopy;
 pub(crate) mod lcp;
 pub(crate) mod line_search;
+pub(crate) mod mechanism;
 pub(crate) mod problem;
 pub(crate) mod solve;
 #[cfg(test)]

@@ -101,7 +101,7 @@ loads = [{{ kind = "pressure", block = "b", edge = 1, value = -1e3 }}]
 const GLUE: &str = "[joints.glue]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\ncohesion = 1e9\ntensile_strength = 1e9\n";
 
 /// σ = λ kPa over u = ¾ σ L/E + g (mean displacement of the second block), σ(g) the bilinear law. For
-/// L = 8 m both fall behind the peak: 2 E G_I / (f_t² L) = 0.625. Every state lies on the curve, the peak is f_t
+/// L = 8 m both fall beyond the peak: 2 E G_I / (f_t² L) = 0.625. Every state lies on the curve, the peak is f_t
 /// and what is dissipated in the end is G_I A.
 #[test]
 fn a_bar_in_tension_is_its_closed_form() {

@@ -1,6 +1,6 @@
 //! Whether a limit point is one: no rate with a growing factor leaves it.
 
-use super::rising::{Rising, limit_point_test};
+use super::limit_point_test::{LimitPointTest, limit_point_test};
 use super::state::{State, Tangent};
 use super::tracer::Tracer;
 use crate::contact::mode::ContactMode;
@@ -20,12 +20,12 @@ pub(super) fn test_limit_point(
         return None;
     }
     match limit_point_test(&mut tracer.system, state, direction) {
-        Rising::None => {
+        LimitPointTest::None => {
             tracer.limit.doubt = None;
             tracer.limit.proven = Some(state.factor);
         }
-        Rising::Unknown(why) => tracer.limit.doubt = Some(why),
-        Rising::Tangent(rate, modes) => {
+        LimitPointTest::Unknown(why) => tracer.limit.doubt = Some(why),
+        LimitPointTest::Tangent(rate, modes) => {
             tracer.limit.doubt = Some("there is a rate on which the load grows".into());
             return Some((rate, modes));
         }
