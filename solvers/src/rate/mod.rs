@@ -5,7 +5,6 @@ pub(crate) mod active_set;
 pub(crate) mod branching;
 pub(crate) mod cone;
 pub(crate) mod enumerate;
-pub(crate) mod flow_rule;
 pub(crate) mod homotopy;
 pub(crate) mod lcp;
 pub(crate) mod line_search;

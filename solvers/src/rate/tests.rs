@@ -3,7 +3,6 @@
 use super::active_set::active_set;
 use super::branching::branching;
 use super::enumerate::enumerate_modes;
-use super::flow_rule::flow_rule_homotopy;
 use super::homotopy::homotopy;
 use super::lcp::{Pivoted, pivoting};
 use super::line_search::line_search;
@@ -154,8 +153,7 @@ fn deciders(problem: &RateProblem, number: usize) -> Vec<&'static str> {
     };
     match pivoting(problem, false, trials) {
         Some(Pivoted::Guess(modes)) => {
-            note("pivoting", active_set(problem, modes.clone(), trials));
-            note("line search from pivoting", line_search(problem, &modes, trials));
+            note("pivoting", active_set(problem, modes, trials));
         }
         Some(Pivoted::Ray(rate)) => note("pivoting", Some(rate)),
         None => {}
@@ -167,7 +165,6 @@ fn deciders(problem: &RateProblem, number: usize) -> Vec<&'static str> {
         active_set(problem, modes.clone(), trials).or_else(|| problem.mechanism_near(&modes, &gaps))
     });
     note("homotopy", by_path);
-    note("flow-rule homotopy", flow_rule_homotopy(problem, trials));
     match branching(problem, trials) {
         Some(RateOutcome::Found(rate, _) | RateOutcome::Falling(rate)) => note("branching", Some(rate)),
         Some(_) => all.push("branching"),
