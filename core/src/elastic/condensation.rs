@@ -5,33 +5,15 @@
 //! body's rotation.
 
 use super::inelastic::{InelasticBody, Strains};
+use super::isotropic::IsotropicElastic;
 use super::mesh::MeshDensity;
-use super::shape::{Place, Placement, Shape, agree, placed};
+use super::shape::{Placement, Response, Shape, agree, placed};
 use super::stress::{Recovered, recovered};
 use crate::law::{PlanarUpdate, Plane};
 use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// An isotropic, linear elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IsotropicElastic {
-    /// E \[Pa\].
-    pub young_modulus: f64,
-    /// ν.
-    pub poisson_ratio: f64,
-    /// ρ \[kg/m³\].
-    pub density: f64,
-}
-
-impl IsotropicElastic {
-    fn check(&self) -> Result<(), String> {
-        let IsotropicElastic { young_modulus: e, poisson_ratio: nu, density } = *self;
-        let sound = e.is_finite() && e > 0.0 && nu > -1.0 && nu < 0.5 && density.is_finite() && density >= 0.0;
-        sound.then_some(()).ok_or(format!("no elastic material has E = {e} Pa, ν = {nu}, ρ = {density} kg/m³"))
-    }
-}
 
 /// A body seen from some of its points, in world axes of its undeformed placement. Displacements
 /// are relative to the body's mean rigid motion.
@@ -56,9 +38,6 @@ struct Known {
     /// Places of points and displacements of all nodes by forces there, by local points.
     responses: Vec<(Vec<Vec2>, Response)>,
 }
-
-/// Places of points, and the elastic displacements of all nodes by forces there.
-pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
 impl Known {
     /// C̃ of points given in the shape's frame.

@@ -42,15 +42,19 @@
 mod condensation;
 mod element;
 mod inelastic;
+mod isotropic;
 mod joint;
+mod linearisation;
 mod mesh;
 mod polygon;
 mod quadrature;
 mod shape;
 mod stress;
 
-pub use condensation::{Condensed, Condenser, IsotropicElastic};
-pub use inelastic::{InelasticBody, InelasticState, Linearisation, largest_element};
-pub use joint::{breaks_on_joint, joint_points, union_breaks};
-pub use mesh::{Mesh, MeshDensity, edge_breaks, edge_points};
-pub use stress::Recovered;
+pub use self::condensation::{Condensed, Condenser};
+pub use self::inelastic::{InelasticBody, InelasticState, largest_element};
+pub use self::isotropic::IsotropicElastic;
+pub use self::joint::{breaks_on_joint, joint_points, union_breaks};
+pub use self::linearisation::Linearisation;
+pub use self::mesh::{Mesh, MeshDensity, edge_breaks, edge_points};
+pub use self::stress::Recovered;

@@ -9,20 +9,19 @@
 //! law           per contact point: facets, or a response
 //! ```
 
+mod build;
+mod coarse_joints;
 mod continuation;
-mod displaced;
 mod point_law;
 mod problem;
-mod response;
 mod sliding;
 mod solver;
 mod state;
 
+pub use self::coarse_joints::{SoftensOver, coarse_joints};
 pub use self::continuation::{Constraint, Continuation, Increment};
-pub use self::displaced::Displaced;
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
-pub use self::response::{SoftensOver, coarse_joints};
 pub use self::sliding::Sliding;
 pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};

@@ -5,11 +5,10 @@
 //! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
 //! axes. A contact's n and t turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are those of x⁺ − x⁻ in them, and its force
 //! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
-//! ([`Sliding`](super::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
+//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
 
-use super::problem::{Attachment, Contact, PathProblem};
-use super::state::PathState;
 use crate::model::geometry::{Vec2, cross, turned};
+use crate::path::{Attachment, Contact, PathProblem, PathState};
 use nalgebra::DVector;
 
 /// A state with the deformations of its bodies.

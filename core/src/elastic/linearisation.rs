@@ -1,9 +1,10 @@
 //! A body of a yielding material linearised at displacements of its nodes: stresses, energies, tangent, and the
-//! condensation of the tangent on its points. The equations are those of the module above.
+//! condensation of the tangent on its points. The equations are those of the module `inelastic`.
 
-use super::super::element::{Hooke, stiffness_of_strains};
-use super::super::shape::{SPRINGS, at_places, placed};
-use super::{InelasticBody, InelasticState, IsotropicElastic};
+use super::element::{Hooke, stiffness_of_strains};
+use super::inelastic::{InelasticBody, InelasticState};
+use super::isotropic::IsotropicElastic;
+use super::shape::{SPRINGS, at_places, placed};
 use crate::law::{PlanarPoint, Region};
 use crate::linear::{Entries, SparseLu};
 use crate::model::geometry::Vec2;
@@ -27,11 +28,11 @@ pub struct Linearisation {
     /// c (x, y per point) \[m\].
     pub offset: Vec<f64>,
     /// X and x.
-    pub(super) response: Arc<DMatrix<f64>>,
-    pub(super) rest: Vec<f64>,
+    response: Arc<DMatrix<f64>>,
+    rest: Vec<f64>,
     /// Where: displacements of the nodes (x, y) in the shape's frame, in units of its size.
     pub displacement: Arc<Vec<f64>>,
-    pub(super) internal: Vec<f64>,
+    internal: Vec<f64>,
     /// What a step that ends here remembers.
     pub end: Arc<InelasticState>,
     /// Elastic energy \[J\].
@@ -45,6 +46,22 @@ pub struct Linearisation {
 }
 
 impl InelasticBody {
+    /// Displacements of the nodes by forces on the points, as the linearisation sees them.
+    pub fn displaced(&self, linear: &Linearisation, forces: &[f64]) -> Vec<f64> {
+        let mut all = linear.rest.clone();
+        for (f, column) in self.local_forces(forces).iter().zip(linear.response.column_iter()) {
+            if *f != 0.0 {
+                all.iter_mut().zip(column.iter()).for_each(|(x, c)| *x += c * f);
+            }
+        }
+        all
+    }
+
+    /// Greatest force on a node that the stresses at the linearisation's displacements leave \[N\].
+    pub fn residual(&self, linear: &Linearisation, forces: &[f64]) -> f64 {
+        self.unbalanced(&linear.internal, forces)
+    }
+
     /// ε^p of a strain and its stress: what Hooke's law does not explain.
     fn plastic_strain(&self, strain: &[f64; 3], point: &PlanarPoint) -> [f64; 4] {
         let IsotropicElastic { young_modulus: e, poisson_ratio: nu, .. } = self.material;
