@@ -5,7 +5,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use std::hint::black_box;
 use voussoir::core::limit::{LimitProblem, LimitQuestion, LimitSolver};
 use voussoir::core::model::stage_loads;
-use voussoir::kinds::run::answer_case;
+use voussoir::solve_case;
 use voussoir::solvers::limit::chain::LimitChain;
 use voussoir::solvers::limit::conic::LimitConic;
 use voussoir_benches::{ring, wall};
@@ -22,7 +22,7 @@ fn solvers_on_the_arch(c: &mut Criterion) {
     let mut group = c.benchmark_group("arch of 14 joints, with certificate and mechanism");
     for solver in ["limit_chain", "limit_conic"] {
         let case = ring(13, solver);
-        group.bench_function(solver, |b| b.iter(|| answer_case(black_box(&case))));
+        group.bench_function(solver, |b| b.iter(|| solve_case(black_box(&case))));
     }
     group.finish();
 }
@@ -48,7 +48,7 @@ fn walls(c: &mut Criterion) {
     group.sample_size(10);
     for side in [5, 10, 20] {
         let case = wall(side, side);
-        group.bench_function(format!("{side} courses of {side} bricks"), |b| b.iter(|| answer_case(black_box(&case))));
+        group.bench_function(format!("{side} courses of {side} bricks"), |b| b.iter(|| solve_case(black_box(&case))));
     }
     group.finish();
 }

@@ -14,8 +14,8 @@ use voussoir::core::limit::Status;
 use voussoir::core::model::Assembly;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::PathSettings;
-use voussoir::kinds::run::answer_case;
 use voussoir::results::CaseResult;
+use voussoir::solve_case;
 use voussoir::study::{Case, Study, load};
 
 /// Reads a study that must be right.
@@ -33,7 +33,7 @@ pub fn first_case(text: &str) -> Case {
 
 /// Answers the first case of a study.
 pub fn answered(text: &str) -> CaseResult {
-    answer_case(&first_case(text))
+    solve_case(&first_case(text))
 }
 
 /// The load factor of a case that must collapse, with a certificate.

@@ -2,8 +2,8 @@
 
 use crate::study;
 use serde_json::Value;
-use voussoir::kinds::run::answer_case;
 use voussoir::results::StudyResults;
+use voussoir::solve_case;
 use voussoir::study::{Study, load};
 use voussoir::verify::verify;
 
@@ -12,8 +12,9 @@ pub fn results(text: &str) -> (Study, Value) {
     let original = study(text);
     let resolved = toml::to_string(&original.resolved).expect("a study can be written");
     let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
-    let cases = original.cases.iter().map(answer_case).collect();
-    let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
+    let cases = original.cases.iter().map(solve_case).collect();
+    let results =
+        StudyResults { study: original.name, version: "test".into(), cases, comparison: None, own: Default::default() };
     (again, serde_json::to_value(&results).expect("results can be written"))
 }
 

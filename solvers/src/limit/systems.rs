@@ -4,8 +4,8 @@
 //! E r + p θ = −w and s = b − A r ≥ 0, 0 ≤ θ ≤ t; *kinematics* is Eᵀ q̇ + Dᵀ γ = 0, p·q̇ = 1,
 //! γ ≥ 0. A pair i is a row of a joint: s_i γ_i = 0.
 
-use super::least::dictionary::{Dictionary, Equations};
 use super::{force_scale, force_unit};
+use crate::optimise::dense_simplex::{Dictionary, Equations};
 use voussoir_core::law::{FacetMode, Tangential};
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::Wrenches;

@@ -1,11 +1,5 @@
-//! Path solvers: elastic blocks under growing loads until they collapse, and behind.
+//! Path solvers: elastic blocks under growing loads until they collapse, and post-peak.
 
-mod cells;
-mod complementarity;
-mod condensed;
 pub mod continuation;
 pub mod event;
 pub mod newton;
-mod rows;
-mod shuffle;
-mod walk;

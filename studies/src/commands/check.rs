@@ -1,6 +1,7 @@
 //! `voussoir check`.
 
-use super::{FINE, files, say};
+use super::codes::{FINE, say};
+use super::files;
 use std::path::PathBuf;
 
 /// Checks studies; prints what they hold.
@@ -11,15 +12,8 @@ pub fn check(paths: &[PathBuf], sets: &[String]) -> u8 {
     };
     let mut code = FINE;
     for path in paths {
-        if files::is_point(path, &sets) {
-            match files::point_study(path, &sets) {
-                Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.cases.len())),
-                Err(wrong) => code = code.max(wrong),
-            }
-            continue;
-        }
         match files::study(path, &sets) {
-            Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.cases.len())),
+            Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.count())),
             Err(wrong) => code = code.max(wrong),
         }
     }

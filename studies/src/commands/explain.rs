@@ -1,8 +1,10 @@
 //! `voussoir list`, `explain` and `schema`.
 
-use super::{FINE, NO_ACCESS, WRONG_INPUT, files, say};
+use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
+use super::files;
+use crate::kinds::json_schema::json_schema;
 use std::path::Path;
-use voussoir::core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, describe, nearest};
+use voussoir_core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, describe, nearest};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {
@@ -28,7 +30,7 @@ pub fn list(kind: Option<&str>) -> u8 {
 
 /// Prints the JSON Schema of study files.
 pub fn schema() -> u8 {
-    say(format!("{:#}", voussoir::config::json_schema::json_schema()));
+    say(format!("{:#}", json_schema()));
     FINE
 }
 
@@ -37,7 +39,7 @@ pub fn explain(what: &str) -> u8 {
     if what.ends_with(".toml") || Path::new(what).is_file() {
         return match files::study(Path::new(what), &[]) {
             Ok(study) => {
-                say(voussoir::plan::plan(&study));
+                say(study.explain());
                 FINE
             }
             Err(code) => code,

@@ -1,23 +1,11 @@
-//! What each command prints, reads and writes, and its exit code.
+//! What each command prints, reads and writes, and its exit code. Nothing else in this crate prints.
 
 pub mod check;
+mod codes;
 pub mod explain;
 pub mod files;
-pub mod point;
+mod progress;
 pub mod run;
 pub mod verify;
 
-/// All cases answered and certified.
-pub const FINE: u8 = 0;
-/// Some case stalled, failed its certificate, or was not confirmed.
-pub const NOT_PROVEN: u8 = 1;
-/// Wrong input.
-pub const WRONG_INPUT: u8 = 2;
-/// Cannot read or write.
-pub const NO_ACCESS: u8 = 3;
-
-/// Prints a line; a reader that has gone away (`| head`) is no error.
-pub fn say(text: impl std::fmt::Display) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
-}
+pub use codes::NO_ACCESS;

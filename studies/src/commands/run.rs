@@ -1,19 +1,10 @@
 //! `voussoir run`.
 
-use super::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, files, say};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::collections::BTreeMap;
-use std::io::Write;
+use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
+use super::files;
+use super::progress::Progress;
+use crate::kinds::{LoadedStudy, RunRequest};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
-use voussoir::core::limit::Status;
-use voussoir::core::model::{Assembly, Stage};
-use voussoir::kinds::{Observer, OnPath, kind};
-use voussoir::results::{CaseResult, StudyResults};
-use voussoir::study::Study;
-use voussoir::writers::{StudyOutput, writers};
 
 /// Options of the command.
 pub struct Options {
@@ -31,7 +22,7 @@ pub struct Options {
     pub quiet: bool,
 }
 
-/// Runs studies; the greatest exit code of them. Every study is checked before the first is run.
+/// Runs studies of any kind; the greatest exit code of them. Every study is checked before the first is run.
 pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
     let sets = match files::overrides(&options.set) {
         Ok(sets) => sets,
@@ -50,157 +41,57 @@ pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
     let mut code = FINE;
     for study in &studies {
         let dir = match &options.out {
-            Some(dir) if studies.len() > 1 => dir.join(&study.name),
+            Some(dir) if studies.len() > 1 => dir.join(study.name()),
             Some(dir) => dir.clone(),
-            None => Path::new("results").join(&study.name),
+            None => Path::new("results").join(study.name()),
         };
-        code = code.max(match run_one(study, &dir, options) {
+        code = code.max(match run_one(study.as_ref(), &dir, options) {
             Ok(code) | Err(code) => code,
         });
     }
     code
 }
 
-/// Shows progress on a terminal and keeps finished cases for `--resume`.
-struct Progress {
-    bar: ProgressBar,
-    name: String,
-    started: Instant,
-    /// When a path was last shown, in tenths of a second since the start.
-    shown: AtomicU64,
-    journal: Mutex<Option<std::fs::File>>,
-}
-
-/// Tenths of a second after which a path counts as long and is shown.
-const LONG: u64 = 10;
-
-impl Observer for Progress {
-    fn answered(&self, case: &CaseResult) {
-        self.bar.inc(1);
-        let Ok(mut journal) = self.journal.lock() else { return };
-        // A journal that cannot be written costs only the chance to resume.
-        if let (Some(file), Ok(line)) = (journal.as_mut(), serde_json::to_string(case)) {
-            let _ = writeln!(file, "{line}");
-        }
-    }
-
-    fn on_path(&self, at: &OnPath) {
-        let now = self.started.elapsed().as_millis() as u64 / 100;
-        if self.bar.is_hidden() || now < LONG || self.shown.swap(now, Ordering::Relaxed) == now {
-            return;
-        }
-        let OnPath { case, stage, gravity, factor, states } = at;
-        let what = if *gravity { " (gravity)" } else { "" };
-        self.bar.set_message(format!("{}: case {case}, {stage}{what}, factor {factor:.6}, {states} states", self.name));
-        self.bar.tick();
-    }
-}
-
+/// Cases that are finished, a line of JSON each, while a run is under way.
 const JOURNAL: &str = "unfinished.jsonl";
 
-/// Finished cases of an interrupted run of the same study.
-fn finished(dir: &Path, resolved: &str) -> BTreeMap<usize, CaseResult> {
+/// Results of an interrupted run of the same study.
+fn stored(dir: &Path, resolved: &str) -> Option<[String; 2]> {
     let read = |name: &str| std::fs::read_to_string(dir.join(name)).unwrap_or_default();
-    if read("resolved.toml") != resolved {
-        return BTreeMap::new();
-    }
-    let whole = serde_json::from_str::<StudyResults>(&read("results.json")).map(|r| r.cases).unwrap_or_default();
-    let journal = read(JOURNAL);
-    // The last line of a killed run may be cut short: it does not parse and is done again.
-    let lines = journal.lines().filter_map(|line| serde_json::from_str::<CaseResult>(line).ok());
-    whole.into_iter().chain(lines).filter(|case| case.status != Status::Stalled).map(|case| (case.id, case)).collect()
+    (read("resolved.toml") == resolved).then(|| [read("results.json"), read(JOURNAL)])
 }
 
-fn run_one(study: &Study, dir: &Path, options: &Options) -> Result<u8, u8> {
-    let resolved = toml::to_string(&study.resolved).map_err(|error| {
-        eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name);
+fn run_one(study: &dyn LoadedStudy, dir: &Path, options: &Options) -> Result<u8, u8> {
+    let resolved = toml::to_string(study.resolved()).map_err(|error| {
+        eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name());
         NO_ACCESS
     })?;
     let wanted: Vec<usize> = match options.case {
-        Some(id) if id < study.cases.len() => vec![id],
+        Some(id) if id < study.count() => vec![id],
         Some(id) => {
-            eprintln!(
-                "--case {id}: the study \"{}\" has cases 0 to {}",
-                study.name,
-                study.cases.len().saturating_sub(1)
-            );
+            let last = study.count().saturating_sub(1);
+            eprintln!("--case {id}: the study \"{}\" has cases 0 to {last}", study.name());
             return Err(WRONG_INPUT);
         }
-        None => (0..study.cases.len()).collect(),
+        None => (0..study.count()).collect(),
     };
-    let Some(kind) = kind(&study.kind) else {
-        eprintln!("study \"{}\": no study kind is called \"{}\"", study.name, study.kind);
-        return Err(WRONG_INPUT);
-    };
-    let mut done = if options.resume { finished(dir, &resolved) } else { BTreeMap::new() };
-    done.retain(|id, _| wanted.contains(id));
-    let rest: Vec<usize> = wanted.iter().copied().filter(|id| !done.contains_key(id)).collect();
-    files::write(&dir.join("resolved.toml"), &resolved)?;
+    let stored = options.resume.then(|| stored(dir, &resolved)).flatten();
+    files::write(&dir.join("resolved.toml"), resolved.as_bytes())?;
     let journal = dir.join(JOURNAL);
     if !options.resume {
         let _ = std::fs::remove_file(&journal);
     }
-    let bar = ProgressBar::with_draw_target(Some(rest.len() as u64), ProgressDrawTarget::stderr());
-    if options.quiet || rest.is_empty() {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
-    }
-    // One case is no share of anything: what shows is where its path has come to, once that is long.
-    let template = if rest.len() < 2 { "{msg}" } else { "{msg} {bar:30} {pos}/{len} {eta}" };
-    bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
-    if rest.len() > 1 {
-        bar.set_message(study.name.clone());
-    }
-    let file = std::fs::OpenOptions::new().create(true).append(true).open(&journal).ok();
-    let progress = Progress {
-        bar,
-        name: study.name.clone(),
-        started: Instant::now(),
-        shown: AtomicU64::new(0),
-        journal: Mutex::new(file),
-    };
-    for case in kind.answer(study, &rest, options.jobs, &progress) {
-        done.insert(case.id, case);
-    }
-    progress.bar.finish_and_clear();
-    let cases: Vec<CaseResult> = done.into_values().collect();
-    let results = StudyResults {
-        study: study.name.clone(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        comparison: kind.compare(study, &cases),
-        cases,
-    };
-    write_results(study, &results, dir, options)?;
-    let _ = std::fs::remove_file(&journal);
-    let proven = results.cases.iter().all(|case| case.certificate.passed);
-    Ok(if proven { FINE } else { NOT_PROVEN })
-}
-
-fn write_results(study: &Study, results: &StudyResults, dir: &Path, options: &Options) -> Result<(), u8> {
-    let assemblies: Vec<&Assembly> = results.cases.iter().map(|case| &study.cases[case.id].assembly).collect();
-    let stages: Vec<&[Stage]> = results.cases.iter().map(|case| study.cases[case.id].stages.as_slice()).collect();
-    let kinematics: Vec<_> = results.cases.iter().map(|case| study.cases[case.id].solver.kinematics).collect();
-    let sweep_keys: Vec<String> =
-        study.cases.first().map(|case| case.parameters.keys().cloned().collect()).unwrap_or_default();
-    let output = StudyOutput {
-        name: &study.name,
-        results,
-        assemblies: &assemblies,
-        stages: &stages,
-        sweep_keys: &sweep_keys,
-        figures: study.output.figures,
-        vtu: study.output.vtu.then_some(kinematics.as_slice()),
-    };
-    for entry in writers() {
-        for (name, text) in entry.writer.files(&output) {
-            files::write(&dir.join(name), &text)?;
-        }
+    let progress = Progress::new(study.name(), options.quiet, &journal);
+    let request = RunRequest { wanted, jobs: options.jobs, stored, version: env!("CARGO_PKG_VERSION").into() };
+    let output = study.run(&request, &progress);
+    progress.finish();
+    for (name, bytes) in &output.files {
+        files::write(&dir.join(name), bytes)?;
     }
     if !options.quiet {
-        say(voussoir::writers::table::results_table(&output));
-        if let Some(comparison) = &results.comparison {
-            say(voussoir::writers::comparison::comparison_table(comparison));
-        }
+        say(output.table);
         say(format!("results in {}", dir.display()));
     }
-    Ok(())
+    let _ = std::fs::remove_file(&journal);
+    Ok(if output.certified { FINE } else { NOT_PROVEN })
 }

@@ -1,13 +1,15 @@
 //! The check of a value against its [`Shape`]: every mistake with its place, else the normalised
 //! value (numbers in the unit of their quantity, defaults filled in).
 
-use crate::config::document::{Node, Origin, Table, Value, parse_value};
-use crate::config::overlay::join;
-use crate::config::report::{Mistake, any_of, suggest};
+use crate::config::common_keys::{common_parameters, common_words, word_for};
+use crate::config::diagnostic::{LocatedDiagnostic, any_of, suggest};
+use crate::config::document::{Node, Table, Value, parse_value};
+use crate::config::dotted_key::join;
+use crate::config::gravity::gravity_of;
+use crate::config::origin::Origin;
+use crate::config::shape_words::{any_shape, describe, fits};
 use serde_json::{Map, Value as Json};
-use voussoir_core::plugin::{
-    Card, Need, Parameter, PluginKind, Quantity, STANDARD_GRAVITY, Shape, Variant, candidate, candidates,
-};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,203 +32,41 @@ pub struct Checker<'a> {
     /// Turns specific weights into densities \[m/s²\].
     pub gravity: f64,
     /// Found so far.
-    pub mistakes: Vec<Mistake>,
+    pub diagnostics: Vec<LocatedDiagnostic>,
     /// Found so far.
     pub unused: Vec<Unused>,
-}
-
-/// Keys that every plug-in of a kind has besides those of its card.
-pub fn common_parameters(kind: PluginKind) -> &'static [Parameter] {
-    if kind == PluginKind::LimitSolver { crate::study::SOLVER } else { &[] }
-}
-
-/// What a kind is called in messages: limit and path solvers share one place.
-fn word_for(kind: PluginKind) -> &'static str {
-    if kind == PluginKind::LimitSolver { "solver" } else { kind.describe() }
-}
-
-/// Words that the tag may be besides the registered tags.
-pub fn common_words(kind: PluginKind) -> &'static [&'static str] {
-    if kind == PluginKind::LimitSolver { &["auto"] } else { &[] }
-}
-
-/// The magnitude of the first gravity in the study's stages; standard gravity where there is none.
-pub fn gravity_of(root: &Node) -> f64 {
-    let number = |node: &Node| match &node.value {
-        Value::String(text) => Quantity::Acceleration.parse(text, STANDARD_GRAVITY).ok(),
-        _ => node.number(),
-    };
-    let stages = root.table().and_then(|table| table.get("stages")?.array()).unwrap_or_default();
-    let given = stages.iter().find_map(|stage| stage.table()?.get("gravity"));
-    let size = given.and_then(|node| match node.array() {
-        Some([x, y]) => Some(number(x)?.hypot(number(y)?)),
-        _ => number(node).map(f64::abs),
-    });
-    size.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(STANDARD_GRAVITY)
-}
-
-/// What a shape takes, in words.
-pub fn describe(shape: &Shape) -> String {
-    match shape {
-        Shape::Number(Quantity::Ratio, _) => "a number".into(),
-        Shape::Number(quantity, _) => {
-            format!("a number in {0} or a text with a unit such as \"1 {0}\"", quantity.unit())
-        }
-        Shape::Integer { .. } => "a whole number".into(),
-        Shape::Boolean => "true or false".into(),
-        Shape::Text => "a text in quotes".into(),
-        Shape::Choice(words) => any_of(words.iter().copied()),
-        Shape::Reference(table) => format!("the name of an entry of [{table}]"),
-        Shape::List { of, min, max } => match (*min, *max) {
-            (least, most) if least == most => {
-                format!("a list of {least} entries, each {}", describe(of))
-            }
-            _ => format!("a list, each entry {}", describe(of)),
-        },
-        Shape::Tuple(shapes) => {
-            format!("a list [{}]", shapes.iter().map(|shape| describe(shape)).collect::<Vec<_>>().join(", "))
-        }
-        Shape::Table(_) | Shape::Map(_) => "a table".into(),
-        Shape::Tagged { key, .. } => format!("a table with the key {key}"),
-        Shape::Plugin(kind) => format!("a table with the key {}", kind.tag_key()),
-        Shape::Either(shapes) => any_shape(shapes),
-        Shape::Free => "anything".into(),
-    }
-}
-
-fn any_shape(shapes: &[Shape]) -> String {
-    shapes.iter().map(describe).collect::<Vec<_>>().join(", or ")
-}
-
-/// Whether a value has the outer form of a shape.
-fn fits(node: &Node, shape: &Shape) -> bool {
-    match (shape, &node.value) {
-        (Shape::Free, _) => true,
-        (Shape::Either(shapes), _) => shapes.iter().any(|shape| fits(node, shape)),
-        (Shape::Number(..), Value::Integer(_) | Value::Float(_)) | (Shape::Integer { .. }, Value::Integer(_)) => true,
-        (Shape::Number(..), Value::String(text)) => {
-            text.trim_start().starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'))
-        }
-        (Shape::Boolean, Value::Boolean(_)) => true,
-        (Shape::Text | Shape::Choice(_) | Shape::Reference(_), Value::String(_)) => true,
-        (Shape::List { .. } | Shape::Tuple(_), Value::Array(_)) => true,
-        (Shape::Table(_) | Shape::Map(_) | Shape::Tagged { .. } | Shape::Plugin(_), Value::Table(_)) => true,
-        _ => false,
-    }
 }
 
 impl<'a> Checker<'a> {
     /// A check of values in the study `root`.
     pub fn new(root: &'a Node) -> Self {
-        Checker { root, gravity: gravity_of(root), mistakes: Vec::new(), unused: Vec::new() }
+        Checker { root, gravity: gravity_of(root), diagnostics: Vec::new(), unused: Vec::new() }
     }
 
     fn wrong(&mut self, origin: &Origin, key: &str, message: impl Into<String>) -> Option<Json> {
-        self.mistakes.push(Mistake::new(origin, key, message));
+        self.diagnostics.push(LocatedDiagnostic::new(origin, key, message));
         None
     }
 
     fn wrong_with_help(&mut self, origin: &Origin, key: &str, message: String, help: String) -> Option<Json> {
-        self.mistakes.push(Mistake::new(origin, key, message).help(help));
+        self.diagnostics.push(LocatedDiagnostic::new(origin, key, message).help(help));
         None
     }
 
     /// The normalised value; `None` where it has mistakes.
     pub fn check(&mut self, node: &Node, shape: &Shape, key: &str) -> Option<Json> {
-        let found = self.mistakes.len();
+        let found = self.diagnostics.len();
         let value = match (shape, &node.value) {
-            (Shape::Number(quantity, range), Value::Integer(_) | Value::Float(_) | Value::String(_)) => {
-                let number = match &node.value {
-                    Value::String(text) => match quantity.parse(text, self.gravity) {
-                        Ok(number) => number,
-                        Err(why) => {
-                            let help = format!("write {}", describe(shape));
-                            return self.wrong_with_help(&node.origin, key, why, help);
-                        }
-                    },
-                    _ => node.number().unwrap_or(f64::NAN),
-                };
-                let unit = if *quantity == Quantity::Ratio { String::new() } else { format!(" {}", quantity.unit()) };
-                if !number.is_finite() {
-                    return self.wrong(
-                        &node.origin,
-                        key,
-                        format!("{} is not a finite number", number.to_string().to_lowercase()),
-                    );
-                }
-                if !range.contains(number) {
-                    let message = format!("{number}{unit} is out of range: it must be {}", range.describe());
-                    return self.wrong(&node.origin, key, message);
-                }
-                Some(number.into())
+            (Shape::Number(..), Value::Integer(_) | Value::Float(_) | Value::String(_)) => {
+                self.number(node, shape, key).map(Json::from)
             }
-            (Shape::Integer { min, max }, Value::Integer(whole)) => {
-                if whole < min || whole > max {
-                    let range =
-                        if *max == i64::MAX { format!("at least {min}") } else { format!("from {min} to {max}") };
-                    return self.wrong(&node.origin, key, format!("{whole} is out of range: it must be {range}"));
-                }
-                Some((*whole).into())
-            }
+            (Shape::Integer { min, max }, Value::Integer(whole)) => self.integer(node, *whole, [*min, *max], key),
             (Shape::Boolean, Value::Boolean(value)) => Some((*value).into()),
             (Shape::Text, Value::String(text)) => Some(text.clone().into()),
-            (Shape::Choice(words), Value::String(text)) => {
-                if !words.contains(&text.as_str()) {
-                    let (message, help) = (format!("\"{text}\" is not a choice here"), suggest(text, words, "choices"));
-                    return self.wrong_with_help(&node.origin, key, message, help);
-                }
-                Some(text.clone().into())
-            }
-            (Shape::Reference(table), Value::String(text)) => {
-                let names: Vec<&str> = self
-                    .root
-                    .table()
-                    .and_then(|t| t.get(table)?.table())
-                    .map(|t| t.keys().collect())
-                    .unwrap_or_default();
-                if !names.contains(&text.as_str()) {
-                    let help = suggest(text, &names, &format!("entries of [{table}]"));
-                    let message = format!("there is no [{table}.{text}] in this study");
-                    return self.wrong_with_help(&node.origin, key, message, help);
-                }
-                Some(text.clone().into())
-            }
-            (Shape::List { of, min, max }, Value::Array(nodes)) => {
-                if nodes.len() < *min || nodes.len() > *max {
-                    let wanted = match (*min, *max) {
-                        (least, most) if least == most => format!("{least}"),
-                        (least, usize::MAX) => format!("at least {least}"),
-                        (least, most) => format!("from {least} to {most}"),
-                    };
-                    self.wrong(
-                        &node.origin,
-                        key,
-                        format!(
-                            "the list has {} {}; it needs {wanted}",
-                            nodes.len(),
-                            if nodes.len() == 1 { "entry" } else { "entries" }
-                        ),
-                    );
-                }
-                let entries: Vec<_> = nodes
-                    .iter()
-                    .enumerate()
-                    .map(|(i, node)| self.check(node, of, &join(key, &i.to_string())))
-                    .collect();
-                entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
-            }
-            (Shape::Tuple(shapes), Value::Array(nodes)) => {
-                if nodes.len() != shapes.len() {
-                    let entries = if nodes.len() == 1 { "entry" } else { "entries" };
-                    let message = format!("the list has {} {entries}; it needs {}", nodes.len(), shapes.len());
-                    let help = format!("write {}", describe(shape));
-                    return self.wrong_with_help(&node.origin, key, message, help);
-                }
-                let entries = nodes.iter().zip(*shapes).enumerate();
-                let entries: Vec<_> =
-                    entries.map(|(i, (node, shape))| self.check(node, shape, &join(key, &i.to_string()))).collect();
-                entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
-            }
+            (Shape::Choice(words), Value::String(text)) => self.choice(node, text, words, key),
+            (Shape::Reference(table), Value::String(text)) => self.reference(node, text, table, key),
+            (Shape::List { of, min, max }, Value::Array(nodes)) => self.list(node, nodes, of, [*min, *max], key),
+            (Shape::Tuple(shapes), Value::Array(nodes)) => self.tuple(node, nodes, shapes, key),
             (Shape::Table(parameters), Value::Table(table)) => self.table(node, table, parameters, &[], &[], key),
             (Shape::Map(of), Value::Table(table)) => {
                 let entries: Vec<_> = table
@@ -237,14 +77,7 @@ impl<'a> Checker<'a> {
                 entries.into_iter().collect::<Option<Map<_, _>>>().map(Json::Object)
             }
             (Shape::Tagged { key: tag_key, variants }, Value::Table(table)) => {
-                let tags: Vec<_> = variants.iter().map(|variant| variant.tag).collect();
-                let tag = self.tag(node, table, tag_key, &tags, tag_key, key)?;
-                let parameters = variants.iter().find(|variant| variant.tag == tag)?.parameters;
-                let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
-                if let Some(Json::Object(rest)) = self.table(node, table, parameters, &[tag_key], variants, key) {
-                    out.extend(rest);
-                }
-                Some(Json::Object(out))
+                self.tagged(node, table, tag_key, variants, key)
             }
             (Shape::Plugin(kind), Value::Table(table)) => self.plugin(node, table, *kind, key),
             (Shape::Either(shapes), _) => return self.either(node, shapes, key),
@@ -257,7 +90,102 @@ impl<'a> Checker<'a> {
                 return self.wrong(&node.origin, key, message);
             }
         };
-        value.filter(|_| self.mistakes.len() == found)
+        value.filter(|_| self.diagnostics.len() == found)
+    }
+
+    /// A number in the unit of its quantity.
+    fn number(&mut self, node: &Node, shape: &Shape, key: &str) -> Option<f64> {
+        let Shape::Number(quantity, range) = shape else { return None };
+        let number = match &node.value {
+            Value::String(text) => match quantity.parse(text, self.gravity) {
+                Ok(number) => number,
+                Err(why) => {
+                    let help = format!("write {}", describe(shape));
+                    self.wrong_with_help(&node.origin, key, why, help);
+                    return None;
+                }
+            },
+            _ => node.number().unwrap_or(f64::NAN),
+        };
+        if !number.is_finite() {
+            let message = format!("{} is not a finite number", number.to_string().to_lowercase());
+            self.wrong(&node.origin, key, message);
+            return None;
+        }
+        if !range.contains(number) {
+            let unit = if *quantity == Quantity::Ratio { String::new() } else { format!(" {}", quantity.unit()) };
+            let message = format!("{number}{unit} is out of range: it must be {}", range.describe());
+            self.wrong(&node.origin, key, message);
+            return None;
+        }
+        Some(number)
+    }
+
+    fn integer(&mut self, node: &Node, whole: i64, [min, max]: [i64; 2], key: &str) -> Option<Json> {
+        if whole < min || whole > max {
+            let range = if max == i64::MAX { format!("at least {min}") } else { format!("from {min} to {max}") };
+            return self.wrong(&node.origin, key, format!("{whole} is out of range: it must be {range}"));
+        }
+        Some(whole.into())
+    }
+
+    fn choice(&mut self, node: &Node, text: &str, words: &[&str], key: &str) -> Option<Json> {
+        if !words.contains(&text) {
+            let (message, help) = (format!("\"{text}\" is not a choice here"), suggest(text, words, "choices"));
+            return self.wrong_with_help(&node.origin, key, message, help);
+        }
+        Some(text.into())
+    }
+
+    fn reference(&mut self, node: &Node, text: &str, table: &str, key: &str) -> Option<Json> {
+        let entries = self.root.table().and_then(|root| root.get(table)?.table());
+        let names: Vec<&str> = entries.map(|entries| entries.keys().collect()).unwrap_or_default();
+        if !names.contains(&text) {
+            let help = suggest(text, &names, &format!("entries of [{table}]"));
+            let message = format!("there is no [{table}.{text}] in this study");
+            return self.wrong_with_help(&node.origin, key, message, help);
+        }
+        Some(text.into())
+    }
+
+    fn list(&mut self, node: &Node, nodes: &[Node], of: &Shape, [min, max]: [usize; 2], key: &str) -> Option<Json> {
+        if nodes.len() < min || nodes.len() > max {
+            let wanted = match (min, max) {
+                (least, most) if least == most => format!("{least}"),
+                (least, usize::MAX) => format!("at least {least}"),
+                (least, most) => format!("from {least} to {most}"),
+            };
+            let entries = if nodes.len() == 1 { "entry" } else { "entries" };
+            self.wrong(&node.origin, key, format!("the list has {} {entries}; it needs {wanted}", nodes.len()));
+        }
+        let entries: Vec<_> =
+            nodes.iter().enumerate().map(|(i, node)| self.check(node, of, &join(key, &i.to_string()))).collect();
+        entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
+    }
+
+    fn tuple(&mut self, node: &Node, nodes: &[Node], shapes: &[&Shape], key: &str) -> Option<Json> {
+        if nodes.len() != shapes.len() {
+            let entries = if nodes.len() == 1 { "entry" } else { "entries" };
+            let message = format!("the list has {} {entries}; it needs {}", nodes.len(), shapes.len());
+            let words: Vec<_> = shapes.iter().map(|shape| describe(shape)).collect();
+            let help = format!("write a list [{}]", words.join(", "));
+            return self.wrong_with_help(&node.origin, key, message, help);
+        }
+        let entries = nodes.iter().zip(shapes).enumerate();
+        let entries: Vec<_> =
+            entries.map(|(i, (node, shape))| self.check(node, shape, &join(key, &i.to_string()))).collect();
+        entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
+    }
+
+    fn tagged(&mut self, node: &Node, table: &Table, tag_key: &str, variants: &[Variant], key: &str) -> Option<Json> {
+        let tags: Vec<_> = variants.iter().map(|variant| variant.tag).collect();
+        let tag = self.tag(node, table, tag_key, &tags, tag_key, key)?;
+        let parameters = variants.iter().find(|variant| variant.tag == tag)?.parameters;
+        let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
+        if let Some(Json::Object(rest)) = self.table(node, table, parameters, &[tag_key], variants, key) {
+            out.extend(rest);
+        }
+        Some(Json::Object(out))
     }
 
     fn finite(&mut self, node: &Node, key: &str) {
@@ -275,19 +203,19 @@ impl<'a> Checker<'a> {
 
     /// The first alternative that takes the value; else the mistakes of the first whose form fits.
     fn either(&mut self, node: &Node, shapes: &[Shape], key: &str) -> Option<Json> {
-        let (mistakes, unused) = (self.mistakes.len(), self.unused.len());
-        let mut first: Option<Vec<Mistake>> = None;
+        let (before, unused) = (self.diagnostics.len(), self.unused.len());
+        let mut first: Option<Vec<LocatedDiagnostic>> = None;
         for shape in shapes.iter().filter(|shape| fits(node, shape)) {
             if let Some(value) = self.check(node, shape, key) {
                 return Some(value);
             }
             self.unused.truncate(unused);
-            let wrong = self.mistakes.split_off(mistakes);
+            let wrong = self.diagnostics.split_off(before);
             first.get_or_insert(wrong);
         }
         match first {
             Some(wrong) => {
-                self.mistakes.extend(wrong);
+                self.diagnostics.extend(wrong);
                 None
             }
             None => {
@@ -407,7 +335,7 @@ impl<'a> Checker<'a> {
         let own: &[Parameter] = chosen.map_or(&[], |card| card.parameters);
         let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
         let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
-        let (mut skip, mut misspelt, found) = (vec![tag_key], Vec::new(), self.mistakes.len());
+        let (mut skip, mut misspelt, found) = (vec![tag_key], Vec::new(), self.diagnostics.len());
         for entry in &table.entries {
             if parameters.iter().any(|p| p.name == entry.key) || entry.key == tag_key {
                 continue;
@@ -429,15 +357,15 @@ impl<'a> Checker<'a> {
                 let message = format!("is not a key of {} \"{tag}\", nor of any other", word_for(kind));
                 self.wrong_with_help(&entry.origin, &path, message, help);
             } else {
-                let before = self.mistakes.len();
+                let before = self.diagnostics.len();
                 for (attempt, other) in others.iter().enumerate() {
-                    let wrong = self.mistakes.len();
+                    let wrong = self.diagnostics.len();
                     if self.check(&entry.node, &other.shape, &path).is_some() {
-                        self.mistakes.truncate(before);
+                        self.diagnostics.truncate(before);
                         break;
                     }
                     if attempt > 0 {
-                        self.mistakes.truncate(wrong);
+                        self.diagnostics.truncate(wrong);
                     }
                 }
                 self.unused.push(Unused { key: path, by: format!("{} \"{tag}\"", word_for(kind)) });
@@ -451,7 +379,7 @@ impl<'a> Checker<'a> {
         out.extend(rest.as_object().cloned().unwrap_or_default());
         let value = Json::Object(out);
         if let Some(card) = chosen
-            && self.mistakes.len() == found
+            && self.diagnostics.len() == found
         {
             // A card's check reads the concrete type, which knows neither the tag nor common keys.
             let own: Map<_, _> = value

@@ -2,36 +2,12 @@
 //!
 //! Only the form is read here; what keys mean is checked in [`super::check`].
 
-use crate::config::report::Mistake;
-use std::fmt;
+use crate::config::diagnostic::{LocatedDiagnostic, sort};
+use crate::config::dotted_key::segments;
+use crate::config::origin::Origin;
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Where something was written.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum Origin {
-    /// In a file; line and column count from 1, columns in characters.
-    File {
-        /// Its name as it was given.
-        file: Arc<str>,
-        /// From 1.
-        line: usize,
-        /// From 1.
-        column: usize,
-    },
-    /// On the command line, as `--set KEY=…`.
-    Set(Arc<str>),
-}
-
-impl fmt::Display for Origin {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Origin::File { file, line, column } => write!(out, "{file}:{line}:{column}"),
-            Origin::Set(key) => write!(out, "--set {key}"),
-        }
-    }
-}
 
 /// A value and where it stands.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,7 +129,7 @@ impl Node {
     pub fn place(&self, path: &str) -> Origin {
         let mut node = self;
         let mut origin = &self.origin;
-        for segment in crate::config::overlay::segments(path) {
+        for segment in segments(path) {
             match &node.value {
                 Value::Table(table) => match table.entry(&segment) {
                     Some(entry) => {
@@ -221,10 +197,10 @@ impl Node {
 }
 
 /// Reads a document. Errors are all syntax errors found.
-pub fn parse(text: &str, file: &str) -> Result<Node, Vec<Mistake>> {
+pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     let reader = Reader::new(text, file);
     let (root, errors) = DeTable::parse_recoverable(text);
-    let mut mistakes: Vec<Mistake> = Vec::new();
+    let mut mistakes: Vec<LocatedDiagnostic> = Vec::new();
     for error in &errors {
         let origin = reader.origin(error.span().map_or(0, |span| span.start));
         let mistake = reader.syntax_mistake(origin, error, text);
@@ -233,7 +209,7 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<Mistake>> {
         }
     }
     if !mistakes.is_empty() {
-        crate::config::report::sort(&mut mistakes);
+        sort(&mut mistakes);
         return Err(mistakes);
     }
     let node = reader.table(root.get_ref(), reader.origin(0), &mut mistakes);
@@ -274,16 +250,17 @@ impl Reader {
         Origin::File { file: self.file.clone(), line, column }
     }
 
-    fn syntax_mistake(&self, origin: Origin, error: &toml::de::Error, text: &str) -> Mistake {
+    fn syntax_mistake(&self, origin: Origin, error: &toml::de::Error, text: &str) -> LocatedDiagnostic {
         let message = error.message();
         if message.contains("duplicate key") {
             let key = error.span().and_then(|span| text.get(span)).unwrap_or_default().trim();
-            return Mistake::new(&origin, key, "is given twice in the same table").help("keep one of the two");
+            return LocatedDiagnostic::new(&origin, key, "is given twice in the same table")
+                .help("keep one of the two");
         }
-        Mistake::new(&origin, "", format!("this is not TOML: {message}"))
+        LocatedDiagnostic::new(&origin, "", format!("this is not TOML: {message}"))
     }
 
-    fn table(&self, table: &DeTable<'_>, origin: Origin, mistakes: &mut Vec<Mistake>) -> Node {
+    fn table(&self, table: &DeTable<'_>, origin: Origin, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
         let entries = table
             .iter()
             .map(|(key, value)| {
@@ -295,7 +272,7 @@ impl Reader {
     }
 
     /// `key` is the place of the key, which tables with a header are known by.
-    fn node(&self, value: &Spanned<DeValue<'_>>, key: &Origin, mistakes: &mut Vec<Mistake>) -> Node {
+    fn node(&self, value: &Spanned<DeValue<'_>>, key: &Origin, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
         let origin = self.origin(value.span().start);
         let value = match value.get_ref() {
             DeValue::String(text) => Value::String(text.to_string()),
@@ -303,7 +280,7 @@ impl Reader {
                 Ok(whole) => Value::Integer(whole),
                 Err(_) => {
                     let message = format!("{whole} is too large for a whole number");
-                    mistakes.push(Mistake::new(&origin, "", message).help("write it with a decimal point"));
+                    mistakes.push(LocatedDiagnostic::new(&origin, "", message).help("write it with a decimal point"));
                     Value::Integer(0)
                 }
             },

@@ -2,30 +2,32 @@
 //! the scenes, then the axes of the sweep in the order of the file, the first slowest. A variant is
 //! set on top of a scene, a swept value on top of both.
 
-use crate::config::document::{Node, Origin, Table, Value};
-use crate::config::overlay::{join, set};
-use crate::config::report::{Mistake, suggest};
+use crate::config::diagnostic::{LocatedDiagnostic, suggest};
+use crate::config::document::{Node, Table, Value};
+use crate::config::dotted_key::join;
+use crate::config::origin::Origin;
+use crate::config::overlay::set;
 use serde_json::{Map, Value as Json};
 
 /// Greatest number of cases.
 pub const MAX_CASES: usize = 1_000_000;
 
 /// Keys that change together.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Axis {
     keys: Vec<(String, Origin)>,
     /// For each step a value per key.
     values: Vec<Vec<Node>>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Variant {
     name: Option<String>,
     set: Vec<(String, Origin, Node)>,
 }
 
 /// The cases of a study, made one at a time.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Plan {
     base: Node,
     variants: Vec<Variant>,
@@ -53,34 +55,39 @@ pub fn rounded(x: f64) -> f64 {
 }
 
 impl Plan {
-    /// Reads `sweep` and `variants` of a study file; all mistakes in them.
-    pub fn new(root: &Node) -> Result<Self, Vec<Mistake>> {
+    /// Reads `sweep` and `variants` of a study file, and the `scenes` of its kind's table; all mistakes in
+    /// them. `kind_tables` are the tables of study kinds, which are no part of a case.
+    pub fn new(root: &Node, kind_tables: &[&str]) -> Result<Self, Vec<LocatedDiagnostic>> {
         let mut mistakes = Vec::new();
         let table = root.table().cloned().unwrap_or_default();
         let axes = table.get("sweep").map(|node| axes(node, &mut mistakes)).unwrap_or_default();
-        let overrides = |node: Option<&Node>, key: &str, what: &str, mistakes: &mut Vec<Mistake>| -> Vec<Variant> {
-            let read = node.map(|node| read_variants(node, key, what, mistakes)).unwrap_or_default();
-            if read.is_empty() { vec![Variant { name: None, set: Vec::new() }] } else { read }
-        };
+        let overrides =
+            |node: Option<&Node>, key: &str, what: &str, mistakes: &mut Vec<LocatedDiagnostic>| -> Vec<Variant> {
+                let read = node.map(|node| read_variants(node, key, what, mistakes)).unwrap_or_default();
+                if read.is_empty() { vec![Variant { name: None, set: Vec::new() }] } else { read }
+            };
         let variants = overrides(table.get("variants"), "variants", "variants", &mut mistakes);
-        let scenes = table.get("compare").and_then(|compare| compare.table()?.get("scenes"));
-        let scenes = overrides(scenes, "compare.scenes", "scenes", &mut mistakes);
+        let kind = table.get("kind").and_then(Node::text).filter(|kind| kind_tables.contains(kind)).unwrap_or_default();
+        let scenes = table.get(kind).and_then(|own| own.table()?.get("scenes"));
+        let scenes = overrides(scenes, &join(kind, "scenes"), "scenes", &mut mistakes);
         let swept: Vec<&str> = axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str()).collect();
         for (index, (key, origin)) in axes.iter().flat_map(|axis| &axis.keys).enumerate() {
             if swept[..index].contains(&key.as_str()) {
-                mistakes.push(Mistake::new(origin, key, "is swept twice").help("keep one of the two axes"));
+                mistakes.push(LocatedDiagnostic::new(origin, key, "is swept twice").help("keep one of the two axes"));
             }
         }
         for (what, list) in [("variant", &variants), ("scene", &scenes)] {
             for (key, origin, _) in list.iter().flat_map(|entry| &entry.set) {
                 if swept.contains(&key.as_str()) {
                     let help = format!("remove it from the sweep or from the {what}");
-                    mistakes.push(Mistake::new(origin, key, format!("is set by a {what}, but swept too")).help(help));
+                    mistakes.push(
+                        LocatedDiagnostic::new(origin, key, format!("is set by a {what}, but swept too")).help(help),
+                    );
                 }
             }
         }
-        let apart = ["sweep", "variants", "compare", "map"];
-        let base = table.entries.into_iter().filter(|entry| !apart.contains(&entry.key.as_str()));
+        let apart = |key: &str| ["sweep", "variants"].contains(&key) || kind_tables.contains(&key);
+        let base = table.entries.into_iter().filter(|entry| !apart(&entry.key));
         let base = Table { entries: base.collect() };
         let base = Node { value: Value::Table(base), origin: root.origin.clone() };
         let plan = Plan { base, variants, scenes, axes };
@@ -90,7 +97,8 @@ impl Plan {
         if count.is_none_or(|count| count > MAX_CASES) {
             let count = count.map_or("far too many".into(), |count| count.to_string());
             let message = format!("makes {count} cases; a study holds at most {MAX_CASES}");
-            mistakes.push(Mistake::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
+            mistakes
+                .push(LocatedDiagnostic::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
         }
         if mistakes.is_empty() { Ok(plan) } else { Err(mistakes) }
     }
@@ -123,7 +131,7 @@ impl Plan {
     }
 
     /// Case `id < count()`.
-    pub fn case(&self, id: usize) -> Result<Expanded, Vec<Mistake>> {
+    pub fn case(&self, id: usize) -> Result<Expanded, Vec<LocatedDiagnostic>> {
         let mut rest = id;
         let mut steps = vec![0; self.axes.len()];
         for (step, axis) in steps.iter_mut().zip(&self.axes).rev() {
@@ -149,7 +157,7 @@ impl Plan {
 }
 
 /// The entries of a list of overrides: `key` is where it stands, `what` how its entries are called.
-fn read_variants(node: &Node, key: &str, what: &str, mistakes: &mut Vec<Mistake>) -> Vec<Variant> {
+fn read_variants(node: &Node, key: &str, what: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Vec<Variant> {
     let mut out: Vec<Variant> = Vec::new();
     for (index, node) in node.array().unwrap_or_default().iter().enumerate() {
         let Some(table) = node.table() else { continue };
@@ -159,7 +167,7 @@ fn read_variants(node: &Node, key: &str, what: &str, mistakes: &mut Vec<Mistake>
             let message = format!("two {what} are called \"{}\"", name.clone().unwrap_or_default());
             let place = table.get("name").map_or(&node.origin, |name| &name.origin);
             mistakes.push(
-                Mistake::new(place, key, message)
+                LocatedDiagnostic::new(place, key, message)
                     .help(format!("give each {} a name of its own", what.trim_end_matches('s'))),
             );
         }
@@ -170,10 +178,10 @@ fn read_variants(node: &Node, key: &str, what: &str, mistakes: &mut Vec<Mistake>
     out
 }
 
-fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
+fn axes(node: &Node, mistakes: &mut Vec<LocatedDiagnostic>) -> Vec<Axis> {
     let Some(table) = node.table() else {
         let message = format!("must be a table from keys to axes, but is {}", node.describe());
-        mistakes.push(Mistake::new(&node.origin, "sweep", message));
+        mistakes.push(LocatedDiagnostic::new(&node.origin, "sweep", message));
         return Vec::new();
     };
     let mut axes = Vec::new();
@@ -201,8 +209,10 @@ fn axes(node: &Node, mistakes: &mut Vec<Mistake>) -> Vec<Axis> {
                     keys_name(&keys),
                     first.len()
                 );
-                mistakes
-                    .push(Mistake::new(&entry.node.origin, path, message).help("give both the same number of values"));
+                mistakes.push(
+                    LocatedDiagnostic::new(&entry.node.origin, path, message)
+                        .help("give both the same number of values"),
+                );
                 continue;
             }
             keys.push((entry.key.clone(), entry.origin.clone()));
@@ -224,11 +234,13 @@ fn keys_name(keys: &[(String, Origin)]) -> &str {
 const FORMS: &str = "write { list = [1.0, 2.0] }, { from = 1.0, to = 2.0, step = 0.5 } or { from = 1.0, to = 2.0, count = 3 }, and the swept key in quotes: \"scene.profile.rise\"";
 
 /// The values of one axis; `None` where it has mistakes.
-fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
+fn axis(node: &Node, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Option<Vec<Node>> {
     let before = mistakes.len();
     let Some(table) = node.table() else {
-        mistakes
-            .push(Mistake::new(&node.origin, path, format!("must be a table, but is {}", node.describe())).help(FORMS));
+        mistakes.push(
+            LocatedDiagnostic::new(&node.origin, path, format!("must be a table, but is {}", node.describe()))
+                .help(FORMS),
+        );
         return None;
     };
     for entry in &table.entries {
@@ -238,7 +250,9 @@ fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node
                 Some(_) => suggest(&entry.key, &names, "keys here"),
                 None => FORMS.into(),
             };
-            mistakes.push(Mistake::new(&entry.origin, join(path, &entry.key), "is not a key of an axis").help(help));
+            mistakes.push(
+                LocatedDiagnostic::new(&entry.origin, join(path, &entry.key), "is not a key of an axis").help(help),
+            );
         }
     }
     if mistakes.len() > before {
@@ -250,17 +264,17 @@ fn axis(node: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node
         (None, 3) if !(given.contains(&"step") && given.contains(&"count")) => spaced(node, table, path, mistakes),
         _ => {
             let message = format!("has the keys {}, which is no axis", given.join(", "));
-            mistakes.push(Mistake::new(&node.origin, path, message).help(FORMS));
+            mistakes.push(LocatedDiagnostic::new(&node.origin, path, message).help(FORMS));
             None
         }
     };
     values.filter(|_| mistakes.len() == before)
 }
 
-fn listed(list: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
+fn listed(list: &Node, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Option<Vec<Node>> {
     let Some(nodes) = list.array().filter(|nodes| !nodes.is_empty()) else {
         let message = "must be a list of at least one value";
-        mistakes.push(Mistake::new(&list.origin, path, message));
+        mistakes.push(LocatedDiagnostic::new(&list.origin, path, message));
         return None;
     };
     let mut values = nodes.to_vec();
@@ -272,27 +286,27 @@ fn listed(list: &Node, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<No
                 let message =
                     format!("a swept value is a number, a text, true or false, but this is {}", node.describe());
                 let help = "sweep a single number of it (its index from 0 is part of the key), or use variants";
-                mistakes.push(Mistake::new(&node.origin, join(path, &index.to_string()), message).help(help));
+                mistakes.push(LocatedDiagnostic::new(&node.origin, join(path, &index.to_string()), message).help(help));
             }
         }
     }
     Some(values)
 }
 
-fn spaced(node: &Node, table: &Table, path: &str, mistakes: &mut Vec<Mistake>) -> Option<Vec<Node>> {
+fn spaced(node: &Node, table: &Table, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Option<Vec<Node>> {
     let mut number = |key: &str| -> Option<f64> {
         let value = table.get(key)?;
         let number = value.number().filter(|number| number.is_finite());
         if number.is_none() {
             let message = format!("must be a finite number, but is {}", value.describe());
-            mistakes.push(Mistake::new(&value.origin, join(path, key), message));
+            mistakes.push(LocatedDiagnostic::new(&value.origin, join(path, key), message));
         }
         number
     };
     let (from, to, step, count) = (number("from"), number("to"), number("step"), number("count"));
     let (from, to) = (from?, to?);
     let mut wrong = |key: &str, message: String, help: &str| -> Option<Vec<Node>> {
-        mistakes.push(Mistake::new(&table.get(key)?.origin, join(path, key), message).help(help));
+        mistakes.push(LocatedDiagnostic::new(&table.get(key)?.origin, join(path, key), message).help(help));
         None
     };
     let (count, step) = match (step, count) {
@@ -346,8 +360,8 @@ mod tests {
     use super::*;
     use crate::config::document::parse;
 
-    fn plan(text: &str) -> Result<Plan, Vec<Mistake>> {
-        Plan::new(&parse(text, "a.toml").unwrap())
+    fn plan(text: &str) -> Result<Plan, Vec<LocatedDiagnostic>> {
+        Plan::new(&parse(text, "a.toml").unwrap(), &[])
     }
 
     fn column(plan: &Plan, key: &str) -> Vec<Json> {

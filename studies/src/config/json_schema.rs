@@ -1,12 +1,13 @@
-//! JSON Schema (draft 2020-12) of study files, for editors: the study's schema and all cards.
+//! JSON Schema (draft 2020-12) of tables and of all plug-ins, from the shapes of their keys.
 
-use crate::config::check::{common_parameters, common_words};
-use crate::config::document::{Origin, parse_value};
+use crate::config::common_keys::{common_parameters, common_words};
+use crate::config::document::parse_value;
+use crate::config::origin::Origin;
 use serde_json::{Map, Value as Json, json};
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, candidates};
 
-/// The schema of study files.
-pub fn json_schema() -> Json {
+/// Definitions of all plug-ins that study files configure, by name.
+pub fn definitions() -> Map<String, Json> {
     let mut definitions = Map::new();
     for kind in [
         PluginKind::InterfaceLaw,
@@ -24,16 +25,7 @@ pub fn json_schema() -> Json {
         }
         definitions.insert(name_of(kind), json!({ "oneOf": choices }));
     }
-    definitions.insert("study".into(), table(crate::study::STUDY, None));
-    definitions.insert("point_study".into(), table(crate::kinds::point::schema(), None));
-    json!({
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "Voussoir study",
-        "if": { "properties": { "kind": { "const": "point" } }, "required": ["kind"] },
-        "then": { "$ref": "#/$defs/point_study" },
-        "else": { "$ref": "#/$defs/study" },
-        "$defs": definitions,
-    })
+    definitions
 }
 
 fn name_of(kind: PluginKind) -> String {
@@ -56,7 +48,8 @@ fn plugin(defs: &mut Map<String, Json>, kind: PluginKind, tag: &str, summary: &s
     json!({ "$ref": format!("#/$defs/{name}") })
 }
 
-fn table(parameters: &[Parameter], tag: Option<(&str, &str)>) -> Json {
+/// The schema of a table with these keys; `tag` is the key that names it, with its word.
+pub fn table(parameters: &[Parameter], tag: Option<(&str, &str)>) -> Json {
     let mut properties = Map::new();
     let mut required = Vec::new();
     if let Some((key, word)) = tag {
@@ -131,23 +124,5 @@ fn shape(of: &Shape) -> Json {
         Shape::Plugin(kind) => json!({ "$ref": format!("#/$defs/{}", name_of(*kind)) }),
         Shape::Map(of) => json!({ "type": "object", "additionalProperties": shape(of) }),
         Shape::Free => json!({}),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_reference_has_a_definition_and_every_law_its_own() {
-        let schema = json_schema();
-        let text = schema.to_string();
-        for target in text.split("\"#/$defs/").skip(1).filter_map(|rest| rest.split('"').next()) {
-            assert!(schema["$defs"].get(target).is_some(), "{target}");
-        }
-        let coulomb = &schema["$defs"]["interface_law_coulomb"];
-        assert_eq!(coulomb["properties"]["law"]["const"], "coulomb");
-        assert_eq!(coulomb["properties"]["friction"]["anyOf"][0]["minimum"], 0.0);
-        assert_eq!(coulomb["additionalProperties"], false);
     }
 }

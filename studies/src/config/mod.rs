@@ -1,13 +1,18 @@
 //! The study file: from TOML text to checked values, each with the place it was written at.
 //!
 //! [`document`] reads the text, [`overlay`] sets single keys in it, [`expand`] makes the cases of
-//! variants and sweeps, [`check`] compares a case with the schema, [`report`] says what is wrong
-//! and where, [`json_schema`] hands the same schema to editors. What the keys mean is not known
-//! here: that is [`crate::study`].
+//! variants and sweeps, [`check`] compares a case with the schema, [`diagnostic`] says what is wrong
+//! and [`origin`] where, [`json_schema`] hands the same schema to editors. What the keys mean is not
+//! known here: that is [`crate::study`].
 
 pub mod check;
+pub mod common_keys;
+pub mod diagnostic;
 pub mod document;
+pub mod dotted_key;
 pub mod expand;
+pub mod gravity;
 pub mod json_schema;
+pub mod origin;
 pub mod overlay;
-pub mod report;
+pub mod shape_words;

@@ -1,38 +1,16 @@
 //! Setting single keys of a document: `--set`, variants and sweeps.
 
-use crate::config::document::{Entry, Node, Origin, Table, Value};
-use crate::config::report::{Mistake, suggest};
-
-/// The segments of a dotted key; a segment in double quotes may hold dots.
-pub fn segments(path: &str) -> Vec<String> {
-    let (mut out, mut segment, mut quoted) = (Vec::new(), String::new(), false);
-    for character in path.chars() {
-        match character {
-            '"' => quoted = !quoted,
-            '.' if !quoted => out.push(std::mem::take(&mut segment)),
-            _ => segment.push(character),
-        }
-    }
-    if !path.is_empty() {
-        out.push(segment);
-    }
-    out.iter_mut().for_each(|segment| *segment = segment.trim().to_string());
-    out
-}
-
-/// A dotted key, one segment longer.
-pub fn join(path: &str, segment: &str) -> String {
-    let quote = segment.is_empty() || segment.contains(['.', ' ']);
-    let segment = if quote { format!("\"{segment}\"") } else { segment.to_string() };
-    if path.is_empty() { segment } else { format!("{path}.{segment}") }
-}
+use crate::config::diagnostic::{LocatedDiagnostic, suggest};
+use crate::config::document::{Entry, Node, Table, Value};
+use crate::config::dotted_key::{join, segments};
+use crate::config::origin::Origin;
 
 /// Sets the key at a dotted path. List entries are found by index from 0 or, where they are tables
 /// with a `name`, by that name. Tables and keys that are missing are created, so that a misspelt
 /// key is found by the check of the whole; a list entry is never created. `key_origin` is where
 /// the path was written.
-pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Result<(), Box<Mistake>> {
-    let wrong = |message: String| Mistake::new(key_origin, path, message);
+pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Result<(), Box<LocatedDiagnostic>> {
+    let wrong = |message: String| LocatedDiagnostic::new(key_origin, path, message);
     let segments = segments(path);
     if segments.is_empty() || segments.iter().any(String::is_empty) {
         let help = "write it as in scene.profile.rise";
@@ -100,7 +78,7 @@ mod tests {
 
     const TEXT: &str = "name = \"x\"\n[[stages]]\nname = \"live\"\nloads = [{ force = 1 }]\n[scene]\nspan = 3\n";
 
-    fn with(path: &str, value: &str) -> Result<Node, Box<Mistake>> {
+    fn with(path: &str, value: &str) -> Result<Node, Box<LocatedDiagnostic>> {
         let mut root = parse(TEXT, "a.toml").unwrap();
         let origin = Origin::Set(path.into());
         set(&mut root, path, parse_value(value, &origin).unwrap(), &origin)?;
@@ -133,11 +111,5 @@ mod tests {
             "--set scene.span.rise: scene.span is the number 3, so nothing can be set inside it"
         );
         assert!(message("scene..rise").contains("is not a dotted key"));
-    }
-
-    #[test]
-    fn quoted_segments_may_hold_dots() {
-        assert_eq!(segments("sweep.\"a.b\".list"), ["sweep", "a.b", "list"]);
-        assert_eq!(join("sweep", "a.b"), "sweep.\"a.b\"");
     }
 }

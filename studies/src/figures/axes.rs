@@ -1,7 +1,7 @@
 //! Axes of charts that are drawn by hand: values to pixels, round ticks, and the few marks they need.
 
 use super::format::{escape, format_short};
-use super::lettering::Spot;
+use super::text_layout::Spot;
 use std::fmt::Write;
 
 /// Okabe and Ito (2008), told apart by colour-blind readers.

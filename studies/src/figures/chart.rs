@@ -1,6 +1,6 @@
 //! Line charts, as SVG: markers and lines, legend below the axes so that it never covers data.
 
-use super::lettering::{text_width, wrapped};
+use super::text_layout::{text_width, wrapped};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

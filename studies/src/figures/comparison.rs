@@ -1,8 +1,8 @@
-//! The figure of a comparison: for each scene the ratios of all voices to the reference.
+//! The figure of a comparison: for each scene the ratios of all variants to the reference.
 
 use super::axes::{Axis, COLOURS, Canvas};
 use super::format::{format_number, format_value, status_word};
-use super::lettering::{text_width, wrapped};
+use super::text_layout::{text_width, wrapped};
 use crate::results::{Comparison, ComparisonCell, ComparisonRow};
 use voussoir_core::limit::Status;
 
@@ -42,10 +42,10 @@ pub fn remark(cell: &ComparisonCell) -> String {
     }
 }
 
-/// The figure; `None` where no voice has a ratio.
+/// The figure; `None` where no variant has a ratio.
 pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     let base = |row: &ComparisonRow| {
-        let cell = row.cells.get(comparison.voices.iter().position(|voice| *voice == comparison.reference)?)?;
+        let cell = row.cells.get(comparison.variants.iter().position(|variant| *variant == comparison.reference)?)?;
         cell.load_factor.filter(|factor| *factor > 0.0)
     };
     let bracket = |row: &ComparisonRow, cell: &ComparisonCell| {
@@ -64,12 +64,12 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     let names: Vec<Vec<String>> = comparison.rows.iter().map(|row| wrapped(&row_name(row), 13.0, 230.0)).collect();
     let widest = names.iter().flatten().map(|line| text_width(line, 13.0)).fold(80.0, f64::max);
     let (left, plot) = (widest + 34.0, 520.0);
-    let voices = comparison.voices.len();
+    let variants = comparison.variants.len();
     let remarks: Vec<String> = comparison.rows.iter().map(|row| row_remarks(comparison, row)).collect();
     let right = remarks.iter().map(|words| text_width(words, 12.0)).fold(30.0, f64::max).min(430.0) + 24.0;
     let width = left + plot + right;
     let axis = Axis { values: [low, high + margin], places: [left, left + plot] };
-    let row_height = (12.0 * voices as f64 + 12.0).max(34.0);
+    let row_height = (12.0 * variants as f64 + 12.0).max(34.0);
     let titles =
         wrapped(&format!("{study}: load factor over that of \"{}\"", comparison.reference), 17.0, width - 40.0);
     let top = 22.0 + 24.0 * titles.len() as f64;
@@ -97,14 +97,14 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
             let shift = 16.0 * (line as f64 - (names[i].len() as f64 - 1.0) / 2.0);
             canvas.text([left - 14.0, middle + shift + 4.5], words, 13.0, "end");
         }
-        for (voice, cell) in row.cells.iter().enumerate() {
-            let at = middle + 12.0 * (voice as f64 - (voices as f64 - 1.0) / 2.0);
+        for (variant, cell) in row.cells.iter().enumerate() {
+            let at = middle + 12.0 * (variant as f64 - (variants as f64 - 1.0) / 2.0);
             if let Some([a, b]) = bracket(row, cell).filter(|ends| ends.iter().all(|x| x.is_finite())) {
-                canvas.line([axis.at(a), at], [axis.at(b), at], COLOURS[voice % COLOURS.len()], 3.0);
-                canvas.line([axis.at(a), at - 4.0], [axis.at(a), at + 4.0], COLOURS[voice % COLOURS.len()], 2.0);
+                canvas.line([axis.at(a), at], [axis.at(b), at], COLOURS[variant % COLOURS.len()], 3.0);
+                canvas.line([axis.at(a), at - 4.0], [axis.at(a), at + 4.0], COLOURS[variant % COLOURS.len()], 2.0);
             }
             if let Some(ratio) = cell.ratio {
-                canvas.mark(voice, [axis.at(ratio), at]);
+                canvas.mark(variant, [axis.at(ratio), at]);
             }
         }
         let lines = wrapped(&remarks[i], 12.0, right - 20.0);
@@ -115,12 +115,12 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     }
     let mut legend = bottom + 66.0;
     let mut x = 30.0;
-    for (voice, name) in comparison.voices.iter().enumerate() {
+    for (variant, name) in comparison.variants.iter().enumerate() {
         let wide = 26.0 + text_width(name, 13.0) + 18.0;
         if x > 30.0 && x + wide > width - 20.0 {
             (x, legend) = (30.0, legend + 22.0);
         }
-        canvas.mark(voice, [x + 8.0, legend - 4.5]);
+        canvas.mark(variant, [x + 8.0, legend - 4.5]);
         canvas.text([x + 22.0, legend], name, 13.0, "start");
         x += wide;
     }
@@ -133,15 +133,15 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     Some(canvas.finish(width, legend + 20.0))
 }
 
-/// The load factor of the reference, and what voices without a collapse say.
+/// The load factor of the reference, and what variants without a collapse say.
 fn row_remarks(comparison: &Comparison, row: &ComparisonRow) -> String {
-    let reference = comparison.voices.iter().position(|voice| *voice == comparison.reference);
+    let reference = comparison.variants.iter().position(|variant| *variant == comparison.reference);
     let base = reference
         .and_then(|i| row.cells.get(i)?.load_factor)
         .map(|x| format!("{} = {}", comparison.reference, format_number(x, 4)));
-    let others = row.cells.iter().zip(&comparison.voices).filter_map(|(cell, voice)| {
+    let others = row.cells.iter().zip(&comparison.variants).filter_map(|(cell, variant)| {
         let words = remark(cell);
-        (!words.is_empty()).then(|| format!("{voice}: {words}"))
+        (!words.is_empty()).then(|| format!("{variant}: {words}"))
     });
     base.into_iter().chain(others).collect::<Vec<_>>().join("; ")
 }

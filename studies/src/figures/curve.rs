@@ -2,7 +2,7 @@
 
 use super::chart::{Marker, Series, Spot, chart_svg};
 use super::format::{case_title, format_force, parameters_text, unit_load};
-use crate::history::{JointEvent, JointState, joint_events};
+use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;
@@ -89,7 +89,7 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
 
 /// The curve of one case, its hinges labelled; `None` without a curve of two points or more.
 pub fn curve_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> Option<String> {
-    let line = points(result.curve.as_deref().filter(|curve| curve.len() > 1)?);
+    let line = points(result.path.curve.as_deref().filter(|curve| curve.len() > 1)?);
     let spots = spots(result, &joint_events(assembly, result), &line, true);
     let title = case_title(study, result);
     let name = result.stages.last().map_or("path".into(), |stage| format!("stage \"{}\"", stage.name));
@@ -102,17 +102,17 @@ pub fn curve_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
 pub fn curve_charts(study: &StudyOutput) -> Vec<(String, String)> {
     let cases = &study.results.cases;
     let with_curve: Vec<usize> =
-        (0..cases.len()).filter(|&i| cases[i].curve.as_ref().is_some_and(|curve| curve.len() > 1)).collect();
+        (0..cases.len()).filter(|&i| cases[i].path.curve.as_ref().is_some_and(|curve| curve.len() > 1)).collect();
     let mut groups: Vec<(String, Vec<usize>)> = vec![("curve".into(), with_curve.clone())];
     if with_curve.len() > TOGETHER {
         let mut variants: Vec<Option<&str>> = Vec::new();
         for &i in &with_curve {
-            if !variants.contains(&cases[i].variant.as_deref()) {
-                variants.push(cases[i].variant.as_deref());
+            if !variants.contains(&cases[i].label.variant.as_deref()) {
+                variants.push(cases[i].label.variant.as_deref());
             }
         }
         let of = |variant: &Option<&str>| {
-            with_curve.iter().copied().filter(|&i| cases[i].variant.as_deref() == *variant).collect()
+            with_curve.iter().copied().filter(|&i| cases[i].label.variant.as_deref() == *variant).collect()
         };
         groups = variants.iter().enumerate().map(|(n, variant)| (format!("curve-{n}"), of(variant))).collect();
     }
@@ -122,22 +122,22 @@ pub fn curve_charts(study: &StudyOutput) -> Vec<(String, String)> {
         }
         let mut units = Vec::new();
         let mut series = Vec::new();
-        let one_variant = group.windows(2).all(|pair| cases[pair[0]].variant == cases[pair[1]].variant);
+        let one_variant = group.windows(2).all(|pair| cases[pair[0]].label.variant == cases[pair[1]].label.variant);
         for &place in &group {
             let (assembly, stages) = study.scene(place)?;
             units.push(unit_load(stages));
-            let line = points(cases[place].curve.as_deref()?);
+            let line = points(cases[place].path.curve.as_deref()?);
             let spots = spots(&cases[place], &joint_events(assembly, &cases[place]), &line, false);
             let words = [
-                cases[place].variant.clone().filter(|_| !one_variant).unwrap_or_default(),
+                cases[place].label.variant.clone().filter(|_| !one_variant).unwrap_or_default(),
                 parameters_text(&cases[place]),
             ];
             let words: Vec<_> = words.into_iter().filter(|words| !words.is_empty()).collect();
-            let title = if words.is_empty() { format!("case {}", cases[place].id) } else { words.join(", ") };
+            let title = if words.is_empty() { format!("case {}", cases[place].label.id) } else { words.join(", ") };
             series.push(Series { name: title, points: line, spots: Some(spots), ..Series::default() });
         }
         let unit = units[0].filter(|_| units.windows(2).all(|pair| pair[0] == pair[1]));
-        let variant = cases[group[0]].variant.as_ref().filter(|_| one_variant);
+        let variant = cases[group[0]].label.variant.as_ref().filter(|_| one_variant);
         let title =
             format!("{}{}: load over displacement", study.name, variant.map_or(String::new(), |v| format!(", {v}")));
         Some((name, chart_svg(&title, X_LABEL, &factor_label(unit), &series, &[])))

@@ -3,8 +3,8 @@
 
 use super::format::{case_title, format_force, headline};
 use super::loads::Loads;
-use super::marks::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
-use super::sheet::Sheet;
+use super::svg_canvas::SvgCanvas;
+use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
 use super::thrust::{resultants, strut_lines, thrust_pieces};
 use crate::results::CaseResult;
 use voussoir_core::limit::Status;
@@ -25,31 +25,31 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     });
     let loads = Loads::new(assembly, stages, reached);
     let titles = [case_title(study, result), headline(result, stages)];
-    let mut sheet = Sheet::new(low, high, loads.margins(low, high), &titles);
+    let mut canvas = SvgCanvas::new(low, high, loads.margins(low, high), &titles);
     let mut legend = Legend::new();
-    blocks(&mut sheet, assembly);
+    blocks(&mut canvas, assembly);
     if assembly.bodies.iter().any(|body| body.fixed) {
         legend.push((Symbol::Ground, "support".into()));
     }
-    if result.status == Status::Unbounded && result.ray.is_some() {
-        strut(&mut sheet, assembly, stages, result, &mut legend);
+    if result.status == Status::Unbounded && result.proof.ray.is_some() {
+        strut(&mut canvas, assembly, stages, result, &mut legend);
     } else {
-        forces(&mut sheet, assembly, result, &mut legend);
+        forces(&mut canvas, assembly, result, &mut legend);
     }
-    loads.draw(&mut sheet);
+    loads.draw(&mut canvas);
     if loads.has_arrows() {
         let meaning = if reached.is_some() { "load at this factor" } else { "load, λ is its factor" };
         legend.push((Symbol::Load, meaning.into()));
     }
     if let Some(mechanism) = &result.mechanism {
-        legend.extend(mark(&mut sheet, assembly, mechanism, false, |_, point| point));
+        legend.extend(mark(&mut canvas, assembly, mechanism, false, |_, point| point));
     }
-    loads.label(&mut sheet);
+    loads.label(&mut canvas);
     let mut caption = loads.sentences().to_vec();
     if result.mechanism.as_ref().is_some_and(|m| m.unique == Some(false)) {
         caption.push("The mechanism is not the only one with this load factor.".into());
     }
-    sheet.finish(&legend, &caption)
+    canvas.finish(&legend, &caption)
 }
 
 /// Corners of the box around everything \[m\], with further points.
@@ -61,12 +61,12 @@ pub(super) fn extent(assembly: &Assembly, further: &[Vec2]) -> (Vec2, Vec2) {
 }
 
 /// Width of a block's outline [px]: thin where blocks are small.
-pub(super) fn outline_width(sheet: &Sheet, assembly: &Assembly) -> f64 {
+pub(super) fn outline_width(canvas: &SvgCanvas, assembly: &Assembly) -> f64 {
     let free = assembly.bodies.iter().filter(|body| !body.fixed && !body.vertices.is_empty());
     let mut sizes: Vec<f64> = free
         .map(|body| {
             let (low, high) = bounding_box(&body.vertices);
-            (high - low).norm() * sheet.scale()
+            (high - low).norm() * canvas.scale()
         })
         .collect();
     sizes.sort_by(f64::total_cmp);
@@ -74,18 +74,18 @@ pub(super) fn outline_width(sheet: &Sheet, assembly: &Assembly) -> f64 {
     sizes.get(sizes.len() / 2).map_or(1.0, |size| (0.03 * size).min(crowd).clamp(0.05, 1.2))
 }
 
-fn blocks(sheet: &mut Sheet, assembly: &Assembly) {
-    let width = outline_width(sheet, assembly);
+fn blocks(canvas: &mut SvgCanvas, assembly: &Assembly) {
+    let width = outline_width(canvas, assembly);
     let shapes = |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
-    sheet.outlines(shapes(true), "url(#ground)", OUTLINE, 1.0, "");
-    sheet.outlines(shapes(false), STONE, OUTLINE, width, "");
-    faces(sheet, assembly, OUTLINE, |_, point| point);
-    supports(sheet, assembly);
+    canvas.outlines(shapes(true), "url(#ground)", OUTLINE, 1.0, "");
+    canvas.outlines(shapes(false), STONE, OUTLINE, width, "");
+    faces(canvas, assembly, OUTLINE, |_, point| point);
+    supports(canvas, assembly);
 }
 
 /// Intrados and extrados of rings whose voussoirs are too small to have outlines of their own;
 /// `place` says where a point of a body lies.
-pub(super) fn faces(sheet: &mut Sheet, assembly: &Assembly, colour: &str, place: impl Fn(usize, Vec2) -> Vec2) {
+pub(super) fn faces(canvas: &mut SvgCanvas, assembly: &Assembly, colour: &str, place: impl Fn(usize, Vec2) -> Vec2) {
     let Some(arch) = assembly.arch.as_ref().filter(|arch| arch.voussoirs > MANY) else { return };
     let stride = arch.voussoirs.div_ceil(MANY);
     for left in (0..arch.voussoirs).step_by(stride) {
@@ -96,15 +96,15 @@ pub(super) fn faces(sheet: &mut Sheet, assembly: &Assembly, colour: &str, place:
             let before = (last.ends[side] - first.ends[side]).norm();
             // A chord that changes its length spans an open hinge.
             if ((b - a).norm() - before).abs() < 1e-3 * before {
-                let chord = [sheet.at(a), sheet.at(b)];
-                sheet.line(&chord, colour, 0.9, "");
+                let chord = [canvas.at(a), canvas.at(b)];
+                canvas.line(&chord, colour, 0.9, "");
             }
         }
     }
 }
 
 /// Hatching along the joints of supports that have no shape.
-pub(super) fn supports(sheet: &mut Sheet, assembly: &Assembly) {
+pub(super) fn supports(canvas: &mut SvgCanvas, assembly: &Assembly) {
     for joint in &assembly.joints {
         let shapeless = |body: usize| assembly.bodies[body].fixed && assembly.bodies[body].vertices.is_empty();
         let towards_ground = match (shapeless(joint.minus), shapeless(joint.plus)) {
@@ -113,29 +113,29 @@ pub(super) fn supports(sheet: &mut Sheet, assembly: &Assembly) {
             _ => continue,
         };
         let along = joint.frame().1;
-        let depth = 11.0 / sheet.scale();
-        let reach = along * (8.0 / sheet.scale());
+        let depth = 11.0 / canvas.scale();
+        let reach = along * (8.0 / canvas.scale());
         let (from, to) = (joint.ends[0] - reach, joint.ends[1] + reach);
-        let face = [sheet.at(from), sheet.at(to)];
-        sheet.line(&face, OUTLINE, 2.2, "");
-        let strokes = (((to - from).norm() * sheet.scale()) / 7.0).ceil().max(2.0) as usize;
+        let face = [canvas.at(from), canvas.at(to)];
+        canvas.line(&face, OUTLINE, 2.2, "");
+        let strokes = (((to - from).norm() * canvas.scale()) / 7.0).ceil().max(2.0) as usize;
         let slant = turned(towards_ground) * 0.6;
         for i in 0..=strokes {
             let foot = from + (to - from) * (i as f64 / strokes as f64);
-            let stroke = [sheet.at(foot), sheet.at(foot + (towards_ground + slant) * depth)];
-            sheet.line(&stroke, "#777777", 1.2, "");
+            let stroke = [canvas.at(foot), canvas.at(foot + (towards_ground + slant) * depth)];
+            canvas.line(&stroke, "#777777", 1.2, "");
         }
     }
 }
 
-fn forces(sheet: &mut Sheet, assembly: &Assembly, result: &CaseResult, legend: &mut Legend) {
-    let joint_forces = result.field.as_ref().map(|field| resultants(assembly, field));
-    if let Some(points) = &result.thrust_line {
+fn forces(canvas: &mut SvgCanvas, assembly: &Assembly, result: &CaseResult, legend: &mut Legend) {
+    let joint_forces = result.proof.field.as_ref().map(|field| resultants(assembly, field));
+    if let Some(points) = &result.proof.thrust_line {
         let points: Vec<Option<Vec2>> = points.iter().map(|point| point.map(Vec2::from)).collect();
         let pieces = thrust_pieces(assembly, &points, joint_forces.as_deref().unwrap_or(&[]));
         for piece in &pieces {
-            let spots: Vec<_> = piece.iter().map(|&point| sheet.at(point)).collect();
-            sheet.line(&spots, THRUST, 2.0, "");
+            let spots: Vec<_> = piece.iter().map(|&point| canvas.at(point)).collect();
+            canvas.line(&spots, THRUST, 2.0, "");
         }
         if !pieces.is_empty() {
             legend.push((Symbol::Thrust, "thrust line".into()));
@@ -147,23 +147,23 @@ fn forces(sheet: &mut Sheet, assembly: &Assembly, result: &CaseResult, legend: &
     if strongest <= 0.0 {
         return;
     }
-    let mut heights: Vec<f64> = assembly.joints.iter().map(|joint| joint.height() * sheet.scale()).collect();
+    let mut heights: Vec<f64> = assembly.joints.iter().map(|joint| joint.height() * canvas.scale()).collect();
     heights.sort_by(f64::total_cmp);
     let length = (0.6 * heights[heights.len() / 2]).clamp(5.0, 40.0);
     for resultant in joint_forces.iter().flatten() {
         let force = resultant.force.norm();
         let half = resultant.force / force * (length / 2.0);
-        let [x, y] = sheet.at(resultant.point);
+        let [x, y] = canvas.at(resultant.point);
         let width = (0.3 * length).min(7.0) * force / strongest;
         if width > 0.05 {
-            sheet.line(&[[x - half.x, y + half.y], [x + half.x, y - half.y]], THRUST, width, "");
+            canvas.line(&[[x - half.x, y + half.y], [x + half.x, y - half.y]], THRUST, width, "");
         }
     }
     legend.push((Symbol::Force, format!("joint force, width ∝ force (widest {})", format_force(strongest))));
 }
 
-fn strut(sheet: &mut Sheet, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {
-    let ray = resultants(assembly, result.ray.as_deref().unwrap_or(&[]));
+fn strut(canvas: &mut SvgCanvas, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {
+    let ray = resultants(assembly, result.proof.ray.as_deref().unwrap_or(&[]));
     let lines: Vec<Vec<Vec2>> = if assembly.arch.is_some() {
         let points: Vec<_> = ray.iter().map(|r| r.map(|r| r.point)).collect();
         thrust_pieces(assembly, &points, &ray)
@@ -172,8 +172,8 @@ fn strut(sheet: &mut Sheet, assembly: &Assembly, stages: &[Stage], result: &Case
         strut_lines(assembly, &ray, &loads).into_iter().map(Vec::from).collect()
     };
     for line in &lines {
-        let spots: Vec<_> = line.iter().map(|&point| sheet.at(point)).collect();
-        sheet.line(&spots, STRUT, 3.0, "9 5");
+        let spots: Vec<_> = line.iter().map(|&point| canvas.at(point)).collect();
+        canvas.line(&spots, STRUT, 3.0, "9 5");
     }
     legend.push((Symbol::Strut, "weightless strut that carries the load alone".into()));
 }

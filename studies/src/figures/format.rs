@@ -158,9 +158,9 @@ pub fn key_with_unit(key: &str) -> String {
 /// A key is cut to its last name where that is enough to tell it from the others.
 pub fn parameters_text(result: &CaseResult) -> String {
     let last = |key: &str| key.rsplit('.').next().unwrap_or("").to_string();
-    let entries = result.parameters.iter().map(|(key, value)| {
+    let entries = result.label.parameters.iter().map(|(key, value)| {
         let short = last(key);
-        let alone = result.parameters.keys().filter(|other| last(other) == short).count() == 1;
+        let alone = result.label.parameters.keys().filter(|other| last(other) == short).count() == 1;
         let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
         format!("{} = {}{unit}", if alone { &short } else { key }, format_value(value))
     });
@@ -193,9 +193,9 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
 
 /// Where a case stands in its study: `strathmashie, case 3, associated, rise = 2.99 m`.
 pub fn case_title(study: &str, result: &CaseResult) -> String {
-    let mut parts = vec![study.to_string(), format!("case {}", result.id)];
-    parts.extend(result.variant.clone());
-    parts.extend(result.scene.clone());
+    let mut parts = vec![study.to_string(), format!("case {}", result.label.id)];
+    parts.extend(result.label.variant.clone());
+    parts.extend(result.label.scene.clone());
     parts.extend(Some(parameters_text(result)).filter(|text| !text.is_empty()));
     parts.join(", ")
 }

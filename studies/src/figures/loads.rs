@@ -1,9 +1,9 @@
 //! Loads of the last stage as arrows.
 
 use super::format::{format_force, format_number};
-use super::lettering::{Area, Spot};
-use super::marks::LOAD;
-use super::sheet::Sheet;
+use super::svg_canvas::SvgCanvas;
+use super::symbols::LOAD;
+use super::text_layout::{Area, Spot};
 use voussoir_core::model::geometry::{Vec2, contains};
 use voussoir_core::model::{Assembly, PointForce, Stage};
 
@@ -116,36 +116,36 @@ impl Loads {
     }
 
     /// Draws the arrows and keeps labels off them; labels come later.
-    pub fn draw(&self, sheet: &mut Sheet) {
+    pub fn draw(&self, canvas: &mut SvgCanvas) {
         for arrow in &self.arrows {
-            let (from, to) = self.ends(sheet, arrow);
+            let (from, to) = self.ends(canvas, arrow);
             let small = self.arrows.len() > SINGLE;
-            sheet.arrow(from, to, LOAD, if small { 1.4 } else { 2.4 }, if small { 7.0 } else { 11.0 });
+            canvas.arrow(from, to, LOAD, if small { 1.4 } else { 2.4 }, if small { 7.0 } else { 11.0 });
             for i in 0..=8 {
                 let s = f64::from(i) / 8.0;
                 let spot = [from[0] + s * (to[0] - from[0]), from[1] + s * (to[1] - from[1])];
-                sheet.take(Area::around(spot, [4.0, 4.0]));
+                canvas.take(Area::around(spot, [4.0, 4.0]));
             }
         }
     }
 
     /// Writes the values at the tails.
-    pub fn label(&self, sheet: &mut Sheet) {
+    pub fn label(&self, canvas: &mut SvgCanvas) {
         let chosen: Vec<&Arrow> = if self.arrows.len() <= SINGLE {
             self.arrows.iter().collect()
         } else {
             self.arrows.get(self.arrows.len() / 2).into_iter().collect()
         };
         for (arrow, text) in chosen.into_iter().zip(&self.labels) {
-            let (from, to) = self.ends(sheet, arrow);
+            let (from, to) = self.ends(canvas, arrow);
             let away = if arrow.pulls { 1.0 } else { -1.0 };
             let tail = if arrow.pulls { to } else { from };
-            sheet.label(tail, [away * (to[0] - from[0]), away * (to[1] - from[1])], text, LOAD, true);
+            canvas.label(tail, [away * (to[0] - from[0]), away * (to[1] - from[1])], text, LOAD, true);
         }
     }
 
-    fn ends(&self, sheet: &Sheet, arrow: &Arrow) -> (Spot, Spot) {
-        let [x, y] = sheet.at(arrow.point);
+    fn ends(&self, canvas: &SvgCanvas, arrow: &Arrow) -> (Spot, Spot) {
+        let [x, y] = canvas.at(arrow.point);
         let reach = self.length_of(arrow) * if arrow.pulls { -1.0 } else { 1.0 };
         let tail = [x - arrow.direction.x * reach, y + arrow.direction.y * reach];
         if arrow.pulls { ([x, y], tail) } else { (tail, [x, y]) }

@@ -3,7 +3,7 @@
 use super::axes::{Axis, Canvas, round_values};
 use super::comparison::open_bracket;
 use super::format::{format_short, kind_words, status_word};
-use super::lettering::{Spot, text_width, wrapped};
+use super::text_layout::{Spot, text_width, wrapped};
 use crate::results::{Comparison, ComparisonCell, MapAxes};
 
 /// Light grounds on which dark contours stay readable.
@@ -74,13 +74,13 @@ pub fn contour(x: &[f64], y: &[f64], values: &[Vec<Option<f64>>], level: f64) ->
 /// The figure; `None` where the comparison has no map.
 pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
     let map = comparison.map.as_ref()?;
-    let voice = |name: &str| comparison.voices.iter().position(|voice| voice == name);
-    let (ratio_of, region_of) = (voice(&map.contours)?, voice(&map.regions)?);
+    let variant = |name: &str| comparison.variants.iter().position(|variant| variant == name);
+    let (ratio_of, region_of) = (variant(&map.contours)?, variant(&map.regions)?);
     let (nx, ny) = (map.x_values.len(), map.y_values.len());
     if comparison.rows.len() != nx * ny {
         return None;
     }
-    let cell = |i: usize, j: usize, voice: usize| &comparison.rows[i * ny + j].cells[voice];
+    let cell = |i: usize, j: usize, variant: usize| &comparison.rows[i * ny + j].cells[variant];
     let ratios: Vec<Vec<Option<f64>>> =
         (0..nx).map(|i| (0..ny).map(|j| cell(i, j, ratio_of).ratio).collect()).collect();
     let (mut kinds, mut counts): (Vec<String>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -148,7 +148,7 @@ pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
         words += &format!("; red dots: {missing} without a ratio");
     }
     canvas.text([40.0, legend], &words, 13.0, "start");
-    let base = voice(&comparison.reference)?;
+    let base = variant(&comparison.reference)?;
     let open = comparison.rows.iter().filter(|row| open_bracket(&row.cells[base]).is_some()).count();
     if open > 0 {
         legend += 22.0;

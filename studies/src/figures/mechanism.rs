@@ -1,22 +1,22 @@
 //! A mechanism: where its blocks go.
 
-use super::closure::closed;
 use super::displaced::displaced;
 use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
-use super::marks::{OUTLINE, STONE, Symbol, YIELDED, mark};
-use super::sheet::Sheet;
+use super::hinge_closure::close_hinges;
+use super::svg_canvas::SvgCanvas;
+use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use crate::results::CaseResult;
-use crate::yielded::CRUSHED;
+use crate::results::inelastic_state::CRUSHED;
 use voussoir_core::elastic::Mesh;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
 
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
 pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
-    let (mechanism, motion) = (result.mechanism.as_ref()?, result.motion.as_ref()?);
+    let (mechanism, motion) = (result.mechanism.as_ref()?, result.proof.motion.as_ref()?);
     let (placements, scale) = displaced(assembly, motion)?;
-    let placements = closed(assembly, mechanism, placements);
+    let placements = close_hinges(assembly, mechanism, placements);
     let moved: Vec<Vec<Vec2>> = assembly
         .bodies
         .iter()
@@ -29,39 +29,39 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
         case_title(study, result),
         format!("mechanism: {}", kind_words(mechanism.kind).trim_end_matches(" mechanism")),
     ];
-    let mut sheet = Sheet::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
-    let width = outline_width(&sheet, assembly);
+    let mut canvas = SvgCanvas::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
+    let width = outline_width(&canvas, assembly);
     let free = |body: usize| !assembly.bodies[body].fixed;
     let ground = assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
-    sheet.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
+    canvas.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
     let before = assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.vertices.as_slice());
-    sheet.outlines(before, "none", "#999999", width.min(0.9), "4 3");
-    faces(&mut sheet, assembly, "#999999", |_, point| point);
+    canvas.outlines(before, "none", "#999999", width.min(0.9), "4 3");
+    faces(&mut canvas, assembly, "#999999", |_, point| point);
     let after = moved.iter().enumerate().filter(|(body, _)| free(*body)).map(|(_, shape)| shape.as_slice());
-    sheet.outlines(after, STONE, OUTLINE, width, "");
+    canvas.outlines(after, STONE, OUTLINE, width, "");
     let grey = yielded_elements(assembly, result, |body, point| placements[body].of(point));
-    sheet.outlines(grey.iter().map(|element| element.as_slice()), YIELDED, "none", 0.0, "");
-    faces(&mut sheet, assembly, OUTLINE, |body, point| placements[body].of(point));
-    supports(&mut sheet, assembly);
+    canvas.outlines(grey.iter().map(|element| element.as_slice()), YIELDED, "none", 0.0, "");
+    faces(&mut canvas, assembly, OUTLINE, |body, point| placements[body].of(point));
+    supports(&mut canvas, assembly);
     let mut legend =
         vec![(Symbol::Block, "blocks as they move".to_string()), (Symbol::Before, "where they were".to_string())];
     if !grey.is_empty() {
         let text = format!("elements that have yielded (mean equivalent plastic strain above {CRUSHED:.0e})");
         legend.push((Symbol::Yielded, text));
     }
-    legend.extend(mark(&mut sheet, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
+    legend.extend(mark(&mut canvas, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
     let caption = [format!(
         "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {}. \
          Only directions and ratios mean something, not the size.",
         format_short(scale, 3)
     )];
-    Some(sheet.finish(&legend, &caption))
+    Some(canvas.finish(&legend, &caption))
 }
 
 /// Corners of the elements that have yielded, moved.
 fn yielded_elements(assembly: &Assembly, result: &CaseResult, place: impl Fn(usize, Vec2) -> Vec2) -> Vec<Vec<Vec2>> {
     let mut out = Vec::new();
-    for entry in &result.yielded {
+    for entry in &result.path.yielded {
         let Some(body) = assembly.body(&entry.body) else { continue };
         let Ok(mesh) = Mesh::new(&assembly.bodies[body].vertices, &assembly.mesh) else { continue };
         if mesh.elements.len() != entry.elements.len() {

@@ -4,19 +4,19 @@
 
 pub mod axes;
 pub mod chart;
-pub mod closure;
 pub mod comparison;
 pub mod curve;
 pub mod displaced;
 pub mod drawing;
 pub mod format;
-pub mod lettering;
+pub mod hinge_closure;
 pub mod loads;
 pub mod map;
-pub mod marks;
 pub mod mechanism;
-pub mod sheet;
+pub mod svg_canvas;
 pub mod sweep;
+pub mod symbols;
+pub mod text_layout;
 pub mod thrust;
 
 #[cfg(test)]

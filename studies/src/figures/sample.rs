@@ -1,7 +1,7 @@
 //! Scenes and answers made by hand, for tests of figures and writers: an arch with exact statics
 //! of a supposed four-hinge mechanism, a ring of many voussoirs, a wall with invented forces.
 
-use crate::results::{CaseResult, FieldEntry, MotionEntry, StageResult};
+use crate::results::{CaseLabel, CaseResult, FieldEntry, MotionEntry, ProofFields, StageResult};
 use std::sync::Arc;
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism, MechanismKind, Side, Sliding};
 use voussoir_core::elastic::MeshDensity;
@@ -88,26 +88,9 @@ pub fn arch_stages(assembly: &Assembly) -> Vec<Stage> {
 /// An answer without anything in it.
 pub fn blank(id: usize, status: Status) -> CaseResult {
     CaseResult {
-        id,
-        variant: None,
-        scene: None,
-        parameters: serde_json::Map::new(),
+        label: CaseLabel { id, ..CaseLabel::default() },
         status,
-        load_factor: None,
-        bounds: None,
-        associated_load_factor: None,
-        associated_motion: None,
-        lower_proof: None,
-        feasible_interval: None,
-        flow_read_as: None,
         solver: "limit_chain".into(),
-        notes: vec![],
-        mechanism: None,
-        field_factor: None,
-        field: None,
-        motion: None,
-        ray: None,
-        thrust_line: None,
         certificate: Certificate {
             passed: true,
             residuals: [
@@ -118,100 +101,125 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
             .into(),
             failures: vec![],
         },
-        counters: Default::default(),
         seconds: 1.2e-3,
-        events: Vec::new(),
-        curve: None,
-        displacements: None,
-        joint_states: None,
-        yielded: Vec::new(),
         stages: vec![StageResult { name: "live".into(), status, factor: None, hinges: vec![] }],
+        ..CaseResult::empty()
     }
+}
+
+/// The supposed hinges of [`arch_answer`].
+struct FourHinges {
+    joints: [usize; 4],
+    sides: [Side; 4],
+    points: [Vec2; 4],
+    load: PointForce,
+}
+
+impl FourHinges {
+    /// Hinges at joint 0, right of the load, at 3n/5 and at the last joint.
+    fn new(assembly: &Assembly, stages: &[Stage]) -> Self {
+        let n = assembly.arch.as_ref().expect("an arch").voussoirs;
+        let load = stages[1].forces[0];
+        let joints = [0, load.body, 3 * n / 5, n];
+        let sides = [Side::Intrados, Side::Extrados, Side::Intrados, Side::Extrados];
+        let point = |i: usize| assembly.joints[joints[i]].ends[usize::from(sides[i] == Side::Extrados)];
+        FourHinges { joints, sides, points: [0, 1, 2, 3].map(point), load }
+    }
+
+    /// Force H on joint 0 and λ such that the line of thrust passes the hinges.
+    fn thrust(&self, assembly: &Assembly) -> (Vec2, f64) {
+        let [a, b, c, d] = self.points;
+        let (mut matrix, mut right) = (nalgebra::Matrix3::zeros(), nalgebra::Vector3::zeros());
+        for (row, (pole, joint)) in [(b, 1), (c, 2), (d, 3)].into_iter().enumerate() {
+            let (arm, last) = (a - pole, self.joints[joint]);
+            let live = if self.load.body <= last { cross(self.load.point - pole, self.load.force) } else { 0.0 };
+            matrix.set_row(row, &nalgebra::RowVector3::new(-arm.y, arm.x, live));
+            let weights = (1..=last).map(|k| cross(assembly.inertia(k).centroid - pole, weight(assembly, k)));
+            right[row] = -weights.sum::<f64>();
+        }
+        let solution = matrix.lu().solve(&right).expect("four hinges make a mechanism");
+        (Vec2::new(solution[0], solution[1]), solution[2])
+    }
+
+    /// Contact forces and thrust line from the force on joint 0 and λ.
+    fn fields(&self, assembly: &Assembly, (mut force, factor): (Vec2, f64)) -> ProofFields {
+        let mut moment = cross(self.points[0], force);
+        let (mut field, mut line) = (Vec::new(), Vec::new());
+        for (k, joint) in assembly.joints.iter().enumerate() {
+            if k > 0 {
+                let mut add = |f: Vec2, at: Vec2| {
+                    force += f;
+                    moment += cross(at, f);
+                };
+                add(weight(assembly, k), assembly.inertia(k).centroid);
+                if self.load.body == k {
+                    add(self.load.force * factor, self.load.point);
+                }
+            }
+            let (n, t) = joint.frame();
+            let share = (moment - cross(joint.ends[0], force)) / (cross(t, force) * joint.height());
+            for (end, part) in joint.ends.iter().zip([1.0 - share, share]) {
+                let force = [part * force.dot(&n), 0.5 * force.dot(&t)];
+                field.push(FieldEntry { joint: k, point: [end.x, end.y], force });
+            }
+            let point = joint.ends[0] + t * (share * joint.height());
+            line.push(Some([point.x, point.y]));
+        }
+        let (field, thrust_line) = (Some(field), Some(line));
+        ProofFields { field_factor: Some(factor), field, thrust_line, ..ProofFields::default() }
+    }
+
+    /// Velocities and mechanism: the middle link turns about where AB and CD cross, velocities agree at B and C.
+    fn motion(&self, assembly: &Assembly) -> (Vec<MotionEntry>, Mechanism) {
+        let ([a, b, c, d], joints) = (self.points, self.joints);
+        let (ab, cd) = (b - a, d - c);
+        let centre = a + ab * (cross(c - a, cd) / cross(ab, cd));
+        let ratio = |p: Vec2, from: Vec2, to: Vec2| (p - from).dot(&(p - to)) / (p - to).norm_squared();
+        let spin = [1.0, ratio(b, a, centre), ratio(b, a, centre) / ratio(c, d, centre)];
+        let link = |body: usize| usize::from(body > joints[1]) + usize::from(body > joints[2]);
+        let centres = [a, centre, d];
+        let velocity = |body: usize, p: Vec2| turned(p - centres[link(body)]) * spin[link(body)];
+        let work = velocity(self.load.body, self.load.point).dot(&self.load.force);
+        let names = |k: usize| [assembly.bodies[k].name.clone(), assembly.bodies[k + 1].name.clone()];
+        let turns = [spin[0], spin[1] - spin[0], spin[2] - spin[1], -spin[2]];
+        let hinges = (0..4).map(|i| Hinge {
+            joint: joints[i],
+            between: names(joints[i]),
+            side: Some(self.sides[i]),
+            point: self.points[i].into(),
+            rotation: turns[i] / work,
+        });
+        let motion = (1..=joints[3]).map(|body| {
+            let v = velocity(body, assembly.inertia(body).centroid) / work;
+            MotionEntry { body: assembly.bodies[body].name.clone(), velocity: [v.x, v.y, spin[link(body)] / work] }
+        });
+        let mechanism = Mechanism {
+            kind: MechanismKind::FourHinge,
+            hinge_count: 4,
+            unique: Some(true),
+            hinges: hinges.collect(),
+            sliding: vec![],
+            crushing: vec![],
+        };
+        (motion.collect(), mechanism)
+    }
+}
+
+fn weight(assembly: &Assembly, body: usize) -> Vec2 {
+    Vec2::new(0.0, -9.81 * assembly.inertia(body).mass)
 }
 
 /// The four-hinge answer of [`arch`] for hinges at joint 0, right of the load, at 3n/5 and the last: statics and
 /// kinematics are exact for these hinges, whether or not they are the right ones.
 pub fn arch_answer(assembly: &Assembly, stages: &[Stage]) -> CaseResult {
-    let n = assembly.arch.as_ref().expect("an arch").voussoirs;
-    let joints = [0, stages[1].forces[0].body, 3 * n / 5, n];
-    let sides = [Side::Intrados, Side::Extrados, Side::Intrados, Side::Extrados];
-    let hinge = |i: usize| assembly.joints[joints[i]].ends[usize::from(sides[i] == Side::Extrados)];
-    let [a, b, c, d] = [hinge(0), hinge(1), hinge(2), hinge(3)];
-    let load = stages[1].forces[0];
-    let weight = |body: usize| Vec2::new(0.0, -9.81 * assembly.inertia(body).mass);
-    // Force H on joint 0 and λ such that the line of thrust passes the hinges.
-    let (mut matrix, mut right) = (nalgebra::Matrix3::zeros(), nalgebra::Vector3::zeros());
-    for (row, (pole, last)) in [(b, joints[1]), (c, joints[2]), (d, joints[3])].into_iter().enumerate() {
-        let arm = a - pole;
-        let live = if load.body <= last { cross(load.point - pole, load.force) } else { 0.0 };
-        matrix.set_row(row, &nalgebra::RowVector3::new(-arm.y, arm.x, live));
-        right[row] = -(1..=last).map(|body| cross(assembly.inertia(body).centroid - pole, weight(body))).sum::<f64>();
-    }
-    let solution = matrix.lu().solve(&right).expect("four hinges make a mechanism");
-    let factor = solution[2];
-    let (mut force, mut moment) = (Vec2::new(solution[0], solution[1]), cross(a, Vec2::new(solution[0], solution[1])));
-    let (mut field, mut line) = (Vec::new(), Vec::new());
-    for (k, joint) in assembly.joints.iter().enumerate() {
-        if k > 0 {
-            let mut add = |f: Vec2, at: Vec2| {
-                force += f;
-                moment += cross(at, f);
-            };
-            add(weight(k), assembly.inertia(k).centroid);
-            if load.body == k {
-                add(load.force * factor, load.point);
-            }
-        }
-        let (n, t) = joint.frame();
-        let share = (moment - cross(joint.ends[0], force)) / (cross(t, force) * joint.height());
-        for (end, part) in joint.ends.iter().zip([1.0 - share, share]) {
-            field.push(FieldEntry {
-                joint: k,
-                point: [end.x, end.y],
-                force: [part * force.dot(&n), 0.5 * force.dot(&t)],
-            });
-        }
-        let point = joint.ends[0] + t * (share * joint.height());
-        line.push(Some([point.x, point.y]));
-    }
-    // Centre of the middle link: where AB and CD cross. Velocities agree at B and C.
-    let (ab, cd) = (b - a, d - c);
-    let centre = a + ab * (cross(c - a, cd) / cross(ab, cd));
-    let ratio = |p: Vec2, from: Vec2, to: Vec2| (p - from).dot(&(p - to)) / (p - to).norm_squared();
-    let spin = [1.0, ratio(b, a, centre), ratio(b, a, centre) / ratio(c, d, centre)];
-    let link = |body: usize| usize::from(body > joints[1]) + usize::from(body > joints[2]);
-    let centres = [a, centre, d];
-    let velocity = |body: usize, p: Vec2| turned(p - centres[link(body)]) * spin[link(body)];
-    let work = velocity(load.body, load.point).dot(&load.force);
-    let names = |k: usize| [assembly.bodies[k].name.clone(), assembly.bodies[k + 1].name.clone()];
-    let turns = [spin[0], spin[1] - spin[0], spin[2] - spin[1], -spin[2]];
-    let hinges = (0..4).map(|i| Hinge {
-        joint: joints[i],
-        between: names(joints[i]),
-        side: Some(sides[i]),
-        point: [hinge(i).x, hinge(i).y],
-        rotation: turns[i] / work,
-    });
-    let motion = (1..=n).map(|body| {
-        let v = velocity(body, assembly.inertia(body).centroid) / work;
-        MotionEntry { body: assembly.bodies[body].name.clone(), velocity: [v.x, v.y, spin[link(body)] / work] }
-    });
-    let mechanism = Mechanism {
-        kind: MechanismKind::FourHinge,
-        hinge_count: 4,
-        unique: Some(true),
-        hinges: hinges.collect(),
-        sliding: vec![],
-        crushing: vec![],
-    };
+    let hinges = FourHinges::new(assembly, stages);
+    let thrust = hinges.thrust(assembly);
+    let (motion, mechanism) = hinges.motion(assembly);
     CaseResult {
-        load_factor: Some(factor),
-        bounds: Some([factor, factor]),
+        load_factor: Some(thrust.1),
+        bounds: Some([thrust.1; 2]),
         mechanism: Some(mechanism),
-        field_factor: Some(factor),
-        field: Some(field),
-        motion: Some(motion.collect()),
-        thrust_line: Some(line),
+        proof: ProofFields { motion: Some(motion), ..hinges.fields(assembly, thrust) },
         ..blank(0, Status::Collapse)
     }
 }
@@ -229,13 +237,16 @@ pub fn arch_unbounded(assembly: &Assembly, stages: &[Stage]) -> CaseResult {
         let force = line / line.x.abs() * 1000.0;
         FieldEntry { joint: k, point: [at.x, at.y], force: [force.dot(&n), force.dot(&t)] }
     });
-    CaseResult { ray: Some(ray.collect()), ..blank(1, Status::Unbounded) }
+    let proof = ProofFields { ray: Some(ray.collect()), ..ProofFields::default() };
+    CaseResult { proof, ..blank(1, Status::Unbounded) }
 }
 
-/// A wall in running bond on a ground block, pushed at its top left corner.
-pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult) {
-    let (length, height) = (0.4, 0.2);
-    let total = length * bricks as f64;
+/// Length and height of a brick of [`wall`] \[m\].
+const BRICK: [f64; 2] = [0.4, 0.2];
+
+/// Bricks in running bond on a ground block, and the first brick of the top course.
+fn bricks_and_joints(courses: usize, bricks: usize) -> (Vec<Body>, Vec<Joint>, usize) {
+    let ([length, height], total) = (BRICK, BRICK[0] * bricks as f64);
     let shape = |x0: f64, x1: f64, y0: f64, y1: f64| {
         vec![Vec2::new(x0, y0), Vec2::new(x1, y0), Vec2::new(x1, y1), Vec2::new(x0, y1)]
     };
@@ -285,9 +296,15 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         }
         rows.push(row);
     }
-    let top = height * courses as f64;
-    let pushed = rows[courses][0].0;
-    let force = PointForce { body: pushed, point: Vec2::new(0.0, top - height / 2.0), force: Vec2::new(1000.0, 0.0) };
+    let first = rows[courses][0].0;
+    (bodies, joints, first)
+}
+
+/// A wall in running bond on a ground block, pushed at its top left corner.
+pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult) {
+    let (height, top) = (BRICK[1], BRICK[1] * courses as f64);
+    let (bodies, joints, body) = bricks_and_joints(courses, bricks);
+    let force = PointForce { body, point: Vec2::new(0.0, top - height / 2.0), force: Vec2::new(1000.0, 0.0) };
     let stages = vec![
         stage("dead", Some(Vec2::new(0.0, -9.81)), vec![], Target::Factor(1.0)),
         stage("push", None, vec![force], Target::Collapse),
@@ -301,6 +318,13 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         mesh: MeshDensity::default(),
         arch: None,
     };
+    let answer = wall_answer(&assembly, top, Vec2::new(BRICK[0] * bricks as f64, height * (courses / 2) as f64));
+    (assembly, stages, answer)
+}
+
+/// Invented forces; the upper half turns about its lower right corner `pole`, its lowest left joint slides.
+fn wall_answer(assembly: &Assembly, top: f64, pole: Vec2) -> CaseResult {
+    let total = pole.x;
     let field = assembly.joints.iter().enumerate().flat_map(|(k, joint)| {
         let bed = joint.frame().0.y > 0.5;
         let depth = top - joint.middle().y;
@@ -313,8 +337,6 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         })
     });
     let field: Vec<_> = field.collect();
-    // The upper half turns about its lower right corner; its lowest left joint slides.
-    let pole = Vec2::new(total, height * (courses / 2) as f64);
     let moving = |body: usize| assembly.bodies[body].vertices.iter().all(|v| v.y >= pole.y - 1e-9);
     let motion = (1..assembly.bodies.len()).filter(|&body| moving(body)).map(|body| {
         let v = turned(assembly.inertia(body).centroid - pole) * -1e-3;
@@ -334,14 +356,12 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         sliding: slide.map(|(k, j)| Sliding { joint: k, between: between(j), slip: -1e-3 }).into_iter().collect(),
         crushing: vec![],
     };
-    let answer = CaseResult {
+    CaseResult {
         load_factor: Some(1.234567890),
         bounds: Some([1.2345678, 1.2345679]),
         mechanism: Some(mechanism),
-        motion: Some(motion.collect()),
-        field: Some(field),
+        proof: ProofFields { motion: Some(motion.collect()), field: Some(field), ..ProofFields::default() },
         notes: vec!["read as associated: \"a < b\" & so on".into()],
         ..blank(0, Status::Collapse)
-    };
-    (assembly, stages, answer)
+    }
 }

@@ -11,14 +11,14 @@ use voussoir_core::limit::Status;
 /// `None` unless exactly one key is swept and all its values are numbers. On arches whose rise or
 /// span is swept it is span/rise.
 pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
-    let [key] = study.sweep_keys else { return None };
+    let [key] = study.sweep_keys.as_slice() else { return None };
     let cases = &study.results.cases;
-    let values: Vec<f64> = cases.iter().map(|case| case.parameters.get(key)?.as_f64()).collect::<Option<_>>()?;
+    let values: Vec<f64> = cases.iter().map(|case| case.label.parameters.get(key)?.as_f64()).collect::<Option<_>>()?;
     if cases.len() < 2 {
         return None;
     }
     let ratios = || {
-        let layouts = study.assemblies.iter().map(|assembly| assembly.arch.as_ref());
+        let layouts = study.scenes.iter().map(|scene| scene.assembly.arch.as_ref());
         let ratios: Vec<f64> = layouts.map(|arch| arch.map(|a| a.span / a.rise)).collect::<Option<_>>()?;
         (ratios.len() == cases.len() && ratios.iter().all(|r| r.is_finite())).then_some(ratios)
     };
@@ -34,7 +34,7 @@ pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
 /// the load factor.
 pub fn study_chart(study: &StudyOutput) -> Option<String> {
     let (label, values) = sweep_axis(study)?;
-    let units: Vec<Option<f64>> = study.stages.iter().map(|stages| unit_load(stages)).collect();
+    let units: Vec<Option<f64>> = study.scenes.iter().map(|scene| unit_load(scene.stages)).collect();
     let unit = units
         .first()
         .copied()
@@ -49,14 +49,14 @@ pub fn study_chart(study: &StudyOutput) -> Option<String> {
 pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, unit_load: Option<f64>) -> Option<String> {
     let mut variants: Vec<Option<&str>> = Vec::new();
     for (case, _) in cases {
-        if !variants.contains(&case.variant.as_deref()) {
-            variants.push(case.variant.as_deref());
+        if !variants.contains(&case.label.variant.as_deref()) {
+            variants.push(case.label.variant.as_deref());
         }
     }
     let mut series = Vec::new();
     let mut notes = Vec::new();
     for variant in variants {
-        let mine = || cases.iter().filter(|(case, x)| case.variant.as_deref() == variant && x.is_finite());
+        let mine = || cases.iter().filter(|(case, x)| case.label.variant.as_deref() == variant && x.is_finite());
         let value =
             |case: &CaseResult| case.load_factor.map(|factor| factor * unit_load.map_or(1.0, |unit| unit / 1e3));
         let mut points: Vec<(f64, f64)> = mine().filter_map(|&(case, x)| Some((x, value(case)?))).collect();
@@ -67,7 +67,7 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
         for status in [Status::NoEquilibrium, Status::Stalled, Status::Stands, Status::LimitPoint] {
             let ids: Vec<String> = mine()
                 .filter(|(case, _)| case.status == status && case.load_factor.is_none())
-                .map(|(case, _)| case.id.to_string())
+                .map(|(case, _)| case.label.id.to_string())
                 .collect();
             if !ids.is_empty() {
                 let name = super::format::status_word(status).replace('_', " ");

@@ -1,11 +1,12 @@
 //! Figures of hand-made scenes: well-formed, finite, escaped, labels apart.
 
-use super::lettering::Area;
 use super::sample::*;
 use super::sweep::{study_chart, sweep_chart};
+use super::text_layout::Area;
 use super::*;
 use crate::results::{CaseResult, StudyResults};
-use crate::writers::{StudyOutput, writers};
+use crate::study::Output;
+use crate::writers::{SceneOutput, StudyOutput, writers};
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, PointForce, Stage};
@@ -33,13 +34,9 @@ fn scenes() -> Vec<Scene> {
     scenes.push(Scene { name: "unbounded", assembly, stages, answer });
     let assembly = arch(9.42, 2.99, 15);
     let mut stages = arch_stages(&assembly);
-    let failed = CaseResult {
-        status: Status::NoEquilibrium,
-        load_factor: None,
-        field: None,
-        thrust_line: None,
-        ..arch_answer(&assembly, &stages)
-    };
+    let mut failed = arch_answer(&assembly, &stages);
+    (failed.status, failed.load_factor) = (Status::NoEquilibrium, None);
+    (failed.proof.field, failed.proof.thrust_line) = (None, None);
     let strip = assembly.joints[1..9].iter().enumerate().map(|(k, joint)| PointForce {
         body: k + 1,
         point: joint.ends[1],
@@ -114,7 +111,7 @@ fn drawings_are_well_formed_and_finite() {
 }
 
 #[test]
-fn labels_do_not_overlap_and_stay_on_the_sheet() {
+fn labels_do_not_overlap_and_stay_on_the_canvas() {
     for (name, svg) in drawings() {
         let size: Vec<f64> = attribute(&svg, "viewBox").split(' ').map(|x| x.parse().expect("a number")).collect();
         let texts = texts(&svg);
@@ -122,7 +119,7 @@ fn labels_do_not_overlap_and_stay_on_the_sheet() {
         for (i, (words, area)) in texts.iter().enumerate() {
             assert!(
                 area.low[0] >= 0.0 && area.low[1] >= 0.0 && area.high[0] <= size[2] && area.high[1] <= size[3],
-                "{name}: \"{words}\" leaves the sheet"
+                "{name}: \"{words}\" leaves the canvas"
             );
             for (other, covered) in &texts[i + 1..] {
                 assert!(area.shared(covered) < 1.0, "{name}: \"{words}\" overlaps \"{other}\"");
@@ -134,9 +131,9 @@ fn labels_do_not_overlap_and_stay_on_the_sheet() {
 #[test]
 fn displaced_blocks_keep_their_size_and_meet_at_hinges() {
     for scene in scenes() {
-        let (Some(mechanism), Some(motion)) = (&scene.answer.mechanism, &scene.answer.motion) else { continue };
+        let (Some(mechanism), Some(motion)) = (&scene.answer.mechanism, &scene.answer.proof.motion) else { continue };
         let (placements, _) = displaced::displaced(&scene.assembly, motion).expect("it moves");
-        let placements = closure::closed(&scene.assembly, mechanism, placements);
+        let placements = hinge_closure::close_hinges(&scene.assembly, mechanism, placements);
         let size = scene.assembly.size();
         for (body, placement) in scene.assembly.bodies.iter().zip(&placements).filter(|(b, _)| !b.vertices.is_empty()) {
             let (a, b) = (body.vertices[0], body.vertices[2]);
@@ -156,9 +153,9 @@ fn displaced_blocks_keep_their_size_and_meet_at_hinges() {
 fn a_thrust_line_has_its_corner_where_the_load_meets_it() {
     let scene = scenes().swap_remove(0);
     let load = scene.stages[1].forces[0];
-    let field = scene.answer.field.as_deref().expect("a field");
+    let field = scene.answer.proof.field.as_deref().expect("a field");
     let forces = thrust::resultants(&scene.assembly, field);
-    let points: Vec<_> = scene.answer.thrust_line.iter().flatten().map(|p| p.map(Vec2::from)).collect();
+    let points: Vec<_> = scene.answer.proof.thrust_line.iter().flatten().map(|p| p.map(Vec2::from)).collect();
     let pieces = thrust::thrust_pieces(&scene.assembly, &points, &forces);
     assert_eq!(pieces.len(), 1);
     for (resultant, point) in forces.iter().zip(&points) {
@@ -199,7 +196,7 @@ fn a_ring_of_ten_thousand_stays_a_small_file() {
 #[test]
 fn special_characters_are_escaped() {
     let mut scene = scenes().swap_remove(0);
-    scene.answer.variant = Some("μ < 0.6 & \"dry\"".into());
+    scene.answer.label.variant = Some("μ < 0.6 & \"dry\"".into());
     let svg = scene_svg("a<b>&c", &scene.assembly, &scene.stages, &scene.answer);
     assert!(svg.contains("a&lt;b&gt;&amp;c") && svg.contains("μ &lt; 0.6 &amp;"));
     let series = Series { name: "<&>".into(), points: vec![(1.0, 2.0), (2.0, 3.0)], ..Series::default() };
@@ -217,9 +214,9 @@ fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
             let assembly = arch(9.42, rise, 15);
             let steps = arch_stages(&assembly);
             let mut case = if rise < 1.5 { arch_unbounded(&assembly, &steps) } else { arch_answer(&assembly, &steps) };
-            case.id = cases.len();
-            case.variant = Some(variant.into());
-            case.parameters.insert("scene.profile.rise".into(), serde_json::json!((rise * 1e6).round() / 1e6));
+            case.label.id = cases.len();
+            case.label.variant = Some(variant.into());
+            case.label.parameters.insert("scene.profile.rise".into(), serde_json::json!((rise * 1e6).round() / 1e6));
             case.load_factor = case.load_factor.map(|f| f * if variant == "coulomb" { 1.0 } else { 1.12 });
             if step == 3 {
                 case.notes.push("flow read as associated".into());
@@ -229,22 +226,21 @@ fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
             cases.push(case);
         }
     }
-    (assemblies, stages, StudyResults { study: "rise".into(), version: "0.1.0".into(), cases, comparison: None })
+    let own = Default::default();
+    let results = StudyResults { study: "rise".into(), version: "0.1.0".into(), cases, comparison: None, own };
+    (assemblies, stages, results)
 }
 
 fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
     let (assemblies, stages, results) = sweep();
-    let assemblies: Vec<&Assembly> = assemblies.iter().collect();
-    let stages: Vec<&[Stage]> = stages.iter().map(Vec::as_slice).collect();
-    let keys = ["scene.profile.rise".to_string()];
+    let pairs = assemblies.iter().zip(&stages);
+    let scenes = pairs.map(|(assembly, stages)| SceneOutput { assembly, stages, finite: false }).collect();
     then(&StudyOutput {
         name: "rise & <fall>",
         results: &results,
-        assemblies: &assemblies,
-        stages: &stages,
-        sweep_keys: &keys,
-        figures,
-        vtu: None,
+        scenes,
+        sweep_keys: vec!["scene.profile.rise".into()],
+        output: Output { figures, ..Output::default() },
     })
 }
 
@@ -254,8 +250,8 @@ fn a_sweep_of_the_rise_is_drawn_over_span_by_rise() {
         let chart = study_chart(study).expect("one axis of numbers");
         assert_balanced(&chart, "chart");
         assert!(chart.contains("span / rise") && chart.contains("unbounded") && chart.contains("[kN]"));
-        let two = ["a".to_string(), "b".to_string()];
-        assert!(study_chart(&StudyOutput { sweep_keys: &two, ..*study }).is_none());
+        let two = vec!["a".to_string(), "b".to_string()];
+        assert!(study_chart(&StudyOutput { sweep_keys: two, ..study.clone() }).is_none());
     });
 }
 
@@ -274,7 +270,8 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
         let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
         assert_eq!(tags, ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "vtu"]);
         for entry in writers() {
-            for (name, text) in entry.writer.files(study) {
+            for (name, bytes) in entry.writer.files(study) {
+                let text = String::from_utf8(bytes).expect("every file is text");
                 if name.ends_with("html") || name.ends_with("svg") {
                     assert_balanced(&text, &name);
                     assert!(!text.contains("src=") && !text.contains("href="), "{name}");

@@ -1,17 +1,16 @@
 //! `compare`: several laws and solvers on one or several scenes, in one table.
 #![doc = include_str!("compare.md")]
 
-use super::run::answer_cases;
-use super::{KindEntry, Observer, StudyKind};
-use crate::config::report::suggest;
+use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
+use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
-use crate::study::{Outline, Study, VARIANT};
+use crate::study::{Outline, Study, StudySource, VARIANT};
 use voussoir_core::limit::Status;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
 
 struct Compare;
 
-/// The key of the voice that others are divided by, the same in every kind that compares.
+/// The key of the variant that others are divided by, the same in every kind that compares.
 pub(super) const REFERENCE: Parameter = Parameter {
     name: "reference",
     doc: "name of the variant that the others are divided by",
@@ -44,8 +43,8 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// Mistakes that every kind that compares looks for: fewer than two voices, names of none.
-pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Diagnostic> {
+/// Mistakes that every kind that compares looks for: fewer than two variants, names of none.
+pub(super) fn check_variants(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     if outline.variants.len() < 2 {
         let message =
@@ -70,13 +69,13 @@ pub(super) fn check_voices(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<
 
 /// The variants beside each other; `reference` is the index of the one that others are divided by.
 pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: usize) -> Option<Comparison> {
-    let voices = &study.outline.variants;
-    let rows = study.cases.len().checked_div(voices.len())?;
-    let answered = |id: usize| cases.iter().find(|case| case.id == id);
+    let variants = &study.outline.variants;
+    let rows = study.cases.len().checked_div(variants.len())?;
+    let answered = |id: usize| cases.iter().find(|case| case.label.id == id);
     let row = |row: usize| {
         let base = answered(reference * rows + row).and_then(factor);
-        let cell = |voice: usize| {
-            let id = voice * rows + row;
+        let cell = |variant: usize| {
+            let id = variant * rows + row;
             let case = answered(id);
             let ratio = case.and_then(factor).zip(base).and_then(|(own, base)| (base > 0.0).then(|| own / base));
             ComparisonCell {
@@ -93,12 +92,12 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
         ComparisonRow {
             scene: first.scene.clone(),
             parameters: first.parameters.clone(),
-            cells: (0..voices.len()).map(cell).collect(),
+            cells: (0..variants.len()).map(cell).collect(),
         }
     };
     Some(Comparison {
-        reference: voices.get(reference)?.clone(),
-        voices: voices.clone(),
+        reference: variants.get(reference)?.clone(),
+        variants: variants.clone(),
         rows: (0..rows).map(row).collect(),
         map: None,
     })
@@ -110,15 +109,16 @@ fn factor(case: &CaseResult) -> Option<f64> {
 }
 
 impl StudyKind for Compare {
-    fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-        answer_cases(study, wanted, jobs, observer)
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        Ok(Box::new(Study::from_source(source)?))
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        check_voices("compare", outline, &["reference"])
+        check_variants("compare", outline, &["reference"])
     }
 
-    fn compare(&self, study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
-        beside_each_other(study, cases, study.outline.variant("reference").unwrap_or(0))
+    fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
+        let comparison = beside_each_other(study, cases, study.outline.variant("reference").unwrap_or(0));
+        OwnResults { comparison, ..OwnResults::default() }
     }
 }

@@ -1,12 +1,12 @@
 //! `map`: several laws and solvers over two swept numbers.
 #![doc = include_str!("map.md")]
 
-use super::compare::{REFERENCE, beside_each_other, check_voices};
-use super::run::answer_cases;
-use super::{KindEntry, Observer, StudyKind};
+use super::compare::{REFERENCE, beside_each_other, check_variants};
+use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
+use crate::config::diagnostic::LocatedDiagnostic;
 use crate::figures::format::key_with_unit;
 use crate::results::{CaseResult, Comparison, MapAxes};
-use crate::study::{Outline, Study};
+use crate::study::{Outline, Study, StudySource};
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
 
 struct Map;
@@ -55,12 +55,12 @@ fn values(study: &Study, key: &str) -> Option<Vec<f64>> {
 }
 
 impl StudyKind for Map {
-    fn answer(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-        answer_cases(study, wanted, jobs, observer)
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        Ok(Box::new(Study::from_source(source)?))
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        let mut diagnostics = check_voices("map", outline, &["reference", "contours", "regions"]);
+        let mut diagnostics = check_variants("map", outline, &["reference", "contours", "regions"]);
         if outline.axes.len() != 2 {
             let message = format!("\"map\" needs two axes, but [sweep] has {}", outline.axes.len());
             diagnostics
@@ -76,30 +76,35 @@ impl StudyKind for Map {
         diagnostics
     }
 
-    fn compare(&self, study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
-        let outline = &study.outline;
-        let reference = outline.variant("reference").unwrap_or(0);
-        let other = usize::from(reference == 0);
-        let mut comparison = beside_each_other(study, cases, reference)?;
-        let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
-        let (x, y) = (x?, y?);
-        let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
-            Some(text) => text.to_string(),
-            None => key_with_unit(key),
-        };
-        let name = |key: &str, otherwise: usize| outline.variants[outline.variant(key).unwrap_or(otherwise)].clone();
-        if let (Some(x_values), Some(y_values)) = (values(study, &x), values(study, &y)) {
-            comparison.map = Some(MapAxes {
-                x_label: label("x_label", &x),
-                y_label: label("y_label", &y),
-                contours: name("contours", other),
-                regions: name("regions", reference),
-                x,
-                x_values,
-                y,
-                y_values,
-            });
-        }
-        Some(comparison)
+    fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
+        OwnResults { comparison: map_of(study, cases), ..OwnResults::default() }
     }
+}
+
+/// The variants beside each other over the two axes.
+fn map_of(study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
+    let outline = &study.outline;
+    let reference = outline.variant("reference").unwrap_or(0);
+    let other = usize::from(reference == 0);
+    let mut comparison = beside_each_other(study, cases, reference)?;
+    let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
+    let (x, y) = (x?, y?);
+    let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
+        Some(text) => text.to_string(),
+        None => key_with_unit(key),
+    };
+    let name = |key: &str, otherwise: usize| outline.variants[outline.variant(key).unwrap_or(otherwise)].clone();
+    if let (Some(x_values), Some(y_values)) = (values(study, &x), values(study, &y)) {
+        comparison.map = Some(MapAxes {
+            x_label: label("x_label", &x),
+            y_label: label("y_label", &y),
+            contours: name("contours", other),
+            regions: name("regions", reference),
+            x,
+            x_values,
+            y,
+            y_values,
+        });
+    }
+    Some(comparison)
 }

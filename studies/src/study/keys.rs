@@ -1,7 +1,9 @@
 //! The keys of a study file.
 
+use crate::kinds::kinds;
 use crate::loads::LOAD;
-use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
+use std::sync::LazyLock;
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
     Parameter { name, doc, shape, need }
@@ -60,37 +62,6 @@ static STAGE: Shape = Shape::Table(&[
     ),
 ]);
 
-static STOP: Shape = Shape::Table(&[
-    Parameter::number(
-        "displacement",
-        Quantity::Length,
-        Range::POSITIVE,
-        "displacement of the load point behind a peak",
-    )
-    .optional("not a limit"),
-    Parameter::number("factor", Quantity::Ratio, Range::ANY, "load factor at which a path ends")
-        .optional("not a limit"),
-]);
-
-/// Keys of `[solver]` that every solver has.
-pub static SOLVER: &[Parameter] = &[
-    key("kinematics", Shape::Choice(&["small", "finite"]), Need::Default("\"small\""), "small or finite displacements"),
-    key(
-        "continuation",
-        Shape::Plugin(PluginKind::Continuation),
-        Need::Optional("the solver's own"),
-        "strategy of path solvers: { strategy = \"arc_length\" }",
-    ),
-    Parameter::number(
-        "tolerance",
-        Quantity::Ratio,
-        Range::new(0.0, true, 0.01, false),
-        "relative tolerance of certificates",
-    )
-    .default("1e-9"),
-    key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go behind a peak"),
-];
-
 static AXIS: Shape = Shape::Table(&[
     key(
         "list",
@@ -106,20 +77,45 @@ static AXIS: Shape = Shape::Table(&[
 static AXES: Shape = Shape::Either(&[AXIS, Shape::Map(&AXIS)]);
 
 /// A variant, and a scene of a comparison.
-pub(crate) static VARIANT: Shape = Shape::Table(&[
+pub static VARIANT: Shape = Shape::Table(&[
     key("name", Shape::Text, Need::Required, "its name, unique in the study"),
     key("set", Shape::Map(&FREE), Need::Default("{}"), "dotted keys in quotes, with the values they take"),
 ]);
 
 /// Keys of `[output]`.
-pub(crate) static OUTPUT: Shape = Shape::Table(&[
+pub static OUTPUT: Shape = Shape::Table(&[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
     key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ]);
 
-/// The keys of a study file.
-pub static STUDY: &[Parameter] = &[
+/// Cards of study kinds that read a table of their own, `[compare]` and the like, named as their tag.
+fn kinds_with_tables() -> impl Iterator<Item = &'static Card> {
+    kinds()
+        .into_iter()
+        .filter(|entry| entry.kind.file_keys().is_none())
+        .filter_map(|entry| card(PluginKind::StudyKind, entry.tag))
+        .filter(|card| !card.parameters.is_empty())
+}
+
+/// Names of the tables of study kinds, which are no part of a case.
+pub fn kind_tables() -> Vec<&'static str> {
+    kinds_with_tables().map(|card| card.tag).collect()
+}
+
+/// The keys of a study file: those that every study has, and the table of each study kind that reads one.
+pub fn study_keys() -> &'static [Parameter] {
+    static KEYS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
+        let table =
+            |card: &Card| key(card.tag, Shape::Table(card.parameters), Need::Optional("defaults"), card.summary);
+        let output = key("output", OUTPUT, Need::Default("{}"), "what is written besides the results");
+        COMMON.iter().copied().chain(kinds_with_tables().map(table)).chain([output]).collect()
+    });
+    &KEYS
+}
+
+/// Keys that every study has.
+static COMMON: &[Parameter] = &[
     key("name", Shape::Text, Need::Required, "name of the study"),
     key("kind", Shape::Text, Need::Default("\"run\""), "what is done with the cases"),
     key("scene", Shape::Plugin(PluginKind::Scene), Need::Required, "the geometry"),
@@ -149,17 +145,4 @@ pub static STUDY: &[Parameter] = &[
         Need::Optional("no variants"),
         "each overrides any keys",
     ),
-    key(
-        "compare",
-        Shape::Table(crate::kinds::compare::KEYS),
-        Need::Optional("one scene"),
-        "what kind = \"compare\" sets beside each other",
-    ),
-    key(
-        "map",
-        Shape::Table(crate::kinds::map::KEYS),
-        Need::Optional("the first two variants are compared"),
-        "what kind = \"map\" draws",
-    ),
-    key("output", OUTPUT, Need::Default("{}"), "what is written besides the results"),
 ];

@@ -1,10 +1,15 @@
-//! Which solver answers a case, and what it needs.
+//! `[solver]` of a case: which solver it names, what that solver needs of the laws, and the solver itself,
+//! built. A table that cannot be read is a mistake, never silently another solver.
 
-use super::case::Builder;
-use super::{Kinematics, SolverChoice};
-use crate::config::overlay::join;
+use super::diagnostics::DiagnosticList;
+use super::model::{SelectedSolver, SolverChoice};
+use crate::config::diagnostic::suggest;
+use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
+use std::sync::Arc;
+use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Bond};
+use voussoir_core::path::{Continuation, PathSettings, PathSolver};
 use voussoir_core::plugin::{
     Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
 };
@@ -13,35 +18,117 @@ fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
     candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
 }
 
-fn offers(capability: Capability) -> bool {
-    !solvers_that(|card| card.offers(capability)).is_empty()
-}
-
 fn or_none(tags: &[&str]) -> String {
     if tags.is_empty() { "none registered".into() } else { tags.join(", ") }
 }
 
 /// The solver that is asked for, and a mistake for each thing it needs and does not get.
 pub(super) fn choose_solver(
-    builder: &mut Builder<'_>,
+    diagnostics: &mut DiagnosticList<'_>,
     solver: &Json,
     resolved: &Map<String, Json>,
     assembly: Option<&Assembly>,
 ) -> Option<SolverChoice> {
-    let tag = solver["solver"].as_str()?.to_string();
-    let chosen = candidate(PluginKind::LimitSolver, &tag);
-    let kinematics = if solver["kinematics"] == "finite" { Kinematics::Finite } else { Kinematics::Small };
-    let finite = |card: &Card| card.offers(Capability::FINITE_DISPLACEMENTS);
-    if kinematics == Kinematics::Finite && !chosen.map_or_else(|| offers(Capability::FINITE_DISPLACEMENTS), finite) {
-        let able = solvers_that(finite);
-        let message = match able.is_empty() {
-            true => "no registered solver offers finite displacements".to_string(),
-            false => {
-                format!("solver \"{tag}\" does not offer finite displacements; solvers that do: {}", able.join(", "))
-            }
-        };
-        builder.wrong("solver.kinematics", message, "set kinematics = \"small\"");
+    let tag = solver["solver"].as_str()?;
+    let chosen = candidate(PluginKind::LimitSolver, tag);
+    let finite = solver["kinematics"] == "finite";
+    if finite {
+        needs_finite_displacements(diagnostics, tag, chosen);
     }
+    if let Some(assembly) = assembly {
+        needs_capabilities(diagnostics, tag, chosen, resolved, assembly);
+    }
+    needs_deformation(diagnostics, resolved, assembly, chosen, finite);
+    if let Some(assembly) = assembly.filter(|_| chosen.is_none_or(|card| card.kind == PluginKind::PathSolver)) {
+        let free = (0..assembly.bodies.len()).filter(|body| !assembly.bodies[*body].fixed);
+        if let Some(why) = free.map(|body| assembly.fine_enough(body)).find_map(Result::err) {
+            diagnostics.wrong("scene.mesh.elements", why, "raise the numbers of elements of scene.mesh");
+        }
+    }
+    let built = build_solver(diagnostics, solver, chosen);
+    let settings = build_settings(diagnostics, solver, finite);
+    Some(SolverChoice { solver: built?, settings: settings? })
+}
+
+/// The solver that the table configures; without a card it is `auto`.
+fn build_solver(diagnostics: &mut DiagnosticList<'_>, solver: &Json, chosen: Option<&Card>) -> Option<SelectedSolver> {
+    let Some(card) = chosen else { return Some(SelectedSolver::Auto) };
+    let mut table = solver.as_object()?.clone();
+    table.retain(|key, _| key == "solver" || card.parameters.iter().any(|parameter| parameter.name == key));
+    let (tag, table) = (card.tag.to_string(), Json::Object(table));
+    if card.kind == PluginKind::LimitSolver {
+        let solver: Box<dyn LimitSolver> = read_solver(diagnostics, "solver", &table, card)?;
+        Some(SelectedSolver::Limit(tag, Arc::from(solver)))
+    } else {
+        let solver: Box<dyn PathSolver> = read_solver(diagnostics, "solver", &table, card)?;
+        Some(SelectedSolver::Path(tag, Arc::from(solver)))
+    }
+}
+
+/// What a path solver is told.
+fn build_settings(diagnostics: &mut DiagnosticList<'_>, solver: &Json, finite: bool) -> Option<PathSettings> {
+    let continuation = match solver.get("continuation") {
+        None => None,
+        Some(table) => {
+            let card = card(PluginKind::Continuation, table["strategy"].as_str().unwrap_or_default())?;
+            let strategy: Box<dyn Continuation> = read_solver(diagnostics, "solver.continuation", table, card)?;
+            Some(Arc::from(strategy))
+        }
+    };
+    Some(PathSettings {
+        finite,
+        tolerance: solver["tolerance"].as_f64().unwrap_or(1e-9),
+        stop_displacement: solver["stop"]["displacement"].as_f64(),
+        stop_factor: solver["stop"]["factor"].as_f64(),
+        continuation,
+    })
+}
+
+/// The plug-in that a table configures; else a diagnostic at the key that its reader names, with the nearest
+/// right name.
+fn read_solver<T: serde::de::DeserializeOwned>(
+    diagnostics: &mut DiagnosticList<'_>,
+    at: &str,
+    table: &Json,
+    card: &Card,
+) -> Option<T> {
+    let error = match serde_json::from_value(table.clone()) {
+        Ok(plugin) => return Some(plugin),
+        Err(error) => error.to_string(),
+    };
+    let named = error.split('`').nth(1).filter(|name| table.get(*name).is_some());
+    let names: Vec<_> = card.parameters.iter().map(|parameter| parameter.name).collect();
+    let help = match named {
+        Some(name) if !names.contains(&name) => suggest(name, &names, &format!("keys of \"{}\"", card.tag)),
+        _ => format!("correct it: `voussoir explain {}` lists the keys and their values", card.tag),
+    };
+    let key = named.map_or(at.to_string(), |name| join(at, name));
+    diagnostics.wrong(&key, format!("{} \"{}\" cannot be read: {error}", card.kind.describe(), card.tag), help);
+    None
+}
+
+/// Finite displacements need a solver that offers them.
+fn needs_finite_displacements(diagnostics: &mut DiagnosticList<'_>, tag: &str, chosen: Option<&Card>) {
+    let offers = |card: &Card| card.offers(Capability::FINITE_DISPLACEMENTS);
+    let able = solvers_that(offers);
+    if chosen.map_or(!able.is_empty(), offers) {
+        return;
+    }
+    let message = match able.is_empty() {
+        true => "no registered solver offers finite displacements".to_string(),
+        false => format!("solver \"{tag}\" does not offer finite displacements; solvers that do: {}", able.join(", ")),
+    };
+    diagnostics.wrong("solver.kinematics", message, "set kinematics = \"small\"");
+}
+
+/// What a solver asks of laws and materials, against what their cards give.
+fn needs_capabilities(
+    diagnostics: &mut DiagnosticList<'_>,
+    tag: &str,
+    chosen: Option<&Card>,
+    resolved: &Map<String, Json>,
+    assembly: &Assembly,
+) {
     // `auto` needs at least what every solver needs.
     let everyone: Vec<Requirement> = cards_of(PluginKind::LimitSolver)
         .iter()
@@ -50,58 +137,35 @@ pub(super) fn choose_solver(
         .copied()
         .collect();
     let asked = chosen.map_or(everyone.as_slice(), |chosen| chosen.requires);
-    if let Some(assembly) = assembly {
-        let used = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
-        let laws = assembly.catalogue.laws.iter().enumerate().filter(|(law, _)| used(*law));
-        let laws = laws.map(|(_, (name, _))| ("joints", name, PluginKind::InterfaceLaw));
-        let materials =
-            assembly.catalogue.materials.iter().map(|(name, _)| ("materials", name, PluginKind::BulkMaterial));
-        for (table, name, kind) in laws.chain(materials) {
-            let law = resolved[table][name]["law"].as_str().unwrap_or_default();
-            let Some(card) = card(kind, law) else {
-                continue;
-            };
-            for need in asked.iter().filter(|need| !card.meets(need)) {
-                let able = solvers_that(|solver| solver.requires.iter().all(|need| card.meets(need)));
-                let message = format!(
-                    "solver \"{tag}\" needs {}, which {} \"{law}\" of [{table}.{name}] does not give",
-                    describe(need),
-                    kind.describe()
-                );
-                let help = format!("solvers that can take it: {}", or_none(&able));
-                builder.wrong(&join(&join(table, name), "law"), message, help);
-            }
+    let used = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
+    let laws = assembly.catalogue.laws.iter().enumerate().filter(|(law, _)| used(*law));
+    let laws = laws.map(|(_, (name, _))| ("joints", name, PluginKind::InterfaceLaw));
+    let materials = assembly.catalogue.materials.iter().map(|(name, _)| ("materials", name, PluginKind::BulkMaterial));
+    for (table, name, kind) in laws.chain(materials) {
+        let law = resolved[table][name]["law"].as_str().unwrap_or_default();
+        let Some(card) = card(kind, law) else {
+            continue;
+        };
+        for need in asked.iter().filter(|need| !card.meets(need)) {
+            let able = solvers_that(|solver| solver.requires.iter().all(|need| card.meets(need)));
+            let message = format!(
+                "solver \"{tag}\" needs {}, which {} \"{law}\" of [{table}.{name}] does not give",
+                describe(need),
+                kind.describe()
+            );
+            let help = format!("solvers that can take it: {}", or_none(&able));
+            diagnostics.wrong(&join(&join(table, name), "law"), message, help);
         }
     }
-    needs_deformation(builder, resolved, assembly, chosen, kinematics);
-    if let Some(assembly) = assembly.filter(|_| chosen.is_none_or(|card| card.kind == PluginKind::PathSolver)) {
-        let free = (0..assembly.bodies.len()).filter(|body| !assembly.bodies[*body].fixed);
-        if let Some(why) = free.map(|body| assembly.fine_enough(body)).find_map(Result::err) {
-            builder.wrong("scene.mesh.elements", why, "raise the numbers of elements of scene.mesh");
-        }
-    }
-    let own = |key: &str| chosen.is_some_and(|card| card.parameters.iter().any(|p| p.name == key));
-    let mut table = solver.as_object()?.clone();
-    table.retain(|key, _| key == "solver" || own(key));
-    let tolerance = solver["tolerance"].as_f64().unwrap_or(1e-9);
-    Some(SolverChoice {
-        tag,
-        table: Json::Object(table),
-        tolerance,
-        kinematics,
-        continuation: solver.get("continuation").cloned(),
-        stop_displacement: solver["stop"]["displacement"].as_f64(),
-        stop_factor: solver["stop"]["factor"].as_f64(),
-    })
 }
 
 /// What only a path answers needs something that deforms, and no limit analysis.
 fn needs_deformation(
-    builder: &mut Builder<'_>,
+    diagnostics: &mut DiagnosticList<'_>,
     resolved: &Map<String, Json>,
     assembly: Option<&Assembly>,
     chosen: Option<&Card>,
-    kinematics: Kinematics,
+    finite: bool,
 ) {
     let limit = chosen.is_some_and(|card| card.kind == PluginKind::LimitSolver);
     let path = chosen.is_some_and(|card| card.kind == PluginKind::PathSolver);
@@ -115,16 +179,17 @@ fn needs_deformation(
         }
         let at = format!("stages.{index}.settlement");
         if limit {
-            let help = "remove the settlement, or take a path solver: event_path, newton_path";
-            builder.wrong(&at, "limit analysis of rigid blocks knows loads only", help);
+            let able = solvers_that(|card| card.offers(Capability::SETTLEMENT));
+            let help = format!("remove the settlement, or take a path solver: {}", or_none(&able));
+            diagnostics.wrong(&at, "limit analysis of rigid blocks knows loads only", help);
         } else if rigid {
-            builder.wrong(&at, reason, help);
+            diagnostics.wrong(&at, reason, help);
         }
     }
-    if rigid && kinematics == Kinematics::Finite && !limit {
-        builder.wrong("solver.kinematics", reason, help);
+    if rigid && finite && !limit {
+        diagnostics.wrong("solver.kinematics", reason, help);
     } else if rigid && path {
-        builder.wrong(
+        diagnostics.wrong(
             "solver.solver",
             reason,
             "take limit analysis, or give a material a young_modulus (law = \"elastic\")",

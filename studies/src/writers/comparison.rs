@@ -1,6 +1,8 @@
 //! `comparison.csv` and the figures of comparisons and maps: the cases beside each other.
 
-use super::{StudyOutput, Writer, register};
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
 use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
 use crate::figures::format::{format_number, format_short, format_value, key_with_unit, kind_word, status_word};
 use crate::figures::map::map_svg;
@@ -12,11 +14,13 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 pub struct ComparisonFiles;
 
 impl Writer for ComparisonFiles {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
-        let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison))];
-        if study.figures {
-            files.extend(figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
+        let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison).into_bytes())];
+        if study.output.figures {
+            files.extend(
+                figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())),
+            );
         }
         files
     }
@@ -34,13 +38,13 @@ fn swept(comparison: &Comparison) -> Vec<String> {
     comparison.rows.first().map(|row| row.parameters.keys().cloned().collect()).unwrap_or_default()
 }
 
-/// One row per scene and swept value; for each voice status, factor, bounds, ratio and mechanism.
+/// One row per scene and swept value; for each variant status, factor, bounds, ratio and mechanism.
 pub fn comparison_csv(comparison: &Comparison) -> String {
     let keys = swept(comparison);
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header = vec!["scene".to_string()];
     header.extend(keys.iter().map(|key| key_with_unit(key)));
-    for voice in &comparison.voices {
+    for variant in &comparison.variants {
         let columns = [
             "status".to_string(),
             "load_factor [-]".into(),
@@ -50,7 +54,7 @@ pub fn comparison_csv(comparison: &Comparison) -> String {
             "mechanism".into(),
             "case".into(),
         ];
-        header.extend(columns.map(|column| format!("{voice}: {column}")));
+        header.extend(columns.map(|column| format!("{variant}: {column}")));
     }
     writer.write_record(header).expect("writing to memory does not fail");
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
@@ -84,13 +88,13 @@ fn factor(cell: &ComparisonCell) -> String {
     if said.is_empty() { number } else { format!("{number} ({})", said.join(", ")) }
 }
 
-/// Header and rows: factors of all voices, then ratios of all but the reference.
+/// Header and rows: factors of all variants, then ratios of all but the reference.
 pub fn comparison_rows(comparison: &Comparison) -> (Vec<String>, Vec<Vec<String>>) {
     let mut header = vec![if comparison.rows.iter().any(|row| row.scene.is_some()) { "scene" } else { "" }.to_string()];
-    header.extend(comparison.voices.iter().cloned());
+    header.extend(comparison.variants.iter().cloned());
     let others: Vec<usize> =
-        (0..comparison.voices.len()).filter(|&i| comparison.voices[i] != comparison.reference).collect();
-    header.extend(others.iter().map(|&i| format!("{} / {}", comparison.voices[i], comparison.reference)));
+        (0..comparison.variants.len()).filter(|&i| comparison.variants[i] != comparison.reference).collect();
+    header.extend(others.iter().map(|&i| format!("{} / {}", comparison.variants[i], comparison.reference)));
     let rows = comparison.rows.iter().map(|row| {
         let mut cells = vec![row_name(row)];
         cells.extend(row.cells.iter().map(factor));

@@ -1,6 +1,8 @@
 //! `results.csv`: one row per case, units in the names of columns.
 
-use super::{StudyOutput, Writer, register};
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
 use crate::figures::format::{format_value, key_with_unit, kind_word, status_word};
 use crate::results::CaseResult;
 
@@ -9,8 +11,8 @@ use crate::results::CaseResult;
 pub struct ResultsCsv;
 
 impl Writer for ResultsCsv {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
-        vec![("results.csv".into(), results_csv(study))]
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+        vec![("results.csv".into(), results_csv(study).into_bytes())]
     }
 }
 
@@ -40,12 +42,12 @@ const AFTER: [&str; 17] = [
 pub fn results_csv(study: &StudyOutput) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let keys = study.sweep_keys.iter().map(|key| key_with_unit(key));
-    let scenes = study.results.cases.iter().any(|case| case.scene.is_some());
+    let scenes = study.results.cases.iter().any(|case| case.label.scene.is_some());
     let before = BEFORE.iter().copied().chain(scenes.then_some("scene"));
     let header = before.map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string()));
     writer.write_record(header).expect("writing to memory does not fail");
     for case in &study.results.cases {
-        writer.write_record(row(case, scenes, study.sweep_keys)).expect("every row is as long as the header");
+        writer.write_record(row(case, scenes, &study.sweep_keys)).expect("every row is as long as the header");
     }
     let bytes = writer.into_inner().expect("writing to memory does not fail");
     String::from_utf8(bytes).expect("every cell is text")
@@ -56,15 +58,15 @@ fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<String> {
     let joints = |list: Vec<usize>| list.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let mechanism = case.mechanism.as_ref();
     let residual = case.certificate.residuals.values().copied().fold(f64::NAN, f64::max);
-    let mut row = vec![case.id.to_string(), case.variant.clone().unwrap_or_default()];
-    row.extend(scenes.then(|| case.scene.clone().unwrap_or_default()));
-    row.extend(keys.iter().map(|key| case.parameters.get(key).map(format_value).unwrap_or_default()));
+    let mut row = vec![case.label.id.to_string(), case.label.variant.clone().unwrap_or_default()];
+    row.extend(scenes.then(|| case.label.scene.clone().unwrap_or_default()));
+    row.extend(keys.iter().map(|key| case.label.parameters.get(key).map(format_value).unwrap_or_default()));
     row.extend([
         status_word(case.status).to_string(),
         number(case.load_factor),
         number(case.bounds.map(|b| b[0])),
         number(case.bounds.map(|b| b[1])),
-        number(case.associated_load_factor),
+        number(case.non_associated.associated_load_factor),
         mechanism.map_or(String::new(), |m| kind_word(m.kind).into()),
         mechanism.map_or(String::new(), |m| m.hinge_count.to_string()),
         mechanism.map_or(String::new(), |m| joints(m.hinges.iter().map(|h| h.joint).collect())),

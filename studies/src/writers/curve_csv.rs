@@ -1,6 +1,8 @@
 //! `curve.csv`: the points of load-displacement curves, where a study asks for them.
 
-use super::{StudyOutput, Writer, register};
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
 use crate::figures::format::{format_value, key_with_unit};
 
 /// Writes `curve.csv`.
@@ -8,9 +10,9 @@ use crate::figures::format::{format_value, key_with_unit};
 pub struct CurveCsv;
 
 impl Writer for CurveCsv {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
-        let any = study.results.cases.iter().any(|case| case.curve.is_some());
-        if any { vec![("curve.csv".into(), curve_csv(study))] } else { Vec::new() }
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+        let any = study.results.cases.iter().any(|case| case.path.curve.is_some());
+        if any { vec![("curve.csv".into(), curve_csv(study).into_bytes())] } else { Vec::new() }
     }
 }
 
@@ -23,10 +25,10 @@ pub fn curve_csv(study: &StudyOutput) -> String {
     writer.write_record(header).expect("writing to memory does not fail");
     for case in &study.results.cases {
         let stage = case.stages.last().map_or("", |stage| stage.name.as_str());
-        for [displacement, factor] in case.curve.iter().flatten() {
-            let mut row = vec![case.id.to_string(), case.variant.clone().unwrap_or_default()];
+        for [displacement, factor] in case.path.curve.iter().flatten() {
+            let mut row = vec![case.label.id.to_string(), case.label.variant.clone().unwrap_or_default()];
             row.extend(
-                study.sweep_keys.iter().map(|key| case.parameters.get(key).map(format_value).unwrap_or_default()),
+                study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(format_value).unwrap_or_default()),
             );
             row.extend([stage.to_string(), displacement.to_string(), factor.to_string()]);
             writer.write_record(row).expect("every row is as long as the header");

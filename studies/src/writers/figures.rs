@@ -1,6 +1,8 @@
 //! Figures as SVG files.
 
-use super::{StudyOutput, Writer, register};
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 
@@ -9,21 +11,21 @@ use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 pub struct Figures;
 
 impl Writer for Figures {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
-        if !study.figures {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+        if !study.output.figures {
             return Vec::new();
         }
-        let mut files: Vec<_> =
+        let mut files: Vec<(String, String)> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         for (place, case) in study.results.cases.iter().enumerate() {
             let Some((assembly, stages)) = study.scene(place) else { continue };
-            let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.id);
+            let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.label.id);
             files.push((name("scene"), scene_svg(study.name, assembly, stages, case)));
             files.extend(mechanism_svg(study.name, assembly, case).map(|svg| (name("mechanism"), svg)));
             files.extend(curve_svg(study.name, assembly, stages, case).map(|svg| (name("curve"), svg)));
         }
-        files
+        files.into_iter().map(|(name, svg)| (name, svg.into_bytes())).collect()
     }
 }
 

@@ -2,15 +2,17 @@
 
 use super::comparison::{comparison_rows, figure};
 use super::page::{self, STYLE};
+use super::register::register;
+use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
-use super::{StudyOutput, Writer, register};
+use super::writer::Writer;
 use crate::figures::format::{
     case_title, escape, format_force, format_number, format_seconds, format_short, headline, key_with_unit, kind_words,
     status_meaning, status_word, unit_load,
 };
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
-use crate::history::{JointEvent, JointState, joint_events};
+use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
@@ -23,8 +25,8 @@ const DRAWN: usize = 40;
 pub struct Report;
 
 impl Writer for Report {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
-        vec![("report.html".into(), report_html(study))]
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+        vec![("report.html".into(), report_html(study).into_bytes())]
     }
 }
 
@@ -33,7 +35,7 @@ pub fn report_html(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
-    if study.figures
+    if study.output.figures
         && let Some(chart) = study_chart(study)
     {
         body += "<h2>The sweep</h2>\n<figure>";
@@ -45,7 +47,7 @@ pub fn report_html(study: &StudyOutput) -> String {
     body += "<h2>Cases</h2>\n";
     body += &case_table(study);
     body += &notes(cases);
-    if study.figures {
+    if study.output.figures {
         body += &figures(study);
     }
     body += &paths(study);
@@ -70,7 +72,7 @@ fn comparison(study: &StudyOutput) -> String {
          behind ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
         escape(&comparison.reference)
     );
-    if study.figures
+    if study.output.figures
         && let Some((name, svg)) = figure(study.name, comparison)
     {
         let caption = match name {
@@ -117,7 +119,7 @@ fn summary(study: &StudyOutput) -> String {
                 &format!(" Load factors at collapse run from {} to {}.", format_number(low, 4), format_number(high, 4));
         }
     }
-    let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.id).collect();
+    let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.label.id).collect();
     text += &if failed.is_empty() {
         " Every answer passed its certificate: equilibrium, strengths and, at collapse, both bounds were recomputed from the \
          scene alone."
@@ -133,8 +135,8 @@ fn summary(study: &StudyOutput) -> String {
 
 fn case_table(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
-    let variants = cases.iter().any(|case| case.variant.is_some());
-    let scenes = cases.iter().any(|case| case.scene.is_some());
+    let variants = cases.iter().any(|case| case.label.variant.is_some());
+    let scenes = cases.iter().any(|case| case.label.scene.is_some());
     let loads: Vec<Option<f64>> =
         (0..cases.len()).map(|i| study.scene(i).and_then(|(_, stages)| unit_load(stages))).collect();
     let with_load = loads.iter().any(Option::is_some);
@@ -146,10 +148,12 @@ fn case_table(study: &StudyOutput) -> String {
     header.extend(with_load.then(|| "load".into()));
     header.extend(["bounds", "mechanism", "hinges at joints", "certificate", "time"].map(String::from));
     let rows = cases.iter().zip(&loads).map(|(case, load)| {
-        let mut row = vec![case.id.to_string()];
-        row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
-        row.extend(scenes.then(|| case.scene.clone().unwrap_or_default()));
-        row.extend(study.sweep_keys.iter().map(|key| case.parameters.get(key).map(page::value).unwrap_or_default()));
+        let mut row = vec![case.label.id.to_string()];
+        row.extend(variants.then(|| case.label.variant.clone().unwrap_or_default()));
+        row.extend(scenes.then(|| case.label.scene.clone().unwrap_or_default()));
+        row.extend(
+            study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(page::value).unwrap_or_default()),
+        );
         row.push(status_word(case.status).replace('_', " "));
         row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));
         let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
@@ -191,12 +195,12 @@ fn figures(study: &StudyOutput) -> String {
         let open = if place == 0 && cases.len() <= DRAWN { " open" } else { "" };
         let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
-        let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.id));
+        let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.label.id));
         text += &format!(
             "<figure>{scene}<figcaption>The scene with its loads, forces and joints that move.</figcaption></figure>\n"
         );
         if let Some(svg) = mechanism_svg(study.name, assembly, case) {
-            let svg = page::own_ids(&svg, &format!("mechanism-{}", case.id));
+            let svg = page::own_ids(&svg, &format!("mechanism-{}", case.label.id));
             text += &format!(
                 "<figure>{svg}<figcaption>How it collapses; displacements are exaggerated.</figcaption></figure>\n"
             );
@@ -234,7 +238,7 @@ fn what(assembly: &Assembly, event: &JointEvent) -> String {
 /// Paths: what happened in which order, and the work done.
 fn paths(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
-    let followed: Vec<usize> = (0..cases.len()).filter(|&i| cases[i].displacements.is_some()).collect();
+    let followed: Vec<usize> = (0..cases.len()).filter(|&i| cases[i].path.displacements.is_some()).collect();
     if followed.is_empty() {
         return String::new();
     }
@@ -242,7 +246,7 @@ fn paths(study: &StudyOutput) -> String {
                     point still closed, and slides when all its closed points slide the same way. What moves only in the \
                     collapse mechanism stands last, at the collapse load.</p>\n"
         .to_string();
-    if study.figures {
+    if study.output.figures {
         for (_, chart) in curve_charts(study) {
             text += &format!("<figure>{chart}<figcaption>{CURVE}</figcaption></figure>\n");
         }
@@ -263,7 +267,7 @@ fn paths(study: &StudyOutput) -> String {
             });
             text += &page::table(&header, rows);
         }
-        let points = case.events.len();
+        let points = case.path.events.len();
         let counts = case.counters.iter().map(|(name, count)| format!("{}: {count}", name.replace('_', " ")));
         text += &format!(
             "<p class=\"quiet\">{points} event{} at contact points. Work done: {}.</p>\n</details>\n",
@@ -288,7 +292,7 @@ fn certificates(cases: &[CaseResult]) -> String {
     header.extend(names.iter().map(|name| name.replace('_', " ")));
     header.push("verdict".into());
     let rows = cases.iter().map(|case| {
-        let mut row = vec![case.id.to_string()];
+        let mut row = vec![case.label.id.to_string()];
         row.extend(
             names
                 .iter()

@@ -1,15 +1,17 @@
 //! `results.json`: everything, to the last bit.
 
-use super::{StudyOutput, Writer, register};
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
 
 /// Writes `results.json`.
 #[derive(Debug)]
 pub struct ResultsJson;
 
 impl Writer for ResultsJson {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
         let text = serde_json::to_string_pretty(study.results).expect("results hold no map with other keys than text");
-        vec![("results.json".into(), text + "\n")]
+        vec![("results.json".into(), (text + "\n").into_bytes())]
     }
 }
 

@@ -1,6 +1,6 @@
 //! The table on the terminal.
 
-use super::StudyOutput;
+use super::study_output::StudyOutput;
 use crate::figures::format::{format_number, format_value, key_with_unit, kind_word, status_word};
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -9,10 +9,10 @@ use voussoir_core::limit::Status;
 /// One row per case, then each distinct note once with the cases it belongs to.
 pub fn results_table(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
-    let variants = cases.iter().any(|case| case.variant.is_some());
+    let variants = cases.iter().any(|case| case.label.variant.is_some());
     let mut header = vec!["id".to_string()];
     header.extend(variants.then(|| "variant".to_string()));
-    let scenes = cases.iter().any(|case| case.scene.is_some());
+    let scenes = cases.iter().any(|case| case.label.scene.is_some());
     header.extend(scenes.then(|| "scene".to_string()));
     header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
     let factor_column = header.len() + 1;
@@ -25,13 +25,15 @@ pub fn results_table(study: &StudyOutput) -> String {
         .sweep_keys
         .iter()
         .map(|key| {
-            aligned(&cases.iter().map(|c| c.parameters.get(key).map(cell).unwrap_or_default()).collect::<Vec<_>>())
+            aligned(
+                &cases.iter().map(|c| c.label.parameters.get(key).map(cell).unwrap_or_default()).collect::<Vec<_>>(),
+            )
         })
         .collect();
     for (place, case) in cases.iter().enumerate() {
-        let mut row = vec![case.id.to_string()];
-        row.extend(variants.then(|| case.variant.clone().unwrap_or_default()));
-        row.extend(scenes.then(|| case.scene.clone().unwrap_or_default()));
+        let mut row = vec![case.label.id.to_string()];
+        row.extend(variants.then(|| case.label.variant.clone().unwrap_or_default()));
+        row.extend(scenes.then(|| case.label.scene.clone().unwrap_or_default()));
         row.extend(swept.iter().map(|column| column[place].clone()));
         row.push(status_word(case.status).into());
         row.push(factors[place].clone());
@@ -41,7 +43,7 @@ pub fn results_table(study: &StudyOutput) -> String {
         let marks = notes
             .iter()
             .enumerate()
-            .filter(|(_, (_, ids))| ids.contains(&case.id))
+            .filter(|(_, (_, ids))| ids.contains(&case.label.id))
             .map(|(i, _)| format!("[{}]", i + 1));
         row.push(marks.collect());
         table.add_row(row);
@@ -94,8 +96,8 @@ pub(super) fn distinct_notes(cases: &[CaseResult]) -> Vec<(String, Vec<usize>)> 
     for case in cases {
         for note in case.notes.iter().chain(&case.certificate.failures) {
             match notes.iter_mut().find(|(text, _)| text == note) {
-                Some((_, ids)) => ids.push(case.id),
-                None => notes.push((note.clone(), vec![case.id])),
+                Some((_, ids)) => ids.push(case.label.id),
+                None => notes.push((note.clone(), vec![case.label.id])),
             }
         }
     }

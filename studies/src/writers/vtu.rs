@@ -1,8 +1,10 @@
 //! `vtu/`: blocks at the end of each path for ParaView, as VTK's XML files of unstructured grids.
 
-use super::{StudyOutput, Writer, register};
-use crate::deformed::{DeformedBlock, deformed_blocks};
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
 use crate::figures::format::{case_title, escape};
+use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use std::fmt::Write;
 
 /// Writes `vtu/`.
@@ -10,21 +12,22 @@ use std::fmt::Write;
 pub struct Vtu;
 
 impl Writer for Vtu {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, String)> {
-        let Some(kinematics) = study.vtu else { return Vec::new() };
-        let mut files = Vec::new();
+    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+        if !study.output.vtu {
+            return Vec::new();
+        }
+        let mut files: Vec<(String, String)> = Vec::new();
         let mut sets = String::new();
         let mut list = String::from(MEANING);
-        for (place, case) in study.results.cases.iter().enumerate() {
-            let Some((assembly, stages)) = study.scene(place) else { continue };
+        for (case, scene) in study.results.cases.iter().zip(&study.scenes) {
             let title = case_title(study.name, case);
-            match deformed_blocks(assembly, stages, case, kinematics[place]) {
+            match displaced_blocks(scene.assembly, scene.stages, case, scene.finite) {
                 Ok(blocks) => {
-                    let name = format!("case-{:04}.vtu", case.id);
+                    let name = format!("case-{:04}.vtu", case.label.id);
                     let imbalance = blocks.iter().map(|block| block.imbalance).fold(0.0, f64::max);
                     list += &format!("{name}: {title}; forces on the blocks balance within {imbalance:.1e}\n");
-                    sets += &format!("    <DataSet timestep=\"{}\" part=\"0\" file=\"{name}\"/>\n", case.id);
-                    files.push((format!("vtu/{name}"), vtu_text(&blocks, case.field_factor.unwrap_or(0.0))));
+                    sets += &format!("    <DataSet timestep=\"{}\" part=\"0\" file=\"{name}\"/>\n", case.label.id);
+                    files.push((format!("vtu/{name}"), vtu_text(&blocks, case.proof.field_factor.unwrap_or(0.0))));
                 }
                 Err(why) => list += &format!("no file: {title}: {why}\n"),
             }
@@ -36,7 +39,7 @@ impl Writer for Vtu {
         );
         files.push(("vtu/cases.pvd".into(), collection));
         files.push(("vtu/README.txt".into(), list));
-        files
+        files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect()
     }
 }
 
@@ -73,7 +76,7 @@ fn tensor([xx, yy, zz, xy]: &[f64; 4]) -> String {
 }
 
 /// One file: all blocks as one piece, at a factor of the last loads.
-pub fn vtu_text(blocks: &[DeformedBlock], factor: f64) -> String {
+pub fn vtu_text(blocks: &[DisplacedBlock], factor: f64) -> String {
     let points: usize = blocks.iter().map(|b| b.nodes.len()).sum();
     let cells: usize = blocks.iter().map(|b| b.cells.len()).sum();
     let mut text = format!(
@@ -100,7 +103,7 @@ pub fn vtu_text(blocks: &[DeformedBlock], factor: f64) -> String {
     }
     array(&mut text, "connectivity", "Int64", 1, connectivity.into_iter());
     array(&mut text, "offsets", "Int64", 1, offsets.into_iter());
-    let of_cells = |value: &dyn Fn(&DeformedBlock) -> String| -> Vec<String> {
+    let of_cells = |value: &dyn Fn(&DisplacedBlock) -> String| -> Vec<String> {
         blocks.iter().flat_map(|b| std::iter::repeat_n(value(b), b.cells.len())).collect()
     };
     array(&mut text, "types", "UInt8", 1, of_cells(&|b| cell_type(b.order).to_string()).into_iter());
@@ -112,7 +115,7 @@ pub fn vtu_text(blocks: &[DeformedBlock], factor: f64) -> String {
     array(&mut text, "stress [Pa]", "Float64", 6, blocks.iter().flat_map(|b| rows(&b.stress, b.nodes.len())));
     text.push_str("      </PointData>\n      <CellData>\n");
     array(&mut text, "stress [Pa]", "Float64", 6, blocks.iter().flat_map(|b| rows(&b.cell_stress, b.cells.len())));
-    let strains = |b: &DeformedBlock| -> Vec<String> {
+    let strains = |b: &DisplacedBlock| -> Vec<String> {
         (0..b.cells.len()).map(|i| format!("{:e}", b.plastic_strain.get(i).copied().unwrap_or(0.0))).collect()
     };
     array(&mut text, "equivalent plastic strain [-]", "Float64", 1, blocks.iter().flat_map(strains));

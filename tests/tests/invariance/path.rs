@@ -39,7 +39,7 @@ fn events(
     let one = |e: &voussoir::results::EventEntry| {
         (place(e.point).map(round), format!("{:?}", what(e.what)), e.gravity, e.factor)
     };
-    let mut all: Vec<_> = result.events.iter().map(one).collect();
+    let mut all: Vec<_> = result.path.events.iter().map(one).collect();
     all.sort_by(|a, b| {
         let order = a.0[0].total_cmp(&b.0[0]).then(a.0[1].total_cmp(&b.0[1]));
         order.then(a.2.cmp(&b.2)).then(a.3.total_cmp(&b.3)).then(a.1.cmp(&b.1))
@@ -62,7 +62,7 @@ fn same(found: &CaseResult, expected: &CaseResult) {
     assert_eq!(kind(found), kind(expected));
     let slips =
         |e: &&voussoir::results::EventEntry| matches!(e.what, ContactEvent::SlipsForward | ContactEvent::SlipsBackward);
-    assert!(expected.events.iter().filter(slips).count() > 0, "it slides");
+    assert!(expected.path.events.iter().filter(slips).count() > 0, "it slides");
 }
 
 #[test]

@@ -5,8 +5,7 @@
 
 use std::fs;
 use std::path::Path;
-use voussoir::kinds::point;
-use voussoir::study::load;
+use voussoir::kinds::read_study;
 
 fn message_of(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap();
@@ -16,13 +15,8 @@ fn message_of(path: &Path) -> String {
         .map_while(|line| line.strip_prefix("# --set "))
         .map(|line| line.split_once('=').map(|(key, value)| (key.to_string(), value.to_string())).unwrap())
         .collect();
-    let found = if point::is_point(&text, &sets) {
-        point::load(&text, file, &sets).map(|_| ())
-    } else {
-        load(&text, file, &sets).map(|_| ())
-    };
-    match found {
-        Ok(()) => "no mistake was found\n".into(),
+    match read_study(&text, file, &sets) {
+        Ok(_) => "no mistake was found\n".into(),
         Err(mistakes) => mistakes.iter().map(|mistake| format!("{mistake}\n")).collect(),
     }
 }

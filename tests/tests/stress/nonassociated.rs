@@ -53,7 +53,7 @@ fn check(walls: &[Value], most_open: usize) -> usize {
         assert!(low <= expected + 2e-7 * scale, "{wall}: {least}, {:?}", result.bounds);
         open += usize::from(low < least * (1.0 - 1e-6));
         assert!(low >= least * (1.0 - 1e-3) - 1e-9, "{wall}: [{low}, {least}]");
-        let associated = result.associated_load_factor.expect("an upper bound");
+        let associated = result.non_associated.associated_load_factor.expect("an upper bound");
         assert_close(associated, number(wall, "associated"), 1e-6);
         assert!(least <= associated * (1.0 + 1e-12));
         slowest = slowest.max(result.seconds);

@@ -102,7 +102,7 @@ fn tried(scene: &RandomScene, tally: &mut Tally) {
                 "    {} {} events {} steps {:?} iterations {:?} pivots {:?} {:.2} s",
                 result.solver,
                 shown(result),
-                result.events.len(),
+                result.path.events.len(),
                 result.counters.get("steps"),
                 result.counters.get("newton_iterations"),
                 result.counters.get("pivots"),
@@ -113,7 +113,7 @@ fn tried(scene: &RandomScene, tally: &mut Tally) {
     tally.walls += usize::from(scene.is_wall);
     tally.histories += usize::from(scene.history != History::None && known.is_some());
     tally.slippery += usize::from(!scene.law.is_monotone());
-    tally.events.push(event.events.len());
+    tally.events.push(event.path.events.len());
     if let Some(mechanism) = &event.mechanism {
         tally.sliding += usize::from(!mechanism.sliding.is_empty() || mechanism.kind == MechanismKind::Sliding);
     }
@@ -141,7 +141,7 @@ fn tried(scene: &RandomScene, tally: &mut Tally) {
 /// Whether steps that are much smaller bring Newton's end load much closer to the exact path's.
 fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
     let (Some(exact), Some(coarse), Some(displacements)) =
-        (event.load_factor, newton.load_factor, event.displacements.as_ref())
+        (event.load_factor, newton.load_factor, event.path.displacements.as_ref())
     else {
         return false;
     };

@@ -1,10 +1,11 @@
-//! Comparisons of flow rules: what must hold between the voices of every scene, published walls, and
+//! Comparisons of flow rules: what must hold between the variants of every scene, published walls, and
 //! the axes of `compare` and `map`.
 
 use std::sync::OnceLock;
 use voussoir::core::limit::Status;
-use voussoir::kinds::{Observer, kind};
+use voussoir::kinds::kind;
 use voussoir::results::{CaseResult, Comparison, ComparisonCell, StudyResults};
+use voussoir::solve::Observer;
 use voussoir::study::{Study, load};
 use voussoir::verify::verify;
 use voussoir_tests::{assert_close, study};
@@ -18,9 +19,8 @@ impl Observer for Silent {
 fn results(study: &Study) -> StudyResults {
     let kind = kind(&study.kind).expect("a registered kind");
     let wanted: Vec<usize> = (0..study.cases.len()).collect();
-    let cases = kind.answer(study, &wanted, 2, &Silent);
-    let comparison = kind.compare(study, &cases);
-    StudyResults { study: study.name.clone(), version: "test".into(), cases, comparison }
+    let cases = kind.solve(study, &wanted, 2, &Silent);
+    study.results("test", cases)
 }
 
 /// The ten scenes of docs/flow_rule.md, answered once for all tests.
@@ -37,30 +37,30 @@ fn comparison() -> &'static Comparison {
     ten_scenes().1.comparison.as_ref().expect("a comparison")
 }
 
-fn voice<'a>(cells: &'a [ComparisonCell], name: &str) -> &'a ComparisonCell {
-    &cells[comparison().voices.iter().position(|voice| voice == name).expect("a voice")]
+fn variant<'a>(cells: &'a [ComparisonCell], name: &str) -> &'a ComparisonCell {
+    &cells[comparison().variants.iter().position(|variant| variant == name).expect("a variant")]
 }
 
 /// On every scene: no path load above the associated load; least ≤ sequential ≤ associated; a path
 /// that ended in a mechanism at or above the proved lower bound of the least load, and at or above
 /// the least load found where the bracket is closed.
 #[test]
-fn voices_stand_in_the_order_of_the_theory() {
+fn variants_stand_in_the_order_of_the_theory() {
     let (mut sequences, mut paths) = (0, 0);
     for row in &comparison().rows {
         let name = row.scene.as_deref().expect("a scene");
-        let associated = voice(&row.cells, "associated").load_factor.expect(name);
-        let least = voice(&row.cells, "least");
+        let associated = variant(&row.cells, "associated").load_factor.expect(name);
+        let least = variant(&row.cells, "least");
         assert_eq!(least.status, Some(Status::Collapse), "{name}");
         let ([lower, found], least) = (least.bounds.expect(name), least.load_factor.expect(name));
         assert!(lower <= found * (1.0 + 1e-9) && (found - least).abs() <= 1e-9 * found, "{name}: {lower} … {found}");
         assert!(least <= associated * (1.0 + 1e-9), "{name}: least {least}, associated {associated}");
-        if let Some(sequential) = voice(&row.cells, "sequential").load_factor {
+        if let Some(sequential) = variant(&row.cells, "sequential").load_factor {
             sequences += 1;
             assert!(least <= sequential * (1.0 + 1e-6), "{name}: least {least}, sequential {sequential}");
             assert!(sequential <= associated * (1.0 + 1e-9), "{name}: sequential {sequential}, {associated}");
         }
-        let path = voice(&row.cells, "elastic path");
+        let path = variant(&row.cells, "elastic path");
         if let Some(factor) = path.load_factor {
             paths += 1;
             assert!(factor <= associated * (1.0 + 1e-9), "{name}: path {factor}, associated {associated}");
@@ -77,8 +77,8 @@ fn voices_stand_in_the_order_of_the_theory() {
 fn published_walls() {
     let walls = [(0.642_859_00, 0.638_981_83), (0.403_694_10, 0.355_817_38), (0.331_948_40, 24.0 / 91.0)];
     for (row, (associated, least)) in comparison().rows.iter().zip(walls) {
-        assert_close(voice(&row.cells, "associated").load_factor.expect("a factor"), associated, 3e-8);
-        assert_close(voice(&row.cells, "least").load_factor.expect("a factor"), least, 3e-8);
+        assert_close(variant(&row.cells, "associated").load_factor.expect("a factor"), associated, 3e-8);
+        assert_close(variant(&row.cells, "least").load_factor.expect("a factor"), least, 3e-8);
     }
 }
 
@@ -94,7 +94,7 @@ fn a_single_ring_does_not_feel_the_flow_rule() {
 }
 
 /// Why the four scenes of a single ring, two of them with low friction, have one load: the associated mechanism moves
-/// four joints, so equilibrium and yield there fix three redundants and the factor. Every other voice moves some of
+/// four joints, so equilibrium and yield there fix three redundants and the factor. Every other variant moves some of
 /// these four and no others, and has the same load.
 #[test]
 fn four_yielding_joints_determine_a_single_ring() {
@@ -106,7 +106,7 @@ fn four_yielding_joints_determine_a_single_ring() {
         joints.into_iter().collect()
     };
     for row in comparison().rows.iter().skip(6) {
-        let yielding = moving(&results.cases[voice(&row.cells, "associated").case]);
+        let yielding = moving(&results.cases[variant(&row.cells, "associated").case]);
         assert_eq!(yielding.len(), 4, "{:?}: {yielding:?}", row.scene);
         for cell in &row.cells {
             let joints = moving(&results.cases[cell.case]);
@@ -127,7 +127,7 @@ fn verify_repeats_the_comparison() {
     assert!(wrong.iter().any(|(_, why)| why.contains("comparison")), "{wrong:?}");
 }
 
-/// Blocks pushed sideways on the ground: friction μ < base/height slides at λ = μ for every voice.
+/// Blocks pushed sideways on the ground: friction μ < base/height slides at λ = μ for every variant.
 const BLOCK: &str = r#"
 [scene]
 scene = "wall"

@@ -56,7 +56,7 @@ fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<
     let Some([before, after]) = pair else { return Err(format!("peak {peak}, {:?}", answer.notes)) };
     let share = (AT - before.displacement) / (after.displacement - before.displacement);
     let lost = |state: &PathState| (state.work - state.stored) / 1e3;
-    let crushed = voussoir::yielded::crushing(&case.assembly, &problem, &after.yielded);
+    let crushed = voussoir::results::inelastic_state::crushing(&case.assembly, &problem, &after.yielded);
     Ok(Row {
         peak: [peak, answer.state.displacement],
         lost: lost(before) + share * (lost(after) - lost(before)),

@@ -409,7 +409,7 @@ fn the_peak_of_the_reference_bridge_and_the_branch_behind_it() {
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     let peak = result.load_factor.expect("a peak");
     assert_close(peak, 620.6, 0.003);
-    let curve = result.curve.expect("a curve");
+    let curve = result.path.curve.expect("a curve");
     let top = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
     assert!(top <= peak * (1.0 + 1e-9));
     let behind: Vec<&[f64; 2]> = curve.iter().skip_while(|p| p[1] < top).skip(1).collect();
@@ -616,7 +616,7 @@ settlement = [
     let result = answered(&study);
     assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
     let assembly = first_case(&study).assembly;
-    let displacements = result.displacements.expect("displacements");
+    let displacements = result.path.displacements.expect("displacements");
     for block in [1, 5] {
         let place = assembly.inertia(block).centroid;
         let [x, y, theta] = displacements[block].displacement;

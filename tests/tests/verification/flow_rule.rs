@@ -2,8 +2,8 @@
 //! Casapulla & Ahmed (2006), Computers & Structures 84, and cases that follow from statics alone.
 
 use voussoir::core::limit::Status;
-use voussoir::kinds::run::answer_case;
 use voussoir::results::{CaseResult, StudyResults};
+use voussoir::solve_case;
 use voussoir::study::load;
 use voussoir::verify::verify;
 use voussoir_tests::{Arch, answered, assert_close, study};
@@ -72,7 +72,7 @@ fn least_of(number: usize, least: f64, associated: f64) {
     let solver = format!("solver = \"limit_least\"\nsearch_limit = {limit}");
     let (found, result) = collapse(&wall(&published(number), COULOMB, &solver));
     assert_close(found, least, 2e-8);
-    assert_close(result.associated_load_factor.expect("an upper bound"), associated, 2e-8);
+    assert_close(result.non_associated.associated_load_factor.expect("an upper bound"), associated, 2e-8);
     let [low, high] = result.bounds.expect("a bracket");
     assert!(0.0 <= low && low <= least * (1.0 + 2e-8) && high == found);
     println!("wall {number}: [{low:.8}, {high:.8}] in {:.1} s, {:?}", result.seconds, result.counters);
@@ -116,7 +116,7 @@ fn sequential_programs_give_the_published_factors() {
             assert!((factor - printed).abs() <= 0.5e-3, "wall {number}: {factor}");
         }
         assert!(factor >= least * (1.0 - 1e-7));
-        assert!(factor <= result.associated_load_factor.expect("an upper bound") * (1.0 + 1e-9));
+        assert!(factor <= result.non_associated.associated_load_factor.expect("an upper bound") * (1.0 + 1e-9));
     }
 }
 
@@ -170,7 +170,7 @@ fn a_flat_arch_closes() {
     for name in ["flat arch on piers, friction 0.5", "arch on inclined springings, friction 0.3"] {
         let mut cases = study.cases.iter().filter(|case| case.variant.as_deref() == Some("least"));
         let case = cases.find(|case| case.scene.as_deref() == Some(name)).expect("a scene of the study");
-        let result = answer_case(case);
+        let result = solve_case(case);
         let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
         assert!(low >= found * (1.0 - 2e-6), "{name}: [{low}, {found}] {:?}", result.notes);
     }
@@ -183,10 +183,10 @@ fn two_rings_feel_the_flow_rule() {
     let study = study(include_str!("../../../studies/cases/flow_rule_rings.toml"));
     let mut ratios = Vec::new();
     for case in study.cases.iter().filter(|case| case.variant.as_deref() == Some("least")) {
-        let result = answer_case(case);
+        let result = solve_case(case);
         let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
         assert!(result.certificate.passed && low >= found * (1.0 - 2e-6), "[{low}, {found}] {:?}", result.notes);
-        ratios.push(found / result.associated_load_factor.expect("an upper bound"));
+        ratios.push(found / result.non_associated.associated_load_factor.expect("an upper bound"));
     }
     assert_eq!(ratios.len(), 4);
     assert!(ratios.is_sorted_by(|a, b| a > b) && ratios[3] < 0.9, "{ratios:?}");
@@ -226,7 +226,7 @@ fn a_single_ring_hardly_feels_the_flow_rule() {
         println!("friction {friction}: {:?} in {:.3} s {:?}", result.bounds, result.seconds, result.counters);
         assert_close(least, expected, 1e-9);
         assert_close(result.bounds.expect("a bracket")[0], expected, 3e-8);
-        assert_close(result.associated_load_factor.expect("an upper bound"), expected, 1e-11);
+        assert_close(result.non_associated.associated_load_factor.expect("an upper bound"), expected, 1e-11);
     }
 }
 
@@ -238,17 +238,23 @@ fn results_are_verified_and_changes_found() {
         let original = study(&wall(&rows, COULOMB, &format!("solver = \"{solver}\"")));
         let resolved = toml::to_string(&original.resolved).expect("a study can be written");
         let again = load(&resolved, "resolved.toml", &[]).expect("and read");
-        let cases = original.cases.iter().map(answer_case).collect();
-        let results = StudyResults { study: original.name, version: "test".into(), cases, comparison: None };
+        let cases = original.cases.iter().map(solve_case).collect();
+        let results = StudyResults {
+            study: original.name,
+            version: "test".into(),
+            cases,
+            comparison: None,
+            own: Default::default(),
+        };
         assert_eq!(results.cases[0].status, Status::Collapse, "{solver}: {:?}", results.cases[0].notes);
         assert_eq!(verify(&again, &results), vec![]);
         let changes: [fn(&mut CaseResult); 6] = [
             |r| r.load_factor = r.load_factor.map(|f| f * 0.999),
             |r| r.flow_read_as = Some("associated".into()),
-            |r| r.associated_load_factor = r.associated_load_factor.map(|f| f * 1.001),
-            |r| r.associated_motion = None,
-            |r| r.field.as_mut().expect("a field")[0].force[0] += 1.0,
-            |r| r.motion = r.associated_motion.clone(),
+            |r| r.non_associated.associated_load_factor = r.non_associated.associated_load_factor.map(|f| f * 1.001),
+            |r| r.non_associated.associated_motion = None,
+            |r| r.proof.field.as_mut().expect("a field")[0].force[0] += 1.0,
+            |r| r.proof.motion = r.non_associated.associated_motion.clone(),
         ];
         for (index, change) in changes.iter().enumerate() {
             let mut changed = results.clone();

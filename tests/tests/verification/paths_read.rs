@@ -1,12 +1,12 @@
 //! What is read off a path: joints that became hinges, curves, recovered stresses and their files.
 
 use voussoir::core::model::geometry::Vec2;
-use voussoir::deformed::{DeformedBlock, deformed_blocks};
-use voussoir::history::{JointState, joint_events};
-use voussoir::kinds::run::{answer_case, answer_cases};
-use voussoir::kinds::{Observer, OnPath};
+use voussoir::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
+use voussoir::postprocess::joint_events::{JointState, joint_events};
 use voussoir::results::CaseResult;
-use voussoir::study::{Case, Kinematics};
+use voussoir::solve::{Observer, PathProgress};
+use voussoir::solve::{solve_case, solve_cases};
+use voussoir::study::Case;
 use voussoir::writers::vtu::vtu_text;
 use voussoir_tests::{first_case, study};
 
@@ -38,10 +38,10 @@ until = "collapse"
 loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
 "#;
 
-fn blocks(case: &Case) -> (CaseResult, Vec<DeformedBlock>) {
-    let result = answer_case(case);
+fn blocks(case: &Case) -> (CaseResult, Vec<DisplacedBlock>) {
+    let result = solve_case(case);
     assert!(result.certificate.passed, "{:?} {:?}", result.notes, result.certificate);
-    let blocks = deformed_blocks(&case.assembly, &case.stages, &result, case.solver.kinematics).expect("a path");
+    let blocks = displaced_blocks(&case.assembly, &case.stages, &result, case.solver.settings.finite).expect("a path");
     (result, blocks)
 }
 
@@ -50,7 +50,7 @@ fn blocks(case: &Case) -> (CaseResult, Vec<DeformedBlock>) {
 #[test]
 fn the_hinges_of_the_path_are_those_of_the_mechanism() {
     let case = arch(LIVE, r#"{ solver = "event_path" }"#);
-    let result = answer_case(&case);
+    let result = solve_case(&case);
     let mut state = std::collections::BTreeMap::new();
     let events = joint_events(&case.assembly, &result);
     for event in &events {
@@ -67,7 +67,7 @@ fn the_hinges_of_the_path_are_those_of_the_mechanism() {
     assert!(events.windows(2).all(|pair| pair[0].gravity || pair[0].factor <= pair[1].factor));
     let factor = result.load_factor.expect("a collapse");
     assert!((factor - 698.022_665_212_378_8).abs() < 1e-9 * factor);
-    assert_eq!(result.curve.expect("a curve").last().expect("points")[1], factor);
+    assert_eq!(result.path.curve.expect("a curve").last().expect("points")[1], factor);
 }
 
 fn column(kinematics: &str) -> Case {
@@ -142,7 +142,7 @@ fn stresses_at_the_springings_carry_the_arch() {
     let width = case.assembly.width;
     let mut sum = Vec2::zeros();
     let mut thrust: f64 = 0.0;
-    let elastic: Vec<&DeformedBlock> = blocks.iter().filter(|b| b.order > 0).collect();
+    let elastic: Vec<&DisplacedBlock> = blocks.iter().filter(|b| b.order > 0).collect();
     let weight: f64 = elastic.iter().map(|b| case.assembly.inertia(b.block).mass * 9.81).sum();
     for joint in &case.assembly.joints {
         let sides = [(joint.minus, 1.0), (joint.plus, -1.0)];
@@ -186,7 +186,7 @@ fn stresses_at_the_springings_carry_the_arch() {
 fn files_for_paraview_are_well_formed() {
     let case = arch(LIVE, r#"{ solver = "event_path" }"#);
     let (result, blocks) = blocks(&case);
-    let text = vtu_text(&blocks, result.field_factor.expect("a factor"));
+    let text = vtu_text(&blocks, result.proof.field_factor.expect("a factor"));
     let mut open: Vec<&str> = Vec::new();
     for tag in text.split('<').skip(1).map(|rest| rest.split('>').next().expect("a tag")) {
         match tag.strip_prefix('/') {
@@ -219,8 +219,8 @@ fn files_for_paraview_are_well_formed() {
         assert!(numbers.iter().all(|x| x.is_finite()));
     }
     let limit = arch(LIVE, r#"{ solver = "limit_chain" }"#);
-    let result = answer_case(&limit);
-    let none = deformed_blocks(&limit.assembly, &limit.stages, &result, Kinematics::Small);
+    let result = solve_case(&limit);
+    let none = displaced_blocks(&limit.assembly, &limit.stages, &result, false);
     assert_eq!(none.err().as_deref(), Some("limit analysis leaves no deformed state"));
 }
 
@@ -231,14 +231,14 @@ fn a_path_is_followed_while_it_is_traced() {
     struct Seen(std::sync::Mutex<Vec<(String, bool, f64, u64)>>);
     impl Observer for Seen {
         fn answered(&self, _case: &CaseResult) {}
-        fn on_path(&self, at: &OnPath) {
+        fn on_path(&self, at: &PathProgress) {
             self.0.lock().unwrap().push((at.stage.into(), at.gravity, at.factor, at.states));
         }
     }
     let followed = study(&text(LIVE, "{ solver = \"event_path\" }"));
     let seen = Seen::default();
-    let mut result = answer_cases(&followed, &[0], 1, &seen).swap_remove(0);
-    let mut unseen = answer_case(&followed.cases[0]);
+    let mut result = solve_cases(&followed, &[0], 1, &seen).swap_remove(0);
+    let mut unseen = solve_case(&followed.cases[0]);
     (result.seconds, unseen.seconds) = (0.0, 0.0);
     assert_eq!(serde_json::to_string(&result).unwrap(), serde_json::to_string(&unseen).unwrap());
     let seen = seen.0.into_inner().unwrap();

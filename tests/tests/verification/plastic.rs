@@ -435,16 +435,17 @@ fn solvers_say_what_they_can() {
     let limit = answered(&with("limit_conic"));
     assert!(limit.notes.iter().any(|note| note.contains("yields")), "{:?}", limit.notes);
     let study = voussoir_tests::study(&press.study());
-    let result = voussoir::kinds::run::answer_case(&study.cases[0]);
+    let result = voussoir::solve_case(&study.cases[0]);
     assert_eq!((result.solver.as_str(), result.status), ("newton_path", Status::Stands), "{:?}", result.notes);
     let mut results = voussoir::results::StudyResults {
         study: study.name.clone(),
         version: String::new(),
         comparison: None,
+        own: Default::default(),
         cases: vec![result],
     };
-    assert!(!results.cases[0].yielded.is_empty());
+    assert!(!results.cases[0].path.yielded.is_empty());
     assert_eq!(voussoir::verify::verify(&study, &results), vec![]);
-    results.cases[0].yielded[0].points[0].3[1] *= 1.001;
+    results.cases[0].path.yielded[0].points[0].3[1] *= 1.001;
     assert!(!voussoir::verify::verify(&study, &results).is_empty());
 }

@@ -209,7 +209,7 @@ fn paths_of_shallow_arches_end_for_a_reason() {
         assert_eq!(result.status, Status::Collapse, "{rise} {stiffness}: {:?}", result.notes);
         assert!(result.certificate.passed, "{:?}", result.certificate);
         assert_close(result.load_factor.expect("a peak"), peak, 2e-5);
-        let curve = result.curve.expect("a curve");
+        let curve = result.path.curve.expect("a curve");
         let highest = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
         let (top, last) = (curve.iter().position(|p| p[1] == highest).expect("a peak"), curve.len() - 1);
         let far = (curve[last][0] - curve[top][0]).abs() > 0.9 * arch.stop;

@@ -114,9 +114,9 @@ fn a_pressed_block_is_unbounded_and_stands_up_to_a_cap() {
     for solver in SOLVERS {
         let free = answered(&block(ROUGH, "10.0", &press(""), solver));
         assert_eq!((free.status, free.load_factor), (Status::Unbounded, None));
-        assert!(free.certificate.passed && free.ray.is_some());
+        assert!(free.certificate.passed && free.proof.ray.is_some());
         let capped = answered(&block(ROUGH, "10.0", &press("factor_max = 7.0"), solver));
-        assert_eq!((capped.status, capped.load_factor, capped.field_factor), (Status::Stands, None, Some(7.0)));
+        assert_eq!((capped.status, capped.load_factor, capped.proof.field_factor), (Status::Stands, None, Some(7.0)));
         assert!(capped.certificate.passed);
     }
 }

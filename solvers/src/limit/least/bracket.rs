@@ -4,9 +4,9 @@
 //! cannot yield, and bound the dissipation on the others, by which kinematics refuses mechanisms
 //! that are too cheap or too dear for the range. What is left is searched.
 
-use super::dictionary::{Dictionary, Feasibility};
 use super::search::{Ending, Search};
 use crate::limit::systems::Systems;
+use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 
 /// A range ends this far below a known state, relative to it; where rounding finds that state again, up
 /// to [`WIDEST`].

@@ -4,7 +4,7 @@
 //! state. Alternating linear programs lower it from many starts; at a state, the least factor with
 //! its mechanism is a linear program in the field, and other mechanisms at that field lead further.
 
-use super::dictionary::{Dictionary, Feasibility};
+use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 
 /// Products below this share of their scale are zero.
 const ZERO: f64 = 1e-9;

@@ -3,16 +3,15 @@
 
 mod bracket;
 mod descent;
-pub(crate) mod dictionary;
 mod products;
 mod search;
 
 use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
 use super::systems::{LARGEST, Systems};
 use super::{associated, combined};
+use crate::optimise::dense_simplex::Feasibility;
 use bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
 use descent::{Descent, State};
-use dictionary::Feasibility;
 use products::Bound;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, Status};

@@ -7,7 +7,7 @@
 //! refuses, the moving pair that took part in most recent refusals is made to yield, at first the
 //! one with the greatest product s_i γ_i of the two present points.
 
-use super::dictionary::{Dictionary, Feasibility};
+use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 
 /// γ_i of this share of the greatest γ moves.
 const MOVES: f64 = 1e-9;

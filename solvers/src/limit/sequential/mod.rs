@@ -1,10 +1,10 @@
 //! `limit_sequential`: a non-associated load by sequential linear programming.
 #![doc = include_str!("limit_sequential.md")]
 
-use super::least::dictionary::Feasibility;
 use super::systems::{LARGEST, Systems};
 use super::{Greatest, associated, combined, conic};
 use crate::limit::Engine;
+use crate::optimise::dense_simplex::Feasibility;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, NonAssociated, Status, Velocity,

@@ -1,6 +1,6 @@
 //! Energy along a path: work of loads and supports, energy stored in blocks and joints.
 //!
-//! Within a piece of the path everything is linear, so that the trapezoidal rule is exact.
+//! Within a mode of the path everything is linear, so that the trapezoidal rule is exact.
 //! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron);
 //! the work of gravity on the elastic displacements vanishes, since their mean does.
 

@@ -1,22 +1,19 @@
 //! `event_path`: elastic blocks with facet laws and small displacements, exactly from event to event.
 //!
-//! Between events everything is linear. At an event the points at the verge of a change pose a rate
-//! problem (`rate.rs`); its solution is the direction of the next piece of the path. λ is no
+//! Between events everything is linear. At an event the points of the active set pose a rate
+//! problem (`rate`); its solution is the direction of the next mode of the path. λ is no
 //! parameter of the path: it may stand still (a mechanism) or fall.
 #![doc = include_str!("event_path.md")]
 
-mod base;
 mod direction;
 mod energy;
-mod homotopy;
-mod lcp;
-mod line_search;
-mod local;
-mod pairs;
+mod factorisation;
+mod follow;
+mod force_method;
+mod next_event;
 mod point;
-mod rate;
-mod redundants;
-mod step;
+mod rates;
+mod schur;
 mod system;
 mod trace;
 mod unique;
@@ -33,7 +30,7 @@ pub struct EventPath {}
 #[typetag::serde(name = "event_path")]
 impl PathSolver for EventPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
-        trace::Tracer::new(problem, settings, observer).run()
+        follow::follow(problem, settings, observer)
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {

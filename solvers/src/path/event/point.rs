@@ -1,8 +1,9 @@
 //! A contact point between events: which facets have no slack, whether it is open, what it does.
 
-use super::rate::{Piece, Verge, corner, dilatancy};
-use super::system::{PointFacet, System};
-use voussoir_core::law::FacetMode;
+use super::system::System;
+use crate::contact::active_point::ActivePoint;
+use crate::contact::mode::ContactMode;
+use voussoir_core::law::{Facet, FacetMode};
 
 /// What is kept of a contact point between events.
 #[derive(Debug, Clone)]
@@ -11,8 +12,8 @@ pub struct Point {
     pub active: Vec<usize>,
     /// Opening: gap above the dilated surface; > 0 where open.
     pub opening: f64,
-    /// What it does on the present piece of the path.
-    pub piece: Piece,
+    /// Its mode on the present piece of the path.
+    pub mode: ContactMode,
     /// Whether it has just arrived at a facet.
     pub hit: bool,
     /// Whether anything has been noted as having happened to it.
@@ -34,7 +35,7 @@ impl Point {
         let closed = Point {
             active: Vec::new(),
             opening: 0.0,
-            piece: Piece::Stick,
+            mode: ContactMode::Stick,
             hit: false,
             noted: false,
             apex: false,
@@ -43,14 +44,14 @@ impl Point {
         };
         let Some(facets) = &system.facets[c] else { return closed };
         let opening_facet = facets.iter().position(|f| f.mode == FacetMode::Opening);
-        let bare = |f: &PointFacet| f.bound <= 0.0;
+        let bare = |f: &Facet| f.bound <= 0.0;
         let slides =
             |sense: f64| facets.iter().any(|f| f.mode == FacetMode::Sliding && f.normal[1] * sense > 0.0 && bare(f));
         let apex = opening_facet.is_some_and(|f| bare(&facets[f])) && slides(1.0) && slides(-1.0);
         let active: Vec<usize> = (0..facets.len()).filter(|f| bare(&facets[*f])).collect();
         let opening = system.gap[c].max(0.0);
-        let piece = if opening > 0.0 && apex { Piece::Free } else { Piece::Stick };
-        Point { active, opening, piece, hit: true, apex, opening_facet, ..closed }
+        let mode = if opening > 0.0 && apex { ContactMode::Open } else { ContactMode::Stick };
+        Point { active, opening, mode, hit: true, apex, opening_facet, ..closed }
     }
 
     /// Whether it is open.
@@ -59,42 +60,30 @@ impl Point {
     }
 
     /// As the rate problem sees it, with its facets.
-    pub fn verge<'s>(&self, facets: &'s [PointFacet]) -> Verge<'s> {
-        Verge {
+    pub fn as_active<'s>(&self, facets: &'s [Facet]) -> ActivePoint<'s> {
+        ActivePoint {
             facets,
             active: self.active.clone(),
             open: if self.open() { self.opening_facet } else { None },
             apex: self.apex && self.opening_facet.is_some_and(|f| self.active.contains(&f)),
-            guess: self.piece,
+            guess: self.mode,
             hit: self.hit,
             stiffness: self.stiffness,
         }
     }
 
-    /// The piece of a point that has no choice; `None` at the verge of a change.
-    pub fn settled(&self) -> Option<Piece> {
+    /// The mode of a point that has no choice; `None` in the active set.
+    pub fn settled(&self) -> Option<ContactMode> {
         match (self.open(), self.apex) {
-            (true, true) => Some(Piece::Free),
-            (true, false) if self.active.len() <= 1 => self.opening_facet.map(Piece::Facet),
-            (false, _) if self.active.is_empty() => Some(Piece::Stick),
+            (true, true) => Some(ContactMode::Open),
+            (true, false) if self.active.len() <= 1 => self.opening_facet.map(|f| ContactMode::Facet(f as u8)),
+            (false, _) if self.active.is_empty() => Some(ContactMode::Stick),
             _ => None,
         }
     }
 }
 
-/// o per unit of the gap of a point that flows or is free, where open points slip in a `sense`: −1 or 1.
-pub fn opening(piece: Piece, facets: &[PointFacet], sense: f64) -> [f64; 2] {
-    let by_corner = |i: usize, j: usize, which: usize| {
-        [[1.0, 0.0], [0.0, 1.0]].map(|gap| corner(facets[i].flow, facets[j].flow, gap)[which])
-    };
-    match piece {
-        Piece::Free => [1.0, -dilatancy(facets) * sense],
-        Piece::Facet(f) if facets[f].mode == FacetMode::Opening => {
-            let d = facets[f].flow;
-            d.map(|x| -x / (d[0] * d[0] + d[1] * d[1]))
-        }
-        Piece::Corner(i, j) if facets[i].mode == FacetMode::Opening => by_corner(i, j, 0),
-        Piece::Corner(i, j) if facets[j].mode == FacetMode::Opening => by_corner(i, j, 1),
-        _ => [0.0; 2],
-    }
+/// Some points as the rate problem sees them.
+pub fn active_points<'s>(system: &'s System, points: &[Point], at: &[usize]) -> Vec<ActivePoint<'s>> {
+    at.iter().map(|&c| points[c].as_active(system.facets[c].as_deref().unwrap_or_default())).collect()
 }

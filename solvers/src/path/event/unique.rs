@@ -13,10 +13,11 @@
 //!   value are two linear programs.
 
 use super::point::Point;
-use super::rate::{Piece, corner, dilatancy};
-use super::system::{Load, System, dot};
-use crate::limit::least::dictionary::{Equations, Feasibility};
-use crate::path::shuffle::Shuffle;
+use super::system::{Load, System};
+use crate::contact::facet::{dilatancy, dot, multipliers};
+use crate::contact::mode::ContactMode;
+use crate::optimise::dense_simplex::{Equations, Feasibility};
+use crate::optimise::lcg::Lcg;
 use nalgebra::DMatrix;
 
 /// Freedoms of motion above which it is not examined.
@@ -61,16 +62,18 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         if point.open() && point.apex {
             return None;
         }
-        let flows = match point.piece {
-            Piece::Stick => Vec::new(),
-            Piece::Free if gap[0] - dilatancy(facets) * gap[1].abs() > WORKING * size => return None,
-            Piece::Free => Vec::new(),
-            Piece::Facet(f) => {
+        let flows = match point.mode {
+            ContactMode::Stick => Vec::new(),
+            ContactMode::Open if gap[0] - dilatancy(facets) * gap[1].abs() > WORKING * size => return None,
+            ContactMode::Open => Vec::new(),
+            ContactMode::Facet(f) => {
+                let f = f as usize;
                 let flow = facets[f].flow;
                 vec![(f, -dot(gap, flow) / dot(flow, flow))]
             }
-            Piece::Corner(i, j) => {
-                let [a, b] = corner(facets[i].flow, facets[j].flow, gap);
+            ContactMode::Corner(i, j) => {
+                let (i, j) = (i as usize, j as usize);
+                let [a, b] = multipliers(facets[i].flow, facets[j].flow, gap);
                 vec![(i, a), (j, b)]
             }
         };
@@ -126,7 +129,7 @@ fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]
     if program.feasible() != Feasibility::Point {
         return None;
     }
-    let mut random = Shuffle::new(3);
+    let mut random = Lcg::new(3);
     for _ in 0..2 {
         let form: Vec<f64> = (0..k).map(|_| random.next()).collect();
         let weights = |sign: f64| -> Vec<(usize, f64)> {

@@ -7,9 +7,9 @@
 //! of its rates. Such a step is refused: what it violates grows in proportion to it. Where a guess of the regimes at
 //! a corner is followed by no step, the rates are searched to their end instead (`rising`).
 
-use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 use super::trace::Tracer;
+use crate::contact::mode::ContactMode as Regime;
 
 /// Violations below this share of the greatest force are rounding.
 const ROUNDING: f64 = 1e-14;

@@ -1,10 +1,10 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
 use super::super::continuation::arc_length::ArcLength;
-use super::law::Regime;
 use super::model::{Control, Rate, Refusal, State, load_size};
 use super::rising::Rising;
 use super::trace::{Peak, Tracer};
+use crate::contact::mode::ContactMode as Regime;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, Increment, LoadStep};
 

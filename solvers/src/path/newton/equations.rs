@@ -1,19 +1,20 @@
-//! Rows of gaps and balance in units, and of them the rows of contact points by regime.
+//! CsrMatrix of gaps and balance in units, and of them the rows of contact points by regime.
 
 use super::kinematics::Curvature;
-use super::law::{Polygon, Regime};
 use super::model::Model;
 use super::system::SHIFT;
-use crate::path::rows::Rows;
+use crate::contact::mode::ContactMode as Regime;
+use crate::contact::yield_polygon::YieldPolygon as Polygon;
+use crate::linear::csr::CsrMatrix;
 use voussoir_core::linear::Entries;
 
 /// Gaps and balance by all unknowns.
 #[derive(Debug)]
 pub(super) struct Equations {
     /// Two rows per contact point: normal and tangential gap.
-    pub gaps: Rows,
+    pub gaps: CsrMatrix,
     /// Three rows per free body.
-    pub bodies: Rows,
+    pub bodies: CsrMatrix,
 }
 
 /// Entries of a row that is open, of the equations or of what is added to them.
@@ -42,7 +43,7 @@ impl Equations {
         for (i, value) in curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
             place(i, last, value * u.factor);
         }
-        Equations { gaps: Rows::new(base, &gaps), bodies: Rows::new(last - base, &bodies) }
+        Equations { gaps: CsrMatrix::new(base, &gaps), bodies: CsrMatrix::new(last - base, &bodies) }
     }
 
     /// Adds row k of a contact point in a regime to open rows: its equation, and what is added. The latter
@@ -71,7 +72,7 @@ impl Equations {
                     equation.extend(gap(1, -d[0]));
                 }
             }
-            (Regime::Corner(_), Some(_)) => {
+            (Regime::Corner(..) | Regime::Open, Some(_)) => {
                 equation.push((2 * c + k, 1.0));
                 shift.extend(gap(k, SHIFT).filter(|&(j, _)| whole || j >= forces || j / 2 == c));
             }
@@ -93,12 +94,12 @@ impl Equations {
     }
 
     /// Adds the rows of the bodies.
-    pub fn bodies(&self, equations: &mut Rows, shifts: &mut Rows) {
+    pub fn bodies(&self, equations: &mut CsrMatrix, shifts: &mut CsrMatrix) {
         let base = self.gaps.len();
         for row in 0..self.bodies.len() {
-            equations.open().extend_from_slice(self.bodies.row(row));
+            equations.open_row().extend_from_slice(self.bodies.row(row));
             equations.end_row();
-            shifts.open().push((base + row, -SHIFT));
+            shifts.open_row().push((base + row, -SHIFT));
             shifts.end_row();
         }
     }

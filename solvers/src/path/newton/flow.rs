@@ -1,23 +1,21 @@
 //! Flow that is not associated, turned into it from associated flow, with which every step is a monotone
 //! problem.
 
-use super::law::Polygon;
 use super::model::{Control, Model, State};
-use voussoir_core::law::Facet;
+use crate::contact::facet::with_flow_between;
+use crate::contact::yield_polygon::YieldPolygon;
 
 impl Model<'_> {
     /// Takes slip to be associated; the laws as they were.
-    pub fn associated(&mut self) -> Vec<Polygon> {
+    pub fn associated(&mut self) -> Vec<YieldPolygon> {
         let own = self.polygons.clone();
         self.blend(&own, 0.0);
         own
     }
 
     /// Turns the flow from the facets' normals (0) to the given laws' own (1).
-    fn blend(&mut self, laws: &[Polygon], own: f64) {
-        let flow = |f: &Facet| [0, 1].map(|i| (1.0 - own) * f.normal[i] + own * f.flow[i]);
-        let turned =
-            |law: &Polygon| Polygon::new(&law.facets.iter().map(|f| Facet { flow: flow(f), ..*f }).collect::<Vec<_>>());
+    fn blend(&mut self, laws: &[YieldPolygon], own: f64) {
+        let turned = |law: &YieldPolygon| YieldPolygon::new(&with_flow_between(&law.facets, own));
         self.polygons = laws.iter().map(turned).collect();
     }
 

@@ -8,10 +8,10 @@
 //! always allows. Other points may then slide, and the path goes on at another place; if it comes back to
 //! the same fold it ends there.
 
-use super::law::Regime;
 use super::model::Rate;
 use super::rising::Rising;
 use super::trace::Tracer;
+use crate::contact::mode::ContactMode as Regime;
 
 /// Whether the motions of two rates make an acute angle.
 fn forwards(rate: &Rate, other: &Rate) -> bool {

@@ -1,9 +1,9 @@
 //! Following a load step by its strategy: steps, cut-backs, other branches, peaks on the way.
 
-use super::law::Regime;
 use super::model::{Control, Model, Rate, Refusal, State};
 use super::softening::MOST_REFINEMENTS;
 use super::trace::{Outcome, Peak, Tracer};
+use crate::contact::mode::ContactMode as Regime;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 
@@ -405,7 +405,7 @@ impl Tracer<'_, '_> {
     /// all points stuck, where ∂Π/∂λ may fall (a settlement pulls at its reaction).
     pub(super) fn spring(&mut self) -> f64 {
         let mut stuck = self.state.clone();
-        stuck.regime.fill(Regime::Stuck);
+        stuck.regime.fill(Regime::Stick);
         let factor = stuck.factor;
         let rate = self.model.rate(&self.state, &stuck, &Control::Factor(factor));
         let work = rate.map_or(0.0, |rate| self.model.work_along(&rate) * self.model.units.factor / rate.factor);
@@ -428,7 +428,7 @@ impl Tracer<'_, '_> {
     pub(super) fn first_slip(&self, rate: &Rate) -> Option<f64> {
         let mut first = f64::INFINITY;
         for c in 0..self.state.gap.len() {
-            let (Regime::Stuck, Some(law)) = (self.state.regime[c], self.model.law(c)) else { continue };
+            let (Regime::Stick, Some(law)) = (self.state.regime[c], self.model.law(c)) else { continue };
             for f in law.facets.iter().filter(|f| f.flow != f.normal) {
                 let (r, dr) = (self.state.force[c], rate.force[c]);
                 let slack = f.bound * self.model.problem.contacts[c].area - f.normal[0] * r[0] - f.normal[1] * r[1];
@@ -482,7 +482,7 @@ impl Tracer<'_, '_> {
         // Friction that is not associated: several states may belong to one load. A state far from
         // what both ends' rates can reach is another branch.
         let slides = (0..next.regime.len()).any(|c| {
-            next.regime[c] != self.state.regime[c] && self.model.law(c).is_some_and(|law| law.has_other_flow())
+            next.regime[c] != self.state.regime[c] && self.model.law(c).is_some_and(|law| law.is_non_associated())
         });
         if slides && !self.strategy.passes_limit_points() {
             let after = self.model.rate(&self.state, next, &Control::Factor(next.factor));

@@ -7,19 +7,19 @@
 //! ```
 //!
 //! B: rows of the regimes that were factorised, D: what the rows i of changed points are more than
-//! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::path::condensed)
+//! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::linear::condensed)
 //! takes out, and x_0 follows every change of f by Y: a pivot solves for two columns at most, all else
-//! are products. Rows that have not changed hold as exactly as B is solved; those that have are checked.
+//! are products. CsrMatrix that have not changed hold as exactly as B is solved; those that have are checked.
 //!
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
 //! that no combination of regimes is without a direction.
 
-use super::border::{Bordered, Held};
 use super::equations::Equations;
-use super::law::Regime;
 use super::model::Model;
-use crate::path::condensed::Condensed;
-use crate::path::rows::Rows;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::condensed::Condensed;
+use crate::linear::csr::CsrMatrix;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 use voussoir_core::linear::Analysis;
@@ -43,7 +43,7 @@ struct Change {
 
 /// A factorisation with what has changed since.
 struct Base {
-    factors: Bordered,
+    factors: BorderedSystem,
     /// x_0.
     from: Vec<f64>,
     changes: Vec<Change>,
@@ -54,7 +54,7 @@ pub(super) struct Frame {
     points: usize,
     equations: Rc<Equations>,
     control: Vec<f64>,
-    regimes: Vec<Regime>,
+    regimes: Vec<ContactMode>,
     right: Vec<f64>,
     base: Option<Base>,
     analysis: Analysis,
@@ -81,7 +81,7 @@ impl Frame {
     /// Equations with a control, all points stuck, nothing on the right-hand side.
     pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> Frame {
         let right = vec![0.0; control.len()];
-        let regimes = vec![Regime::Stuck; points];
+        let regimes = vec![ContactMode::Stick; points];
         Frame { points, equations, control, regimes, right, base: None, analysis: Analysis::default() }
     }
 
@@ -92,7 +92,7 @@ impl Frame {
     }
 
     /// A contact point's regime and the right-hand sides of its rows.
-    pub fn set(&mut self, model: &Model, contact: usize, regime: Regime, right: [f64; 2]) {
+    pub fn set(&mut self, model: &Model, contact: usize, regime: ContactMode, right: [f64; 2]) {
         let old = self.regimes[contact];
         self.regimes[contact] = regime;
         let before = [0, 1].map(|k| std::mem::replace(&mut self.right[2 * contact + k], right[k]));
@@ -116,7 +116,7 @@ impl Frame {
     }
 
     /// The two rows of a contact point in a regime.
-    fn rows_of(&self, model: &Model, c: usize, regime: Regime) -> [Row; 2] {
+    fn rows_of(&self, model: &Model, c: usize, regime: ContactMode) -> [Row; 2] {
         [0, 1].map(|k| {
             let (mut row, mut shift) = (Row::new(), Row::new());
             self.equations.point(model.law(c), (c, k), regime, true, &mut row, &mut shift);
@@ -130,24 +130,24 @@ impl Frame {
         if let Some(x) = self.updated() {
             return Some((x, 0));
         }
-        let (mut rows, mut shifts) = (Rows::none(0), Rows::none(0));
+        let (mut rows, mut shifts) = (CsrMatrix::with_capacity(0), CsrMatrix::with_capacity(0));
         for c in 0..self.points {
             for k in 0..2 {
                 let law = model.law(c);
-                self.equations.point(law, (c, k), self.regimes[c], true, rows.open(), shifts.open());
+                self.equations.point(law, (c, k), self.regimes[c], true, rows.open_row(), shifts.open_row());
                 rows.end_row();
                 shifts.end_row();
             }
         }
         self.equations.bodies(&mut rows, &mut shifts);
-        let held = Held::new(
+        let held = BorderedFactors::new(
             rows.with(&shifts),
-            Rows::empty(self.control.len() - 1),
+            CsrMatrix::empty(self.control.len() - 1),
             self.points,
             &self.control,
             &mut self.analysis,
         )?;
-        let factors = Bordered::new(Rc::new(held), &self.control)?;
+        let factors = BorderedSystem::new(Rc::new(held), &self.control)?;
         let mut x = factors.apply(&self.right)?;
         let step = factors.apply(&factors.left(&self.right, &x).0)?;
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
@@ -193,6 +193,6 @@ impl Frame {
 
     /// Rate of a contact point's gap in a solution, in units.
     pub fn gap(&self, contact: usize, x: &[f64]) -> [f64; 2] {
-        [0, 1].map(|k| self.equations.gaps.along(2 * contact + k, x))
+        [0, 1].map(|k| self.equations.gaps.row_dot(2 * contact + k, x))
     }
 }

@@ -1,8 +1,8 @@
 //! What is written down at converged states: energies, events, the state as others read it.
 
 use super::kinematics::Slopes;
-use super::law::Regime;
 use super::model::{Model, State};
+use crate::contact::mode::ContactMode as Regime;
 use voussoir_core::law::FacetMode;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{ContactEvent, PathEvent, PathState};
@@ -31,10 +31,10 @@ fn doing(model: &Model, contact: usize, regime: Regime, gap: [f64; 2]) -> Contac
         FacetMode::Sliding => ContactStatus::Slides(if law.facets[i].flow[1] < 0.0 { 1 } else { -1 }),
     };
     match regime {
-        Regime::Stuck => ContactStatus::Sticks,
+        Regime::Stick => ContactStatus::Sticks,
         Regime::Facet(i) => by(i as usize),
-        Regime::Corner(_) if law.opens(regime) => ContactStatus::Open,
-        Regime::Corner(k) => by(law.pair(k, gap).0[0]),
+        _ if law.opens(regime) => ContactStatus::Open,
+        _ => law.pair(regime, gap).map_or(ContactStatus::Sticks, |(pair, _)| by(pair[0])),
     }
 }
 

@@ -18,45 +18,32 @@
 //! ‖F(x + t Δx)‖ ≤ (1 − σ t) max ‖F‖ of the last m iterations
 //! ```
 //!
-//! (Armijo's rule for semismooth systems: De Luca, Facchinei & Kanzow 1996, Math. Programming 75, 407-439; frictional contact:
-//! Christensen, Klarbring, Pang & Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173; with the greatest of
-//! several merits, so that a step over a kink need not lower each: Grippo, Lampariello & Lucidi 1986, SIAM J. Numer.
-//! Anal. 23, 707-716). Where none of the halves does, the one with the least ‖F‖ is taken. A line search finds local
-//! minima of Ψ: what it ends in counts only if F = 0 there, by the test of `iterate`.
+//! ([`optimise::line_search`](crate::optimise::line_search); frictional contact: Christensen, Klarbring, Pang &
+//! Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173). A line search finds local minima of Ψ: what it ends in
+//! counts only if F = 0 there, by the test of `iterate`.
 
 use super::kinematics::Slopes;
 use super::model::{Control, Model, Refusal, State};
+use crate::optimise::line_search::LineSearch;
 
 /// Merits below which whole steps are taken: what they leave is the linear equations' own accuracy.
 const NOTHING: f64 = 1e-9;
 
-/// The rule of a line search and the merits of its last iterations.
-pub(super) struct LineSearch {
-    /// σ.
-    decrease: f64,
-    /// Most halvings of one iteration.
-    halvings: i32,
-    /// m.
-    memory: usize,
-    merits: Vec<f64>,
-}
-
-impl LineSearch {
-    /// For laws of tractions from gaps: between the pieces of such a law whole iterations may go to and fro.
-    pub fn of_tractions() -> Self {
-        LineSearch { decrease: 0.3, halvings: 4, memory: 1, merits: Vec::new() }
-    }
-
-    /// For regimes that change all at once and do not settle.
-    pub fn of_regimes() -> Self {
-        LineSearch { decrease: 1e-2, halvings: 8, memory: 3, merits: Vec::new() }
-    }
+/// For laws of tractions from gaps: between the pieces of such a law whole iterations may cycle.
+pub(super) fn of_tractions() -> LineSearch {
+    LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing: NOTHING, merits: Vec::new() }
 }
 
 impl Model<'_> {
     /// Newton's method with all regimes changed at once and a line search.
     pub fn line_searched(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        let found = self.iterate(start, guess, control, u32::MAX, Some(LineSearch::of_regimes()));
+        let found = self.iterate(
+            start,
+            guess,
+            control,
+            u32::MAX,
+            Some(LineSearch { nothing: NOTHING, ..LineSearch::of_pieces() }),
+        );
         self.count("line_searched_steps", u64::from(found.is_ok()));
         found
     }
@@ -75,7 +62,7 @@ impl Model<'_> {
                 Some(law) => {
                     let r = state.force[c];
                     let z = [r[0] - pulled[0], r[1] - pulled[1]];
-                    let (_, back) = law.returned(z, rho, self.problem.contacts[c].area);
+                    let (_, back) = law.return_map(z, rho, self.problem.contacts[c].area);
                     [r[0] - back[0], r[1] - back[1]]
                 }
                 None => pulled,
@@ -116,45 +103,29 @@ impl Model<'_> {
         if search.merits.is_empty() {
             search.merits.push(self.merit(start, state, slopes, control));
         }
-        let recent = search.merits.iter().rev().take(search.memory);
-        let reference = recent.fold(0.0, |a: f64, m| a.max(*m));
-        let mut best: Option<(f64, State, Slopes, bool)> = None;
-        let mut refusal = None;
-        for halvings in 0..=search.halvings {
-            let share = most * 0.5f64.powi(halvings);
+        let at = |halvings: i32, share: f64| {
             match halvings {
                 0 => {}
                 1 => ["line_searches", "halvings"].into_iter().for_each(|what| self.count(what, 1)),
                 _ => self.count("halvings", 1),
             }
-            let (next, slopes) = match self.advanced(start, state, step, share) {
-                Ok(next) => next,
-                Err(why) => {
-                    refusal = Some(why);
-                    continue;
-                }
-            };
+            let (next, slopes) = self.advanced(start, state, step, share)?;
             let merit = self.merit(start, &next, &slopes, control);
-            if best.as_ref().is_none_or(|best| merit < best.0) {
-                best = Some((merit, next, slopes, halvings == 0));
-            }
-            if merit <= (1.0 - search.decrease * share) * reference || merit <= NOTHING {
-                break;
-            }
-        }
-        let unknown = Refusal { why: "an iteration left the numbers".into(), restless: Vec::new() };
-        let Some((merit, next, slopes, whole)) = best else { return Err(refusal.unwrap_or(unknown)) };
-        search.merits.push(merit);
+            Ok((merit, (next, slopes)))
+        };
+        let unknown = || Refusal { why: "an iteration left the numbers".into(), restless: Vec::new() };
+        let ((next, slopes), whole) =
+            search.search(most, at).map_err(|refusal: Option<Refusal>| refusal.unwrap_or_else(unknown))?;
         Ok((next, slopes, whole))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::law::Regime;
     use super::super::model::Loaded;
     use super::*;
-    use crate::path::shuffle::Shuffle;
+    use crate::contact::mode::ContactMode;
+    use crate::optimise::lcg::Lcg;
     use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
@@ -207,7 +178,7 @@ mod tests {
             let mut model = Model::new(&problem, finite).expect("a model");
             model.load(Loaded { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 });
             let (start, u) = (model.undeformed(), model.units);
-            let (mut random, mut compared) = (Shuffle::new(5), [0; 3]);
+            let (mut random, mut compared) = (Lcg::new(5), [0; 3]);
             for _ in 0..600 {
                 let mut state = start.clone();
                 state.factor = 0.7;
@@ -238,9 +209,9 @@ mod tests {
                 assert!((slope + here).abs() <= 1e-4 * here, "{finite} {:?}: {slope:e} {here:e}", state.regime);
                 for regime in &state.regime {
                     compared[match regime {
-                        Regime::Stuck => 0,
-                        Regime::Facet(_) => 1,
-                        Regime::Corner(_) => 2,
+                        ContactMode::Stick => 0,
+                        ContactMode::Facet(_) => 1,
+                        ContactMode::Corner(..) | ContactMode::Open => 2,
                     }] += 1;
                 }
             }

@@ -12,7 +12,7 @@
 //! 1978, Int. J. Numer. Meth. Engng 12): a linear program finds one where there is one.
 
 use super::model::{Model, Rate, State};
-use crate::limit::least::dictionary::{Equations, Feasibility};
+use crate::optimise::dense_simplex::{Equations, Feasibility};
 
 /// Slack, relative to the greatest force, up to which a facet may yield.
 const YIELDING: f64 = 1e-9;

@@ -1,7 +1,6 @@
 //! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
-mod border;
 mod claims;
 mod corners;
 mod deformation;
@@ -14,7 +13,6 @@ mod follow;
 mod frame;
 mod inelastic;
 mod kinematics;
-pub(super) mod law;
 mod ledger;
 mod line_search;
 mod measure;

@@ -5,8 +5,9 @@
 
 use super::inelastic::Inner;
 use super::kinematics::{Curvature, Kinematics, Loads, Slopes};
-use super::law::{Polygon, Regime};
 use super::response::{Answers, Local, Responses};
+use crate::contact::mode::ContactMode as Regime;
+use crate::contact::yield_polygon::YieldPolygon as Polygon;
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{Continuation, Increment, Loading, PathProblem};
 
@@ -236,7 +237,7 @@ impl<'a> Model<'a> {
 
     /// Whether flow is associated everywhere: then every step is a monotone problem.
     pub fn monotone(&self) -> bool {
-        self.piecewise_linear() && self.polygons.iter().all(|law| !law.has_other_flow())
+        self.piecewise_linear() && self.polygons.iter().all(|law| !law.is_non_associated())
     }
 
     /// Whether with small displacements every law is one of facets.
@@ -275,7 +276,7 @@ impl<'a> Model<'a> {
             gap: self.problem.contacts.iter().map(|c| [c.gap, 0.0]).collect(),
             motion,
             factor: 0.0,
-            regime: vec![Regime::Stuck; points],
+            regime: vec![Regime::Stick; points],
             slip: vec![[0.0; 2]; points],
             answers: Answers { memory: self.problem.untouched(), ..Answers::default() },
             blocks: self.blocks.clone(),

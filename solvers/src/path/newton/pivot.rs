@@ -8,20 +8,20 @@
 //! F(y) = (1 − t) F(y_0),   t from 0 to 1,
 //! ```
 //!
-//! and y follows exactly, cell by cell: where a point reaches a wall of its cell it goes over into the
+//! and y follows exactly, cell by cell: where a point reaches a boundary of its cell it goes over into the
 //! neighbour, and t goes on in the sense that leads into it (forwards for ever where flow is
 //! associated: the equations are monotone; t may turn back otherwise). A random shift of the guess
-//! makes all walls be met one at a time, so that no combination of cells comes twice; it is part of
+//! makes all boundaries be met one at a time, so that no combination of cells comes twice; it is part of
 //! F(y_0) and gone at t = 1. Sources: Eaves & Scarf (1976, Math. Operations Research 1) on piecewise
 //! linear paths; Robinson (1992, Math. Operations Research 17) on normal maps; Ralph (1994, ibid. 19)
 //! and Dirkse & Ferris (1995, Optim. Methods Software 5) on this path as a globally convergent Newton
 //! method for complementarity problems.
 
 use super::frame::Frame;
-use super::law::Regime;
-use super::model::{Control, Model, Refusal, State};
-use crate::path::shuffle::Shuffle;
-use crate::path::walk::{Met, Standing, Walk};
+use super::model::{Control, Model, Rate, Refusal, State};
+use crate::contact::mode::ContactMode;
+use crate::contact::piecewise_path::{PathEnd, PiecewiseLinear, PointInCell, follow};
+use crate::optimise::lcg::Lcg;
 
 /// Sizes of the shift of the guess that are tried, relative to forces.
 const SHIFTS: [f64; 3] = [1e-3, 0.03, 0.5];
@@ -35,6 +35,105 @@ struct Place {
     offset: Vec<[f64; 2]>,
 }
 
+/// The path of a step: where it is and where it goes.
+struct StepPath<'m, 'a> {
+    model: &'m mut Model<'a>,
+    frame: Frame,
+    place: Place,
+    rate: Rate,
+    /// Rates of Δg \[m\].
+    gap_rate: Vec<[f64; 2]>,
+}
+
+impl StepPath<'_, '_> {
+    /// Puts a contact point's equations in its present mode into the frame. On the right-hand side stands what is
+    /// left of its residual of the gaps.
+    fn set_equations(&mut self, c: usize) {
+        let e = self.place.offset[c].map(|e| e / self.model.units.displacement);
+        let mode = self.place.state.regime[c];
+        let right = match (mode, self.model.law(c)) {
+            (ContactMode::Facet(i), Some(law)) => {
+                let d = law.facets[i as usize].flow;
+                [0.0, -(e[0] * d[1] - e[1] * d[0])]
+            }
+            (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => [0.0; 2],
+            _ => [-e[0], -e[1]],
+        };
+        self.frame.set(self.model, c, mode, right);
+    }
+
+    /// The mode of a contact point's cell.
+    fn mode(&self, c: usize) -> ContactMode {
+        let cell = self.place.cells[c].zip(self.model.law(c));
+        cell.map_or(ContactMode::Stick, |(cell, law)| law.mode_of(cell))
+    }
+}
+
+impl PiecewiseLinear for StepPath<'_, '_> {
+    fn points(&self) -> usize {
+        self.place.cells.len()
+    }
+
+    fn point(&self, c: usize) -> Option<PointInCell<'_>> {
+        let (cell, law) = self.place.cells[c].zip(self.model.law(c))?;
+        Some(PointInCell {
+            boundaries: &law.fan.cells[cell].1,
+            force: self.place.state.force[c],
+            gap: self.place.step_gap[c],
+            area: self.model.problem.contacts[c].area,
+            force_rate: self.rate.force[c],
+            gap_rate: self.gap_rate[c],
+        })
+    }
+
+    fn solve_rates(&mut self) -> Result<(), String> {
+        self.model.count("pivots", 1);
+        let solved = self.frame.solve(self.model);
+        let (x, factorisations) = solved.ok_or("a combination of cells has no direction")?;
+        self.model.count("factorisations", factorisations);
+        if x.iter().any(|x| !x.is_finite()) {
+            return Err("a combination of cells has no finite direction".into());
+        }
+        self.rate = self.model.moving(&x);
+        for (c, rate) in self.gap_rate.iter_mut().enumerate().filter(|(c, _)| self.place.cells[*c].is_some()) {
+            // That of a stuck point is nothing.
+            *rate = match self.place.state.regime[c] {
+                ContactMode::Stick => [0.0; 2],
+                _ => {
+                    let (own, offset) = (self.frame.gap(c, &x), self.place.offset[c]);
+                    [0, 1].map(|k| own[k] * self.model.units.displacement + offset[k])
+                }
+            };
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, by: f64) {
+        let add = |values: &mut [[f64; 2]], rates: &[[f64; 2]]| {
+            values.iter_mut().flatten().zip(rates.iter().flatten()).for_each(|(v, rate)| *v += by * rate);
+        };
+        add(&mut self.place.state.force, &self.rate.force);
+        add(&mut self.place.step_gap, &self.gap_rate);
+        for (q, dq) in self.place.state.motion.iter_mut().zip(&self.rate.motion) {
+            (0..3).for_each(|k| q[k] += by * dq[k]);
+        }
+        self.place.state.factor += by * self.rate.factor;
+    }
+
+    fn cross(&mut self, c: usize, boundary: usize) -> (usize, bool) {
+        let Some((cell, law)) = self.place.cells[c].zip(self.model.law(c)) else { return (boundary, false) };
+        let (to, entered) = law.fan.cells[cell].1[boundary].neighbour;
+        self.place.cells[c] = Some(to);
+        let mode = self.mode(c);
+        let changed = mode != self.place.state.regime[c];
+        if changed {
+            self.place.state.regime[c] = mode;
+            self.set_equations(c);
+        }
+        (entered, changed)
+    }
+}
+
 impl Model<'_> {
     /// A step by pivoting from a guess. The control must be linear.
     pub fn pivoted(&mut self, start: &State, guess: &State, control: &Control) -> Result<(State, u64), Refusal> {
@@ -43,7 +142,7 @@ impl Model<'_> {
             return Err(refusal);
         }
         for (attempt, shift) in SHIFTS.into_iter().enumerate() {
-            match self.walked(start, guess, control, shift, attempt as u64) {
+            match self.followed(start, guess, control, shift, attempt as u64) {
                 Ok(state) => match self.polished(start, state, control) {
                     Ok(found) => return Ok(found),
                     Err(why) => refusal = why,
@@ -70,7 +169,7 @@ impl Model<'_> {
         let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
         let mean = self.units.displacement / self.units.force;
         let typical = largest.max(1e-3 * self.units.force) / (points as f64).sqrt();
-        let mut random = Shuffle::new(0x9E37_79B9 + 77 * seed);
+        let mut random = Lcg::new(0x9E37_79B9 + 77 * seed);
         let (mut cells, mut step_gap) = (vec![None; points], vec![[0.0; 2]; points]);
         for c in 0..points {
             let noise = [random.next(), random.next()];
@@ -80,7 +179,7 @@ impl Model<'_> {
             let scale = shift * (r[0].hypot(r[1]) + 0.1 * typical);
             let z = [0, 1].map(|k| r[k] - rho[k] * (gap[c][k] - start.slip[c][k]) + scale * noise[k]);
             let area = self.problem.contacts[c].area;
-            let (cell, r) = law.returned(z, rho, area);
+            let (cell, r) = law.return_map(z, rho, area);
             state.force[c] = r;
             step_gap[c] = [0, 1].map(|k| (r[k] - z[k]) / rho[k]);
             cells[c] = Some(cell);
@@ -90,20 +189,8 @@ impl Model<'_> {
         Place { state, step_gap, cells, offset }
     }
 
-    /// Right-hand sides of the rows of a contact point, in units: what is left of its residual of the gaps.
-    fn driven(&self, place: &Place, c: usize) -> [f64; 2] {
-        let e = place.offset[c].map(|e| e / self.units.displacement);
-        match (place.state.regime[c], self.law(c)) {
-            (Regime::Facet(i), Some(law)) => {
-                let d = law.facets[i as usize].flow;
-                [0.0, -(e[0] * d[1] - e[1] * d[0])]
-            }
-            (Regime::Corner(_), Some(_)) => [0.0; 2],
-            _ => [-e[0], -e[1]],
-        }
-    }
-
-    fn walked(
+    /// Follows the path of a shift of the guess to its end.
+    fn followed(
         &mut self,
         start: &State,
         guess: &State,
@@ -111,101 +198,27 @@ impl Model<'_> {
         shift: f64,
         seed: u64,
     ) -> Result<State, String> {
-        let mut place = self.placed(start, guess, shift, seed);
+        let place = self.placed(start, guess, shift, seed);
         let points = place.cells.len();
         let slopes = self.slopes(&place.state);
         let residual = self.residual(start, &place.state, &slopes);
         let (left, constraint) = self.constraint(start, &place.state, control);
         let curvature = self.curvature(&place.state, &slopes);
         let row = self.control_row(start, &place.state, control, &constraint, &curvature);
-        let size = self.size();
-        let mut frame = Frame::new(curvature.rows(self).clone(), points, row);
         let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
-        right[size - 1] = -left;
+        right[row.len() - 1] = -left;
+        let mut frame = Frame::new(curvature.rows(self).clone(), points, row);
         frame.load_rate(&right);
-        let (laws, polygon_of) = (self.polygons.clone(), self.polygon_of.clone());
-        let contacts = &self.problem.contacts;
-        let law_of = |c: usize| polygon_of[c].map(|law| &laws[law]);
-        let mut standing: Vec<Option<Standing>> = Vec::with_capacity(points);
-        for (c, contact) in contacts.iter().enumerate() {
-            let cell = place.cells[c].zip(law_of(c));
-            place.state.regime[c] = cell.map_or(Regime::Stuck, |(cell, law)| law.regime_of(cell));
-            frame.set(self, c, place.state.regime[c], self.driven(&place, c));
-            standing.push(cell.map(|(cell, law)| Standing {
-                walls: &law.cells.cells[cell].1,
-                force: place.state.force[c],
-                gap: place.step_gap[c],
-                area: contact.area,
-                force_rate: [0.0; 2],
-                gap_rate: [0.0; 2],
-            }));
+        let rate = self.moving(&vec![0.0; right.len()]);
+        let mut path = StepPath { model: self, frame, place, rate, gap_rate: vec![[0.0; 2]; points] };
+        for c in 0..points {
+            path.place.state.regime[c] = path.mode(c);
+            path.set_equations(c);
         }
-        let most = 400 + 20 * points;
-        let mut walk = Walk::new();
-        for _ in 0..most {
-            self.count("pivots", 1);
-            let Some((x, factorisations)) = frame.solve(self) else {
-                return Err("a combination of cells has no direction".into());
-            };
-            self.count("factorisations", factorisations);
-            if x.iter().any(|x| !x.is_finite()) {
-                return Err("a combination of cells has no finite direction".into());
-            }
-            let rate = self.moving(&x);
-            for (c, point) in standing.iter_mut().enumerate() {
-                let Some(point) = point else { continue };
-                point.force_rate = rate.force[c];
-                // That of a stuck point is nothing.
-                point.gap_rate = match place.state.regime[c] {
-                    Regime::Stuck => [0.0; 2],
-                    _ => {
-                        let (own, offset) = (frame.gap(c, &x), place.offset[c]);
-                        [0, 1].map(|k| own[k] * self.units.displacement + offset[k])
-                    }
-                };
-            }
-            // Over walls without a change of equations the direction stays.
-            loop {
-                let (along, met) = walk.on(points, |c| standing[c].as_ref());
-                if matches!(met, Met::Ray) {
-                    return Err("the path of pivoting leaves along a ray".into());
-                }
-                for point in standing.iter_mut().flatten() {
-                    for k in 0..2 {
-                        point.force[k] += along * point.force_rate[k];
-                        point.gap[k] += along * point.gap_rate[k];
-                    }
-                }
-                for (c, force) in place.state.force.iter_mut().enumerate() {
-                    match &standing[c] {
-                        Some(point) => *force = point.force,
-                        None => (0..2).for_each(|k| force[k] += along * rate.force[c][k]),
-                    }
-                }
-                for (q, dq) in place.state.motion.iter_mut().zip(&rate.motion) {
-                    (0..3).for_each(|k| q[k] += along * dq[k]);
-                }
-                place.state.factor += along * rate.factor;
-                let Met::Wall(c, index) = met else { return Ok(place.state) };
-                if walk.is_lost() {
-                    return Err("the path of pivoting turned back".into());
-                }
-                let (Some(cell), Some(law), Some(point)) = (place.cells[c], law_of(c), &mut standing[c]) else {
-                    continue;
-                };
-                let (to, wall) = law.cells.cells[cell].1[index].behind;
-                place.cells[c] = Some(to);
-                point.walls = &law.cells.cells[to].1;
-                walk.enters(c, wall);
-                let regime = law.regime_of(to);
-                if regime != place.state.regime[c] {
-                    place.state.regime[c] = regime;
-                    frame.set(self, c, regime, self.driven(&place, c));
-                    break;
-                }
-            }
+        match follow(&mut path, 400 + 20 * points)? {
+            PathEnd::Arrived => Ok(path.place.state),
+            PathEnd::Ray(_) => Err("the path of pivoting leaves along a ray".into()),
         }
-        Err(format!("{most} pivots were not enough"))
     }
 
     /// Newton's method from what pivoting found.

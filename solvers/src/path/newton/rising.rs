@@ -12,9 +12,10 @@
 //! an opening facet with strength is open already its multiplier has any sign: it belongs to the
 //! factorised regimes, and only the point's other facets are pairs.
 
-use super::law::Regime;
 use super::model::{Model, Rate, State};
-use crate::path::complementarity::{Complementarity, Known};
+use crate::contact::mode::ContactMode;
+use crate::optimise::branching::{LcpAnswer, solve_by_branching};
+use crate::optimise::lcp::Lcp;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
@@ -33,12 +34,12 @@ struct Verge {
     /// (contact point, facet) without slack.
     facets: Vec<(usize, usize)>,
     /// Regimes that are factorised.
-    regimes: Vec<Regime>,
+    regimes: Vec<ContactMode>,
 }
 
 /// The rate problem of a state.
 struct RateProblem {
-    problem: Complementarity,
+    problem: Lcp,
     /// Multiplier of each facet per unit of z.
     units: Vec<f64>,
     /// Rates of all unknowns but λ by each multiplier and, last, by λ̇ in the sense asked for.
@@ -50,7 +51,7 @@ pub(super) enum Rising {
     /// There is none.
     None,
     /// One, with its regimes.
-    Rate(Rate, Vec<Regime>),
+    Rate(Rate, Vec<ContactMode>),
     /// Not decided, and why.
     Unknown(String),
 }
@@ -64,14 +65,14 @@ impl Model<'_> {
         let Some(rate) = self.rate_problem(state, &verge, direction) else {
             return Rising::Unknown(format!("the stiffness of {facets} facets at the verge of yielding was not found"));
         };
-        let (known, programs) = rate.problem.search(MOST);
+        let (known, programs) = solve_by_branching(&rate.problem, MOST);
         self.count("rate_programs", programs);
         match known {
-            Known::None => Rising::None,
-            Known::Undecided(why) => {
+            LcpAnswer::NoSolution => Rising::None,
+            LcpAnswer::Undecided(why) => {
                 Rising::Unknown(format!("{facets} facets at the verge of yielding may let the load grow: {why}"))
             }
-            Known::Solution(z) => {
+            LcpAnswer::Solution(z) => {
                 let mut x = rate.responses[facets].clone();
                 for ((by, z), unit) in rate.responses.iter().zip(&z).zip(&rate.units) {
                     x.iter_mut().zip(by).for_each(|(x, by)| *x += z * unit * by);
@@ -86,20 +87,15 @@ impl Model<'_> {
     }
 
     /// Regimes in which the facets with z > 0 yield.
-    fn regimes_of(&self, verge: &Verge, z: &[f64]) -> Vec<Regime> {
+    fn regimes_of(&self, verge: &Verge, z: &[f64]) -> Vec<ContactMode> {
         let largest = z.iter().fold(0.0, |a: f64, z| a.max(*z));
         let mut regimes = verge.regimes.clone();
         for (&(c, i), _) in verge.facets.iter().zip(z).filter(|(_, z)| **z > 1e-9 * largest) {
             let Some(law) = self.law(c) else { continue };
-            let at = |j: u8| {
-                let pair = |p: &[usize; 2]| p.contains(&i) && p.contains(&(j as usize));
-                let own = law.corners.iter().position(|(_, pairs)| pairs.iter().any(pair));
-                // Both senses of slip at the apex: it opens.
-                own.or_else(|| law.corners.iter().position(|(place, _)| *place == [0.0; 2]))
-            };
             regimes[c] = match regimes[c] {
-                Regime::Stuck => Regime::Facet(i as u8),
-                Regime::Facet(j) => at(j).map_or(Regime::Facet(j), |k| Regime::Corner(k as u8)),
+                ContactMode::Stick => ContactMode::Facet(i as u8),
+                // Both senses of slip at the apex: it opens.
+                ContactMode::Facet(j) => law.mode_of_pair(i, j as usize).unwrap_or(ContactMode::Facet(j)),
                 corner => corner,
             };
         }
@@ -118,13 +114,13 @@ impl Model<'_> {
             let active = (0..law.facets.len()).filter(|i| slack(*i) <= VERGE * largest);
             let (_, opening) = law.irreversible(state.regime[c], self.step_gap(state, state, c));
             if !(law.opens(state.regime[c]) && opening > 1e-9 * self.units.displacement) {
-                *regime = Regime::Stuck;
+                *regime = ContactMode::Stick;
                 facets.extend(active.map(|i| (c, i)));
                 continue;
             }
             let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
             if let Some(facet) = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0) {
-                *regime = Regime::Facet(facet as u8);
+                *regime = ContactMode::Facet(facet as u8);
                 facets.extend(active.filter(|i| !opens(i)).map(|i| (c, i)));
             }
         }
@@ -166,13 +162,13 @@ impl Model<'_> {
         let mut right = driven.clone();
         for (c, regime) in verge.regimes.iter().enumerate() {
             let own: [Vec<(usize, f64)>; 2] = match (regime, self.law(c)) {
-                (Regime::Facet(i), Some(law)) => {
+                (ContactMode::Facet(i), Some(law)) => {
                     let f = &law.facets[*i as usize];
                     right[2 * c] = 0.0;
                     right[2 * c + 1] = driven[2 * c] * f.flow[1] - driven[2 * c + 1] * f.flow[0];
                     [vec![(2 * c, f.normal[0]), (2 * c + 1, f.normal[1])], weighted(c, [f.flow[1], -f.flow[0]])]
                 }
-                (Regime::Corner(_), Some(_)) => {
+                (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => {
                     (0..2).for_each(|k| right[2 * c + k] = 0.0);
                     [vec![(2 * c, 1.0)], vec![(2 * c + 1, 1.0)]]
                 }
@@ -195,7 +191,7 @@ impl Model<'_> {
             let (c, flow) = (at.0, facet(at)?.flow);
             let mut unit = vec![0.0; size];
             match (verge.regimes[c], self.law(c)) {
-                (Regime::Facet(o), Some(law)) => {
+                (ContactMode::Facet(o), Some(law)) => {
                     let d = law.facets[o as usize].flow;
                     unit[2 * c + 1] = -flow[0] * d[1] + flow[1] * d[0];
                 }
@@ -227,7 +223,7 @@ impl Model<'_> {
         let own: Vec<f64> = matrix.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
         let constant = DVector::from_fn(n, |i, _| constant[i] / own[i]);
         let size = if n > 0 { constant.amax().max(1e-300) } else { 1.0 };
-        let problem = Complementarity {
+        let problem = Lcp {
             matrix: DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (own[i] * own[j])),
             constant: constant / size,
         };

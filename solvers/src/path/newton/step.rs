@@ -1,9 +1,10 @@
 //! Newton's method on the regimes of a step, and rates of converged states.
 
 use super::kinematics::Curvature;
-use super::law::Regime;
-use super::line_search::LineSearch;
+use super::line_search::of_tractions;
 use super::model::{Control, Model, Rate, Refusal, State};
+use crate::contact::mode::ContactMode as Regime;
+use crate::optimise::line_search::LineSearch;
 
 /// Contact points that want to change above which, twice running where eight times fewer did before, an
 /// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
@@ -49,7 +50,7 @@ impl Model<'_> {
         let mut holds = true;
         let regimes = (0..state.gap.len())
             .map(|c| match self.law(c) {
-                None => Regime::Stuck,
+                None => Regime::Stick,
                 Some(law) => {
                     let rho = self.stiffness(c);
                     let gap = self.step_gap(start, state, c);
@@ -57,7 +58,7 @@ impl Model<'_> {
                     // A certificate allows 1e-8 of the greatest force.
                     let tolerance = (rounding * rho[0].max(rho[1])).clamp(1e-11 * largest, 3e-9 * largest);
                     let area = self.problem.contacts[c].area;
-                    let regime = law.regime(state.regime[c], z, rho, area, tolerance);
+                    let regime = law.mode(state.regime[c], z, rho, area, tolerance);
                     holds &= regime != state.regime[c] || law.violation(regime, z, rho, area) <= tolerance;
                     regime
                 }
@@ -105,9 +106,9 @@ impl Model<'_> {
                 self.response_row(state, i / 2).0[i % 2] > 0.5
             } else if i < 2 * points {
                 match state.regime[i / 2] {
-                    Regime::Stuck => false,
+                    Regime::Stick => false,
                     Regime::Facet(_) => i % 2 == 0,
-                    Regime::Corner(_) => true,
+                    Regime::Corner(..) | Regime::Open => true,
                 }
             } else {
                 i + 1 < residual.len()
@@ -133,7 +134,7 @@ impl Model<'_> {
         mut search: Option<LineSearch>,
     ) -> Result<(State, u64), Refusal> {
         if !self.responses.is_empty() {
-            search = Some(LineSearch::of_tractions());
+            search = Some(of_tractions());
         }
         let mut state = guess;
         let factor = if let Control::Factor(target) = control { *target } else { state.factor };
@@ -306,7 +307,7 @@ impl Model<'_> {
     /// The rate of a solution of the linear equations.
     pub(super) fn rate_from(&self, x: &[f64], state: &State, curvature: &Curvature) -> Rate {
         let rows = &curvature.rows(self).gaps;
-        let along = |i: usize| rows.along(i, x) * self.units.displacement;
+        let along = |i: usize| rows.row_dot(i, x) * self.units.displacement;
         let gap = (0..state.gap.len()).map(|c| [along(2 * c), along(2 * c + 1)]).collect();
         Rate { gap, ..self.moving(x) }
     }

@@ -1,6 +1,6 @@
 //! The linear system of a step: residual by regimes, rows of constraints, the matrix and its solution.
 //!
-//! Rows by regime:
+//! CsrMatrix by regime:
 //!
 //! ```text
 //! stuck     g − s = 0                     facet   a·r = b A,  Δg × d = 0
@@ -13,13 +13,13 @@
 //! Optim. 5) where regimes repeat a condition or leave a motion free; iterative refinement against
 //! the true matrix removes the shift from the answer. Where refinement does not converge, the
 //! regimes have no solution, and the step is refused. How it is factorised: see `border` and
-//! [`condensed`](crate::path::condensed).
+//! [`condensed`](crate::linear::condensed).
 
-use super::border::{Bordered, Held};
 use super::kinematics::{Curvature, Slopes};
-use super::law::Regime;
 use super::model::{Control, Model, Rate, State, load_size};
-use crate::path::rows::Rows;
+use crate::contact::mode::ContactMode as Regime;
+use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::csr::CsrMatrix;
 use std::rc::Rc;
 use voussoir_core::linear::Analysis;
 use voussoir_core::model::geometry::turned;
@@ -36,7 +36,7 @@ struct Kept {
     regimes: Vec<Regime>,
     /// Normals and flows of the laws' facets.
     directions: Vec<[f64; 4]>,
-    held: Rc<Held>,
+    held: Rc<BorderedFactors>,
 }
 
 /// What the last factorisation leaves to the next.
@@ -219,8 +219,8 @@ impl Model<'_> {
                     let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
                     [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
                 }
-                (Regime::Corner(k), Some(law)) => {
-                    let corner = law.corners[k as usize].0;
+                (regime @ (Regime::Corner(..) | Regime::Open), Some(law)) => {
+                    let corner = law.corner(regime).unwrap_or_default();
                     [(r[0] - corner[0] * area) / u.force, (r[1] - corner[1] * area) / u.force]
                 }
                 _ => gap,
@@ -245,7 +245,7 @@ impl Model<'_> {
 
     /// The regimes' linear equations, factorised: where nothing else than regimes makes them, those of
     /// the same regimes are taken again.
-    fn factorised(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<(Rc<Held>, bool)> {
+    fn factorised(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<(Rc<BorderedFactors>, bool)> {
         let again = self.responses.is_empty() && self.is_constant(curvature);
         let directions: Vec<[f64; 4]> = self
             .polygons
@@ -261,11 +261,11 @@ impl Model<'_> {
         }
         let equations = curvature.rows(self);
         let capacity = curvature.entries.len();
-        let (mut rows, mut shifts) = (Rows::none(capacity), Rows::none(capacity));
+        let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(capacity));
         for (c, regime) in state.regime.iter().enumerate() {
             let answer = self.responses.is(c).then(|| self.response_row(state, c));
             for k in 0..2 {
-                let (equation, shift) = (rows.open(), shifts.open());
+                let (equation, shift) = (rows.open_row(), shifts.open_row());
                 match &answer {
                     Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
                     None => equations.point(self.law(c), (c, k), *regime, false, equation, shift),
@@ -276,7 +276,7 @@ impl Model<'_> {
         }
         equations.bodies(&mut rows, &mut shifts);
         self.count("factorisations", 1);
-        let held = Held::new(rows, shifts, state.regime.len(), row, &mut self.factorised.analysis)?;
+        let held = BorderedFactors::new(rows, shifts, state.regime.len(), row, &mut self.factorised.analysis)?;
         let held = Rc::new(held);
         self.factorised.last = again.then(|| Kept { regimes: state.regime.clone(), directions, held: held.clone() });
         Some((held, false))
@@ -292,19 +292,19 @@ impl Model<'_> {
         right: &[f64],
     ) -> Option<(Vec<f64>, bool)> {
         let (held, again) = self.factorised(state, curvature, row)?;
-        let found = Bordered::new(held, row).and_then(|bordered| refined(&bordered, right));
+        let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
         if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
             return found;
         }
         // Another unknown held may serve this control better.
         self.factorised.last = None;
         let (held, _) = self.factorised(state, curvature, row)?;
-        refined(&Bordered::new(held, row)?, right)
+        refined(&BorderedSystem::new(held, row)?, right)
     }
 }
 
 /// The solution of the equations without what was added, by refinement, and whether there is one.
-fn refined(bordered: &Bordered, right: &[f64]) -> Option<(Vec<f64>, bool)> {
+fn refined(bordered: &BorderedSystem, right: &[f64]) -> Option<(Vec<f64>, bool)> {
     let mut x = vec![0.0; right.len()];
     let mut rest = right.to_vec();
     let mut before = f64::INFINITY;

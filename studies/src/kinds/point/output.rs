@@ -1,18 +1,76 @@
 //! What a study of driven points writes: results.json, results.csv, the figure, the table on the terminal.
 
-use super::{PathStatus, PointResult, PointStudy};
+use super::drive::drive_point;
+use super::result::{PathStatus, PointResult};
+use super::study::PointStudy;
 use crate::figures::chart::{Series, chart_svg};
 use crate::figures::format::{format_number, format_value, key_with_unit};
+use crate::kinds::kind::{LoadedStudy, RunOutput, RunRequest, Verification};
+use crate::solve::Observer;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use serde_json::Value as Json;
+
+impl LoadedStudy for PointStudy {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn count(&self) -> usize {
+        self.cases.len()
+    }
+
+    fn resolved(&self) -> &toml::Value {
+        &self.resolved
+    }
+
+    fn explain(&self) -> String {
+        let mut text = format!("study \"{}\" (point): {} case(s)\n", self.name, self.cases.len());
+        for case in &self.cases {
+            let steps: usize = case.path.iter().map(|segment| segment.steps).sum();
+            text +=
+                &format!("case {}: {} at one point, {} segments, {steps} steps\n", case.id, case.tag, case.path.len());
+        }
+        text
+    }
+
+    fn run(&self, request: &RunRequest, _observer: &dyn Observer) -> RunOutput {
+        let wanted = self.cases.iter().filter(|case| request.wanted.contains(&case.id));
+        let results: Vec<PointResult> = wanted.map(drive_point).collect();
+        RunOutput {
+            files: files(self, &results, &request.version)
+                .into_iter()
+                .map(|(n, text)| (n, text.into_bytes()))
+                .collect(),
+            table: table(self, &results),
+            certified: results.iter().all(|result| result.status == PathStatus::Reached),
+        }
+    }
+
+    /// Drives all points again: every number must be the same.
+    fn verify(&self, results: &str) -> Result<Verification, String> {
+        let stored: Json = serde_json::from_str(results).map_err(|error| error.to_string())?;
+        let stored = stored["cases"].as_array().ok_or("there is no list of cases")?;
+        let mut verification = Verification { cases: stored.len(), ..Verification::default() };
+        for entry in stored {
+            let id = entry["id"].as_u64().map_or(usize::MAX, |id| id as usize);
+            let Some(case) = self.cases.get(id) else {
+                verification.findings.push((id, "the study has no such case".into()));
+                continue;
+            };
+            let driven = drive_point(case);
+            verification.stalled += usize::from(driven.status == PathStatus::Stalled);
+            if serde_json::to_value(&driven).ok().as_ref() != Some(entry) {
+                verification.findings.push((id, "driving the point again gives other numbers".into()));
+            }
+        }
+        Ok(verification)
+    }
+}
 
 /// (name, text) of every file.
 pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
     let whole = serde_json::json!({ "study": study.name, "version": version, "kind": "point", "cases": results });
-    let mut out = vec![
-        ("results.json".to_string(), format!("{whole:#}\n")),
-        ("results.csv".to_string(), csv(study, results)),
-        ("resolved.toml".to_string(), toml::to_string(&study.resolved).unwrap_or_default()),
-    ];
+    let mut out = vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(results))];
     if study.figures {
         out.push(("figures/path.svg".into(), figure(study, results)));
     }
@@ -25,7 +83,7 @@ fn keys(results: &[PointResult]) -> Vec<String> {
 }
 
 /// One row per step of every case; columns that a case's law does not have are empty.
-pub fn csv(_study: &PointStudy, results: &[PointResult]) -> String {
+pub fn csv(results: &[PointResult]) -> String {
     let mut columns: Vec<&String> = Vec::new();
     for column in results.iter().flat_map(|result| &result.columns) {
         if !columns.contains(&column) {
@@ -78,10 +136,9 @@ fn scaled(label: &str) -> (String, f64) {
 pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
     let mut labels = [String::new(), String::new()];
     let mut notes = Vec::new();
-    let series: Vec<Series> = study
-        .cases
+    let series: Vec<Series> = results
         .iter()
-        .zip(results)
+        .map(|result| (&study.cases[result.id], result))
         .map(|(case, result)| {
             let [x, y] = [0, 1].map(|axis| {
                 let place = column(result, &case.plot[axis]).unwrap_or(axis);
@@ -115,7 +172,8 @@ pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
         "dissipated".into(),
     ]);
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
-    for (case, result) in study.cases.iter().zip(results) {
+    for result in results {
+        let case = &study.cases[result.id];
         let values: Vec<f64> = column(result, &case.plot[1])
             .map(|place| result.rows.iter().map(|row| row[place]).collect())
             .unwrap_or_default();

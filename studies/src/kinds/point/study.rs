@@ -1,14 +1,14 @@
 //! The study file of a driven point: its keys, and the cases it becomes.
 
+use super::result::columns;
 use crate::config::check::Checker;
-use crate::config::document::{Node, parse};
+use crate::config::diagnostic::{LocatedDiagnostic, sort, suggest};
+use crate::config::dotted_key::join;
 use crate::config::expand::{Expanded, Plan};
-use crate::config::overlay::join;
-use crate::config::report::{Mistake, sort, suggest};
-use crate::study::{OUTPUT, apply};
+use crate::study::{DiagnosticList, OUTPUT, StudySource, read_plugin};
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
-use voussoir_core::law::{BulkMaterial, Formulation, InterfaceLaw, PlanarUpdate, Plane};
+use voussoir_core::law::{BulkMaterial, FacetResponse, Formulation, InterfaceLaw, PlanarUpdate, Plane};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 use voussoir_solvers::point::{Control, PointLaw};
 
@@ -151,181 +151,160 @@ pub struct PointStudy {
     pub resolved: toml::Value,
 }
 
-/// Whether the text is a study of this kind. Text that cannot be read is not.
-pub fn is_point(text: &str, sets: &[(String, String)]) -> bool {
-    let Ok(mut root) = parse(text, "") else { return false };
-    apply(&mut root, sets);
-    root.table().and_then(|table| table.get("kind")?.text()) == Some("point")
-}
+impl PointStudy {
+    /// Reads a study from TOML; every mistake at once. Arguments as of [`crate::study::load`].
+    pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+        PointStudy::from_source(StudySource::parse(text, file, sets)?)
+    }
 
-/// The keys of such a study, for its JSON Schema.
-pub fn schema() -> &'static [Parameter] {
-    STUDY
-}
-
-/// Reads a study; every mistake at once. Arguments as of [`crate::study::load`].
-pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<PointStudy, Vec<Mistake>> {
-    let mut root = parse(text, file)?;
-    let mut mistakes = apply(&mut root, sets);
-    let plan = match Plan::new(&root) {
-        Ok(plan) => plan,
-        Err(wrong) => {
-            mistakes.extend(wrong);
-            sort(&mut mistakes);
-            return Err(mistakes);
-        }
-    };
-    let (mut cases, mut figures) = (Vec::new(), true);
-    for id in 0..plan.count() {
-        match plan.case(id).and_then(|expanded| build(id, expanded)) {
-            Ok((case, drawn)) => {
-                figures = drawn;
-                cases.push(case);
-            }
+    /// The study that a source describes.
+    pub fn from_source(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let StudySource { root, mut diagnostics, .. } = source;
+        let plan = match Plan::new(&root, &[]) {
+            Ok(plan) => plan,
             Err(wrong) => {
-                for mistake in wrong {
-                    if !mistakes.contains(&mistake) {
-                        mistakes.push(mistake);
+                diagnostics.extend(wrong);
+                sort(&mut diagnostics);
+                return Err(diagnostics);
+            }
+        };
+        let (mut cases, mut figures) = (Vec::new(), true);
+        for id in 0..plan.count() {
+            match plan.case(id).and_then(|expanded| build(id, expanded)) {
+                Ok((case, drawn)) => {
+                    figures = drawn;
+                    cases.push(case);
+                }
+                Err(wrong) => {
+                    for diagnostic in wrong {
+                        if !diagnostics.contains(&diagnostic) {
+                            diagnostics.push(diagnostic);
+                        }
                     }
                 }
             }
+            if diagnostics.len() > 100 {
+                break;
+            }
         }
-        if mistakes.len() > 100 {
-            break;
+        if !diagnostics.is_empty() {
+            sort(&mut diagnostics);
+            return Err(diagnostics);
         }
-    }
-    if !mistakes.is_empty() {
-        sort(&mut mistakes);
-        return Err(mistakes);
-    }
-    let name = root.table().and_then(|table| table.get("name")?.text()).unwrap_or_default().to_string();
-    Ok(PointStudy { name, figures, cases, resolved: root.to_toml() })
-}
-
-struct Builder<'a> {
-    root: &'a Node,
-    mistakes: Vec<Mistake>,
-}
-
-impl Builder<'_> {
-    fn wrong(&mut self, key: &str, message: impl Into<String>, help: impl Into<String>) {
-        self.mistakes.push(Mistake::new(&self.root.place(key), key, message).help(help));
+        let name = root.table().and_then(|table| table.get("name")?.text()).unwrap_or_default().to_string();
+        Ok(PointStudy { name, figures, cases, resolved: root.to_toml() })
     }
 }
 
-fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<Mistake>> {
+fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<LocatedDiagnostic>> {
     let Expanded { variant, parameters, root, .. } = expanded;
     let mut checker = Checker::new(&root);
     let checked = checker.check(&root, &Shape::Table(STUDY), "");
-    let (mistakes, unused) = (std::mem::take(&mut checker.mistakes), std::mem::take(&mut checker.unused));
-    let (Some(resolved), true) = (checked, mistakes.is_empty()) else {
-        return Err(mistakes);
+    let (found, unused) = (std::mem::take(&mut checker.diagnostics), std::mem::take(&mut checker.unused));
+    let (Some(resolved), true) = (checked, found.is_empty()) else {
+        return Err(found);
     };
-    let mut builder = Builder { root: &root, mistakes };
+    let mut diagnostics = DiagnosticList::new(&root, found);
     let point = &resolved["point"];
-    let law = read_law(&mut builder, &resolved, point);
-    let Some((tag, law)) = law else {
-        return Err(builder.mistakes);
+    let Some((tag, law)) = read_law(&mut diagnostics, &resolved, point) else {
+        return Err(diagnostics.found);
     };
     let path: Vec<Segment> = (0..point["path"].as_array().map_or(0, Vec::len))
-        .map(|number| read_segment(&mut builder, &law, &point["path"][number], &format!("point.path.{number}")))
+        .map(|number| read_segment(&mut diagnostics, &law, &point["path"][number], &format!("point.path.{number}")))
         .collect();
-    let plot = read_plot(&mut builder, &law, point, &path);
-    if !builder.mistakes.is_empty() {
-        return Err(builder.mistakes);
+    let plot = read_plot(&mut diagnostics, &law, point, &path);
+    if !diagnostics.found.is_empty() {
+        return Err(diagnostics.found);
     }
     let notes = unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
     let drawn = resolved["output"]["figures"].as_bool().unwrap_or(true);
     Ok((PointCase { id, variant, parameters, tag, law, path, plot, notes }, drawn))
 }
 
-fn read_law(builder: &mut Builder<'_>, resolved: &Json, point: &Json) -> Option<(String, PointLaw)> {
-    let length = point["length"].as_f64().unwrap_or(1.0);
+/// The tag of the law that is driven, and the law.
+fn read_law(diagnostics: &mut DiagnosticList<'_>, resolved: &Json, point: &Json) -> Option<(String, PointLaw)> {
+    let tag = |table: &Json| table["law"].as_str().unwrap_or_default().to_string();
     match (point["material"].as_str(), point["joint"].as_str()) {
         (Some(name), None) => {
             let table = &resolved["materials"][name];
-            let tag = table["law"].as_str().unwrap_or_default().to_string();
-            let material: Box<dyn BulkMaterial> = match serde_json::from_value(table.clone()) {
-                Ok(material) => material,
-                Err(error) => {
-                    let key = join("materials", name);
-                    builder.wrong(&key, format!("cannot be read: {error}"), "correct this table");
-                    return None;
-                }
-            };
-            let Some(update) = material.stress_update() else {
-                let message = format!("bulk material \"{tag}\" gives no stresses from strains at a point");
-                builder.wrong("point.material", message, "drive a material that deforms");
-                return None;
-            };
-            if length > update.largest_length() {
-                let message = format!(
-                    "{length} m is too large for the fracture energy: a point would snap back; it must be at most {:.6} m",
-                    update.largest_length()
-                );
-                builder.wrong(
-                    "point.length",
-                    message,
-                    "give a shorter length (smaller elements) or more fracture energy",
-                );
-                return None;
-            }
-            let plane = match point["plane"].as_str() {
-                None => return Some((tag, PointLaw::Space(update, length))),
-                Some("stress") => Plane::Stress,
-                Some(_) => Plane::Strain,
-            };
-            match PlanarUpdate::new(update, plane) {
-                Ok(planar) => Some((tag, PointLaw::Plane(planar, length))),
-                Err(failure) => {
-                    builder.wrong("point.material", failure.to_string(), "check the parameters of the material");
-                    None
-                }
-            }
+            let material = read_plugin(diagnostics, &join("materials", name), table)?;
+            Some((tag(table), material_law(diagnostics, material, &tag(table), point)?))
         }
         (None, Some(name)) => {
             let table = &resolved["joints"][name];
-            let tag = table["law"].as_str().unwrap_or_default().to_string();
-            let law: Box<dyn InterfaceLaw> = match serde_json::from_value(table.clone()) {
-                Ok(law) => law,
-                Err(error) => {
-                    let key = join("joints", name);
-                    builder.wrong(&key, format!("cannot be read: {error}"), "correct this table");
-                    return None;
-                }
-            };
+            let law = read_plugin(diagnostics, &join("joints", name), table)?;
             if point["plane"].is_string() {
-                builder.wrong("point.plane", "is for materials; a joint is driven in its own plane", "remove it");
+                diagnostics.wrong("point.plane", "is for materials; a joint is driven in its own plane", "remove it");
             }
-            match law.formulation() {
-                Formulation::Response(response) => Some((tag, PointLaw::Joint(response))),
-                Formulation::Facets(facets) => match law.stiffness() {
-                    Some(stiffness) if stiffness.iter().all(|k| k.is_finite()) => {
-                        let response = voussoir_core::law::FacetResponse::new(facets, stiffness);
-                        Some((tag, PointLaw::Joint(Arc::new(response))))
-                    }
-                    _ => {
-                        let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
-                        let help = "give the joint normal_stiffness and shear_stiffness";
-                        builder.wrong("point.joint", message, help);
-                        None
-                    }
-                },
-                _ => {
-                    let message = format!("interface law \"{tag}\" gives no tractions from gaps");
-                    builder.wrong("point.joint", message, "drive a law of facets or of tractions from gaps");
-                    None
-                }
-            }
+            Some((tag(table), joint_law(diagnostics, law, &tag(table))?))
         }
         _ => {
-            builder.wrong("point", "needs either material or joint", "name what is driven");
+            diagnostics.wrong("point", "needs either material or joint", "name what is driven");
             None
         }
     }
 }
 
-fn read_segment(builder: &mut Builder<'_>, law: &PointLaw, segment: &Json, at: &str) -> Segment {
+/// A material, driven in space or in a plane.
+fn material_law(
+    diagnostics: &mut DiagnosticList<'_>,
+    material: Box<dyn BulkMaterial>,
+    tag: &str,
+    point: &Json,
+) -> Option<PointLaw> {
+    let length = point["length"].as_f64().unwrap_or(1.0);
+    let Some(update) = material.stress_update() else {
+        let message = format!("bulk material \"{tag}\" gives no stresses from strains at a point");
+        diagnostics.wrong("point.material", message, "drive a material that deforms");
+        return None;
+    };
+    if length > update.largest_length() {
+        let message = format!(
+            "{length} m is too large for the fracture energy: a point would snap back; it must be at most {:.6} m",
+            update.largest_length()
+        );
+        let help = "give a shorter length (smaller elements) or more fracture energy";
+        diagnostics.wrong("point.length", message, help);
+        return None;
+    }
+    let plane = match point["plane"].as_str() {
+        None => return Some(PointLaw::Space(update, length)),
+        Some("stress") => Plane::Stress,
+        Some(_) => Plane::Strain,
+    };
+    match PlanarUpdate::new(update, plane) {
+        Ok(planar) => Some(PointLaw::Plane(planar, length)),
+        Err(failure) => {
+            diagnostics.wrong("point.material", failure.to_string(), "check the parameters of the material");
+            None
+        }
+    }
+}
+
+/// A joint law that gives tractions from gaps, by itself or by its facets with a stiffness.
+fn joint_law(diagnostics: &mut DiagnosticList<'_>, law: Box<dyn InterfaceLaw>, tag: &str) -> Option<PointLaw> {
+    match law.formulation() {
+        Formulation::Response(response) => Some(PointLaw::Joint(response)),
+        Formulation::Facets(facets) => match law.stiffness() {
+            Some(stiffness) if stiffness.iter().all(|k| k.is_finite()) => {
+                Some(PointLaw::Joint(Arc::new(FacetResponse::new(facets, stiffness))))
+            }
+            _ => {
+                let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
+                let help = "give the joint normal_stiffness and shear_stiffness";
+                diagnostics.wrong("point.joint", message, help);
+                None
+            }
+        },
+        _ => {
+            let message = format!("interface law \"{tag}\" gives no tractions from gaps");
+            diagnostics.wrong("point.joint", message, "drive a law of facets or of tractions from gaps");
+            None
+        }
+    }
+}
+
+fn read_segment(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, segment: &Json, at: &str) -> Segment {
     let names = law.names();
     let mut targets: Vec<Option<Control>> = vec![None; names.len()];
     let joint = matches!(law, PointLaw::Joint(_));
@@ -336,34 +315,34 @@ fn read_segment(builder: &mut Builder<'_>, law: &PointLaw, segment: &Json, at: &
             let Some(value) = value.as_f64() else { continue };
             if of_joint != joint {
                 let help = if joint { "a joint has gap and traction" } else { "a material has strain and stress" };
-                builder.wrong(&place, "does not belong to what is driven", help);
+                diagnostics.wrong(&place, "does not belong to what is driven", help);
                 continue;
             }
             let Some(index) = names.iter().position(|known| known == name) else {
-                builder.wrong(&place, "is not a component in a plane", suggest(name, names, "components"));
+                diagnostics.wrong(&place, "is not a component in a plane", suggest(name, names, "components"));
                 continue;
             };
             if targets[index].is_some() {
-                builder.wrong(&place, "is controlled twice in this segment", "give its strain or its stress");
+                diagnostics.wrong(&place, "is controlled twice in this segment", "give its strain or its stress");
             }
             targets[index] = Some(if strain { Control::Strain(value) } else { Control::Stress(value) });
         }
     }
     if targets.iter().all(Option::is_none) {
-        builder.wrong(at, "moves nothing", "name at least one component");
+        diagnostics.wrong(at, "moves nothing", "name at least one component");
     }
     Segment { steps: segment["steps"].as_u64().unwrap_or(1) as usize, targets }
 }
 
-fn read_plot(builder: &mut Builder<'_>, law: &PointLaw, point: &Json, path: &[Segment]) -> [String; 2] {
-    let columns = super::columns(law);
+fn read_plot(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, point: &Json, path: &[Segment]) -> [String; 2] {
+    let columns = columns(law);
     let bare: Vec<&str> = columns.iter().filter_map(|column| column.split(' ').next()).collect();
     if let Some([x, y]) = point["plot"].as_array().map(Vec::as_slice) {
         let words = [x, y].map(|word| word.as_str().unwrap_or_default().to_string());
         for (index, word) in words.iter().enumerate() {
             if !bare.contains(&word.as_str()) {
                 let help = suggest(word, &bare, "columns");
-                builder.wrong(&format!("point.plot.{index}"), format!("there is no column \"{word}\""), help);
+                diagnostics.wrong(&format!("point.plot.{index}"), format!("there is no column \"{word}\""), help);
             }
         }
         return words;

@@ -1,0 +1,118 @@
+//! A contact point with facets without slack: the modes it may take in a rate, and how a rate violates one.
+//!
+//! - stick: ġ = 0, and no active facet is left (ṡ ≥ 0);
+//! - facet i: ṡ_i = 0, ġ = −γ d_i, γ ≥ 0 (any sign for an opening facet that is open);
+//! - corner of facets i and j: ṙ = 0, ġ = −γ_i d_i − γ_j d_j;
+//! - open (the apex of dry friction): ṙ = 0, ġ_n ≥ tan ψ |ġ_t|.
+//!
+//! Source: the modes are those of Alart and Curnier (1991).
+
+use super::facet::{dilatancy, dot, norm};
+use super::mode::ContactMode;
+use voussoir_core::law::{Facet, FacetMode};
+
+/// A contact point of the active set.
+#[derive(Debug, Clone)]
+pub struct ActivePoint<'a> {
+    /// Its facets.
+    pub facets: &'a [Facet],
+    /// Which of them have no slack.
+    pub active: Vec<usize>,
+    /// The opening facet, where the point is open without being at the apex.
+    pub open: Option<usize>,
+    /// Whether it is at the apex, where it may open freely.
+    pub apex: bool,
+    /// Its present mode, or that of the facet where it has just arrived.
+    pub guess: ContactMode,
+    /// Whether it has just arrived.
+    pub hit: bool,
+    /// Unit of its stiffness.
+    pub stiffness: f64,
+}
+
+impl ActivePoint<'_> {
+    /// The modes it may take.
+    pub fn candidates(&self) -> Vec<ContactMode> {
+        if let Some(open) = self.open {
+            let others = self.active.iter().filter(|f| **f != open);
+            let corners = others.map(|f| ContactMode::Corner(open as u8, *f as u8));
+            return std::iter::once(ContactMode::Facet(open as u8)).chain(corners).collect();
+        }
+        let sliding = |f: &&usize| !self.apex || self.facets[**f].mode != FacetMode::Opening;
+        let mut modes = vec![ContactMode::Stick];
+        modes.extend(self.active.iter().filter(sliding).map(|f| ContactMode::Facet(*f as u8)));
+        if self.apex {
+            modes.push(ContactMode::Open);
+            return modes;
+        }
+        for (k, i) in self.active.iter().enumerate() {
+            let independent = self.active[k + 1..].iter().filter(|j| self.independent(*i, **j));
+            modes.extend(independent.map(|j| ContactMode::Corner(*i as u8, *j as u8)));
+        }
+        modes
+    }
+
+    fn independent(&self, i: usize, j: usize) -> bool {
+        let (a, b) = (self.facets[i].normal, self.facets[j].normal);
+        (a[0] * b[1] - a[1] * b[0]).abs() > 1e-9 * (norm(a) * norm(b))
+    }
+
+    /// How far a rate leaves its mode: the worst violation, relative to the given sizes of force and gap rates,
+    /// and the mode that mends it. `v`: the unknowns of the mode.
+    pub fn violation(
+        &self,
+        mode: ContactMode,
+        v: &[f64],
+        force: [f64; 2],
+        sizes: [f64; 2],
+    ) -> Option<(f64, ContactMode)> {
+        let [force_size, gap_size] = sizes;
+        let mut worst: Option<(f64, ContactMode)> = None;
+        let mut note = |size: f64, to: ContactMode| {
+            if size > 0.0 && worst.is_none_or(|w| size > w.0) {
+                worst = Some((size, to));
+            }
+        };
+        match mode {
+            ContactMode::Stick => {}
+            ContactMode::Facet(f) if Some(f as usize) == self.open => {}
+            ContactMode::Facet(_) => note(-v[0] / gap_size, ContactMode::Stick),
+            ContactMode::Corner(i, j) => {
+                for (k, (own, other)) in [(i, j), (j, i)].into_iter().enumerate() {
+                    if Some(own as usize) != self.open {
+                        note(-v[k] / gap_size, ContactMode::Facet(other));
+                    }
+                }
+            }
+            ContactMode::Open => {
+                let closing = dilatancy(self.facets) * v[1].abs() - v[0];
+                let slide = self.active.iter().copied().find(|f| {
+                    let facet = &self.facets[*f];
+                    facet.mode == FacetMode::Sliding && facet.flow[1] * v[1] < 0.0
+                });
+                note(closing / gap_size, slide.map_or(ContactMode::Stick, |f| ContactMode::Facet(f as u8)));
+                return worst;
+            }
+        }
+        for &f in self.active.iter().filter(|f| !mode.flows_on(**f)) {
+            note(dot(self.facets[f].normal, force) / force_size, self.successor(mode, f));
+        }
+        worst
+    }
+
+    /// The mode after one in which a further facet would be left outwards.
+    fn successor(&self, mode: ContactMode, facet: usize) -> ContactMode {
+        let is = |f: usize, what: FacetMode| self.facets[f].mode == what;
+        match mode {
+            _ if self.apex && is(facet, FacetMode::Opening) => ContactMode::Open,
+            ContactMode::Facet(i) if self.apex => {
+                match is(i as usize, FacetMode::Sliding) && is(facet, FacetMode::Sliding) {
+                    true => ContactMode::Open,
+                    false => ContactMode::Facet(facet as u8),
+                }
+            }
+            ContactMode::Facet(i) if self.independent(i as usize, facet) => ContactMode::Corner(i, facet as u8),
+            _ => ContactMode::Facet(facet as u8),
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! Plane vectors and single facets: slack, multipliers of pairs, dilatancy.
+
+use voussoir_core::law::{Facet, FacetMode};
+
+/// Scalar product.
+pub fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Length.
+pub fn norm(a: [f64; 2]) -> f64 {
+    a[0].hypot(a[1])
+}
+
+/// Unit vector across a flow d.
+pub fn across(flow: [f64; 2]) -> [f64; 2] {
+    let l = norm(flow);
+    [-flow[1] / l, flow[0] / l]
+}
+
+/// b A − a·r.
+pub fn slack(facet: &Facet, force: [f64; 2], area: f64) -> f64 {
+    facet.bound * area - dot(facet.normal, force)
+}
+
+/// Multipliers (γ_i, γ_j) of two flows: g = −γ_i d_i − γ_j d_j.
+pub fn multipliers(a: [f64; 2], b: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
+    let determinant = a[0] * b[1] - a[1] * b[0];
+    [-(gap[0] * b[1] - gap[1] * b[0]) / determinant, -(a[0] * gap[1] - a[1] * gap[0]) / determinant]
+}
+
+/// tan ψ of the dilatant slip of a law: how much it opens per unit of slip.
+pub fn dilatancy(facets: &[Facet]) -> f64 {
+    facets
+        .iter()
+        .filter(|f| f.mode == FacetMode::Sliding && f.flow[1] != 0.0)
+        .map(|f| -f.flow[0] / f.flow[1].abs())
+        .fold(0.0, f64::max)
+}
+
+/// Facets whose flow is turned from their normal (0) to their own flow (1).
+pub fn with_flow_between(facets: &[Facet], share: f64) -> Vec<Facet> {
+    let flow = |f: &Facet| [0, 1].map(|i| (1.0 - share) * f.normal[i] + share * f.flow[i]);
+    facets.iter().map(|f| Facet { flow: flow(f), ..*f }).collect()
+}

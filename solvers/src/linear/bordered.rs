@@ -1,0 +1,175 @@
+//! The control's row beside the equations of points and bodies.
+//!
+//! The row of an arc length or a displacement is dense: inside the matrix it would fill the factors. The
+//! equations above it, K x = f with one unknown more than rows, are factorised with one unknown x_k held
+//! in its place, and the control chooses among their solutions,
+//!
+//! ```text
+//! [K; e_kᵀ] z = (f, 0)     [K; e_kᵀ] w = (0, 1)     x = z + t w,   t = (l − c·z) / (c·w)
+//! ```
+//!
+//! w spans the null space of K: the rate along the path. It exists at limit points too, where K without
+//! the column of λ is singular, as long as x_k moves along the path: where |w_k| is small beside the
+//! greatest |w|, the unknown that moves most is held instead (local parametrisation: Rheinboldt 1980,
+//! SIAM J. Numer. Anal. 17, 221-237). Two solutions and a quotient amplify rounding; refinement against
+//! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
+//! 469-483).
+
+use super::condensed::{Condensed, pair};
+use super::csr::CsrMatrix;
+use std::rc::Rc;
+use voussoir_core::linear::Analysis;
+
+/// Entries up to which the control's row is part of the matrix.
+const SPARSE: usize = 4;
+/// Least rate of the unknown that is held, relative to the greatest.
+const MOVES: f64 = 1e-4;
+
+/// What stands in the last row of factorised equations.
+enum Last {
+    /// The control.
+    Control(Vec<(usize, f64)>),
+    /// An unknown that is held; w, and w without the unknowns that are condensed out.
+    Unknown(Vec<f64>, Vec<f64>),
+}
+
+/// Factorised equations without a control of their own: they serve every control that is a border.
+pub struct BorderedFactors {
+    equations: Condensed,
+    last: Last,
+}
+
+/// Factorised equations with a control.
+pub struct BorderedSystem {
+    held: Rc<BorderedFactors>,
+    /// The control's row with c·w, where it is not part of the matrix.
+    border: Option<(Vec<f64>, f64)>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Index of the greatest magnitude.
+fn greatest(v: &[f64]) -> usize {
+    (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best })
+}
+
+/// The entries of a control's row, where it is part of the matrix.
+fn few(control: &[f64]) -> Option<Vec<(usize, f64)>> {
+    let entries = || control.iter().enumerate().filter(|(_, v)| **v != 0.0);
+    (entries().nth(SPARSE).is_none()).then(|| entries().map(|(j, v)| (j, *v)).collect())
+}
+
+impl BorderedFactors {
+    /// Factorises the equations above the last row, which the rows do not hold, with what the `control`
+    /// asks for in its place. `None` where they are singular.
+    pub fn new(
+        mut rows: CsrMatrix,
+        mut shifts: CsrMatrix,
+        contacts: usize,
+        control: &[f64],
+        analysis: &mut Analysis,
+    ) -> Option<Self> {
+        let size = control.len();
+        let last = size - 1;
+        shifts.end_row();
+        if let Some(few) = few(control) {
+            rows.open_row().extend(&few);
+            rows.end_row();
+            let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
+            return Some(BorderedFactors { equations, last: Last::Control(few) });
+        }
+        let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
+        let mut held = 2 * contacts + greatest(&control[2 * contacts..]);
+        for again in [true, false] {
+            rows.open_row().push((held, 1.0));
+            rows.end_row();
+            let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
+            if let Some(w) = equations.apply(&end) {
+                let most = 2 * contacts + greatest(&w[2 * contacts..]);
+                if !again || w[held].abs() >= MOVES * w[most].abs() {
+                    let kept = equations.kept_of(&w);
+                    return Some(BorderedFactors { equations, last: Last::Unknown(w, kept) });
+                }
+                held = most;
+            } else {
+                held = last;
+            }
+            rows = equations.into_rows();
+            rows.pop();
+        }
+        None
+    }
+
+    /// Whether it serves a control.
+    pub fn serves(&self, control: &[f64]) -> bool {
+        match (&self.last, few(control)) {
+            (Last::Control(own), Some(few)) => *own == few,
+            (Last::Unknown(..), None) => true,
+            _ => false,
+        }
+    }
+}
+
+impl BorderedSystem {
+    /// With a control that the factorised equations serve. `None` where it is orthogonal to w.
+    pub fn new(held: Rc<BorderedFactors>, control: &[f64]) -> Option<Self> {
+        let border = match &held.last {
+            Last::Control(_) => None,
+            Last::Unknown(w, _) => Some((control.to_vec(), Some(dot(control, w)).filter(|along| *along != 0.0)?)),
+        };
+        Some(BorderedSystem { held, border })
+    }
+
+    /// The equations above the control, the control's row in them or an unknown held in its place.
+    pub fn equations(&self) -> &Condensed {
+        &self.held.equations
+    }
+
+    /// What unit right-hand sides of the two rows of a contact point give, without the unknowns that
+    /// are condensed out.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let equations = &self.held.equations;
+        let mut columns = equations.units(contact)?;
+        if let (Last::Unknown(_, w), Some((control, along))) = (&self.held.last, &self.border) {
+            for (k, y) in columns.iter_mut().enumerate() {
+                let right = |c: usize| if c == contact { pair(k, 1.0) } else { [0.0; 2] };
+                let t = -equations.dot(control, right, y) / along;
+                y.iter_mut().zip(w).for_each(|(y, w)| *y += t * w);
+            }
+        }
+        Some(columns)
+    }
+
+    /// Once, without refinement.
+    pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
+        let (Last::Unknown(w, _), Some((control, along))) = (&self.held.last, &self.border) else {
+            return self.held.equations.apply(right);
+        };
+        let last = right.len() - 1;
+        let mut above = right.to_vec();
+        above[last] = 0.0;
+        let mut z = self.held.equations.apply(&above)?;
+        let t = (right[last] - dot(control, &z)) / along;
+        z.iter_mut().zip(w).for_each(|(z, w)| *z += t * w);
+        z.iter().all(|v| v.is_finite()).then_some(z)
+    }
+
+    /// What all rows leave of a right-hand side, and the greatest backward error of a row.
+    pub fn left(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let Some((control, _)) = &self.border else { return self.held.equations.errors(right, x) };
+        // The row in the control's place is the control's, not that of the unknown that is held.
+        let last = right.len() - 1;
+        let mut above = right.to_vec();
+        above[last] = self.held.equations.row_dot(last, x);
+        let (mut left, error) = self.held.equations.errors(&above, x);
+        let (mut own, mut size) = (right[last], right[last].abs());
+        for (c, x) in control.iter().zip(x) {
+            own -= c * x;
+            size += (c * x).abs();
+        }
+        left[last] = own;
+        (left, if own == 0.0 { error } else { error.max((own / size).abs()) })
+    }
+}

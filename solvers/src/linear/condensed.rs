@@ -1,0 +1,315 @@
+//! Linear equations of contact points and bodies without the contact forces that have equations of
+//! their own.
+//!
+//! Unknowns are (r_n, r_t) of every contact point, then all others. Where the two rows of a point hold no
+//! other contact force (rigid bodies with compliant joints: C is diagonal; points that are open, r = 0),
+//! they are condensed out exactly,
+//!
+//! ```text
+//! A_c r_c + E_c y = f_c      r_c = A_c⁻¹ (f_c − E_c y)
+//! D y + Σ F_c r_c = g        (D − Σ F_c A_c⁻¹ E_c) y = g − Σ F_c A_c⁻¹ f_c
+//! ```
+//!
+//! so that what is factorised has three unknowns a body and not 2 × the contact points of its joints
+//! more. Points pressed on elastic bodies, whose gaps depend on other forces, stay. Here forces are differences of motions, which rounds by
+//! the size of the motions: residuals are those of all the equations, and one or two steps of iterative
+//! refinement leave the accuracy of the equations before condensation.
+
+use super::csr::CsrMatrix;
+use voussoir_core::linear::{Analysis, Entries, SparseLu};
+
+/// Own equations of a point must be at least this strong, relative to the others in its rows.
+const STRONG: f64 = 1e-3;
+
+/// A contact point whose forces are condensed out.
+struct Point {
+    /// Index of r_n.
+    first: usize,
+    /// A⁻¹.
+    inverse: [[f64; 2]; 2],
+    /// Where its E begins and ends among all.
+    across: [usize; 2],
+}
+
+impl Point {
+    /// A⁻¹ v.
+    fn own(&self, v: [f64; 2]) -> [f64; 2] {
+        let [a, b] = self.inverse;
+        [a[0] * v[0] + a[1] * v[1], b[0] * v[0] + b[1] * v[1]]
+    }
+}
+
+/// Factorised equations, with the equations themselves for residuals.
+pub struct Condensed {
+    rows: CsrMatrix,
+    points: Vec<Point>,
+    /// E: kept column, values in both rows of a point.
+    across: Vec<(usize, [f64; 2])>,
+    /// F: (position in `points`, values in both of its columns) by kept rows, and where each of these begins.
+    down: (Vec<usize>, Vec<(usize, [f64; 2])>),
+    /// Position in `points` of every contact point.
+    of: Vec<Option<usize>>,
+    /// Indices that are kept.
+    kept: Vec<usize>,
+    /// Position of every index among them; `usize::MAX` where it is condensed out.
+    place: Vec<usize>,
+    reduced: SparseLu,
+}
+
+/// A value in one of two places.
+pub fn pair(k: usize, value: f64) -> [f64; 2] {
+    if k == 0 { [value, 0.0] } else { [0.0, value] }
+}
+
+impl Condensed {
+    /// Condenses and factorises equations of `size` unknowns, the first of which belong to `contacts`
+    /// points, with something added that refinement takes out again. `None` where they are singular in
+    /// their pattern.
+    pub fn new(size: usize, contacts: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
+        let (rows, shifts) = (CsrMatrix::new(size, entries), CsrMatrix::new(size, shift));
+        Condensed::of(rows, &shifts, contacts, &mut Analysis::default())
+    }
+
+    /// The same from rows, by the analysis of what was factorised before.
+    pub fn of(rows: CsrMatrix, shifts: &CsrMatrix, contacts: usize, analysis: &mut Analysis) -> Option<Self> {
+        let size = rows.len();
+        let forces = 2 * contacts;
+        let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
+        let mut alone = vec![true; contacts];
+        for i in 0..forces {
+            alone[i / 2] &= both(i).all(|(j, _)| j >= forces || j / 2 == i / 2);
+        }
+        let mut points: Vec<Point> = Vec::new();
+        let mut of = vec![None; contacts];
+        for c in (0..contacts).filter(|c| alone[*c]) {
+            let (mut own, mut other) = ([[0.0; 2]; 2], [0.0; 2]);
+            for k in 0..2 {
+                for (j, value) in both(2 * c + k) {
+                    match j < forces {
+                        true => own[k][j % 2] += value,
+                        false => other[k] = f64::max(other[k], value.abs()),
+                    }
+                }
+            }
+            let size = [0, 1].map(|k: usize| own[k][0].abs().max(own[k][1].abs()));
+            let determinant = own[0][0] * own[1][1] - own[0][1] * own[1][0];
+            let strong = (0..2).all(|k| size[k] >= STRONG * other[k])
+                && determinant.abs() >= STRONG * size[0] * size[1]
+                && determinant != 0.0;
+            if strong {
+                let inverse = [
+                    [own[1][1] / determinant, -own[0][1] / determinant],
+                    [-own[1][0] / determinant, own[0][0] / determinant],
+                ];
+                of[c] = Some(points.len());
+                points.push(Point { first: 2 * c, inverse, across: [0; 2] });
+            }
+        }
+        let kept: Vec<usize> = (0..size).filter(|i| *i >= forces || of[i / 2].is_none()).collect();
+        let mut place = vec![usize::MAX; size];
+        kept.iter().enumerate().for_each(|(k, i)| place[*i] = k);
+        let mut across: Vec<(usize, [f64; 2])> = Vec::new();
+        for point in &mut points {
+            let begin = across.len();
+            for k in 0..2 {
+                for (j, value) in both(point.first + k).filter(|e| e.0 >= forces) {
+                    match across[begin..].iter_mut().find(|e| e.0 == place[j]) {
+                        Some(entry) => entry.1[k] += value,
+                        None => across.push((place[j], pair(k, value))),
+                    }
+                }
+            }
+            point.across = [begin, across.len()];
+        }
+        let mut reduced: Entries = Vec::new();
+        let mut row = vec![0.0; kept.len()];
+        let mut met = vec![usize::MAX; kept.len()];
+        let mut down: (Vec<usize>, Vec<(usize, [f64; 2])>) = (vec![0], Vec::new());
+        let mut columns: Vec<usize> = Vec::new();
+        for (k, &i) in kept.iter().enumerate() {
+            columns.clear();
+            let mut sum = |j: usize, value: f64| {
+                if met[j] != k {
+                    (met[j], row[j]) = (k, 0.0);
+                    columns.push(j);
+                }
+                row[j] += value;
+            };
+            let begin = down.1.len();
+            for (j, value) in both(i) {
+                match of.get(j / 2).filter(|_| j < forces) {
+                    Some(Some(point)) => match down.1[begin..].last_mut() {
+                        Some(last) if last.0 == *point => last.1[j % 2] += value,
+                        _ => down.1.push((*point, pair(j % 2, value))),
+                    },
+                    _ => sum(place[j], value),
+                }
+            }
+            for &(point, f) in &down.1[begin..] {
+                let point: &Point = &points[point];
+                let [a, b] = point.inverse;
+                let by = [f[0] * a[0] + f[1] * b[0], f[0] * a[1] + f[1] * b[1]];
+                for &(j, e) in &across[point.across[0]..point.across[1]] {
+                    sum(j, -(by[0] * e[0] + by[1] * e[1]));
+                }
+            }
+            down.0.push(down.1.len());
+            reduced.extend(columns.iter().map(|&j| (k, j, row[j])));
+        }
+        let reduced = SparseLu::analysed(kept.len(), &reduced, analysis)?;
+        Some(Condensed { rows, points, across, down, of, kept, place, reduced })
+    }
+
+    /// y for several right-hand sides of all equations.
+    pub fn condense(&self, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        let reduced = |right: &Vec<f64>| {
+            let own = |p: &Point| p.own([right[p.first], right[p.first + 1]]);
+            let own: Vec<[f64; 2]> = self.points.iter().map(own).collect();
+            let by_forces = |k: usize| -> f64 {
+                let f = &self.down.1[self.down.0[k]..self.down.0[k + 1]];
+                f.iter().map(|(p, f)| f[0] * own[*p][0] + f[1] * own[*p][1]).sum()
+            };
+            self.kept.iter().enumerate().map(|(k, i)| right[*i] - by_forces(k)).collect()
+        };
+        let rights: Vec<Vec<f64>> = rights.iter().map(reduced).collect();
+        self.reduced.solve(&rights, 0)
+    }
+
+    /// y for unit right-hand sides of the two rows of a contact point.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let mut rights = vec![vec![0.0; self.kept.len()]; 2];
+        for (k, right) in rights.iter_mut().enumerate() {
+            match self.of[contact] {
+                None => right[self.place[2 * contact + k]] = 1.0,
+                Some(point) => {
+                    let own = self.points[point].own(pair(k, 1.0));
+                    for (row, right) in right.iter_mut().enumerate() {
+                        let all = &self.down.1[self.down.0[row]..self.down.0[row + 1]];
+                        for (_, f) in all.iter().filter(|(p, _)| *p == point) {
+                            *right -= f[0] * own[0] + f[1] * own[1];
+                        }
+                    }
+                }
+            }
+        }
+        let mut columns = self.reduced.solve(&rights, 0)?.into_iter();
+        Some([columns.next()?, columns.next()?])
+    }
+
+    /// A row times all unknowns, from y and the right-hand sides of the contact points.
+    pub fn dot(&self, row: &[f64], right: impl Fn(usize) -> [f64; 2], y: &[f64]) -> f64 {
+        let kept: f64 = self.kept.iter().zip(y).map(|(i, y)| row[*i] * y).sum();
+        let condensed = self.points.iter().filter(|p| row[p.first] != 0.0 || row[p.first + 1] != 0.0);
+        let forces = condensed.map(|p| {
+            let r = self.recovered(p, right(p.first / 2), y);
+            row[p.first] * r[0] + row[p.first + 1] * r[1]
+        });
+        kept + forces.sum::<f64>()
+    }
+
+    /// The equations themselves.
+    pub fn into_rows(self) -> CsrMatrix {
+        self.rows
+    }
+
+    /// One row times a vector.
+    pub fn row_dot(&self, row: usize, x: &[f64]) -> f64 {
+        self.rows.row_dot(row, x)
+    }
+
+    /// Number of contact points.
+    pub fn contacts(&self) -> usize {
+        self.of.len()
+    }
+
+    /// r = A⁻¹ (f − E y).
+    fn recovered(&self, point: &Point, right: [f64; 2], y: &[f64]) -> [f64; 2] {
+        let mut f = right;
+        for (j, e) in &self.across[point.across[0]..point.across[1]] {
+            f[0] -= e[0] * y[*j];
+            f[1] -= e[1] * y[*j];
+        }
+        point.own(f)
+    }
+
+    /// All unknowns from y and the right-hand side.
+    pub fn expand(&self, right: &[f64], y: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; self.rows.len()];
+        self.kept.iter().zip(y).for_each(|(i, y)| x[*i] = *y);
+        for point in &self.points {
+            let r = self.recovered(point, [right[point.first], right[point.first + 1]], y);
+            x[point.first..point.first + 2].copy_from_slice(&r);
+        }
+        x
+    }
+
+    /// The force of one contact point from y and the right-hand sides of its rows.
+    pub fn force(&self, contact: usize, right: [f64; 2], y: &[f64]) -> [f64; 2] {
+        match self.of[contact] {
+            Some(point) => self.recovered(&self.points[point], right, y),
+            None => [y[self.place[2 * contact]], y[self.place[2 * contact + 1]]],
+        }
+    }
+
+    /// y of all unknowns.
+    pub fn kept_of(&self, x: &[f64]) -> Vec<f64> {
+        self.kept.iter().map(|i| x[*i]).collect()
+    }
+
+    /// An unknown that belongs to no contact point, from y.
+    pub fn other(&self, index: usize, y: &[f64]) -> f64 {
+        y[self.place[index]]
+    }
+
+    /// Nothing on the right-hand side, and y.
+    pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
+        (vec![0.0; self.rows.len()], vec![0.0; self.kept.len()])
+    }
+
+    /// Once, without refinement.
+    pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
+        let y = self.condense(&[right.to_vec()])?.swap_remove(0);
+        Some(self.expand(right, &y))
+    }
+
+    /// Refined as long as that halves what is left, at most so often.
+    pub fn solve(&self, right: &[f64], refinements: usize) -> Option<Vec<f64>> {
+        let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let mut x = self.apply(right)?;
+        let mut left = self.left(right, &x);
+        for _ in 0..refinements {
+            let step = self.apply(&left)?;
+            let better: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
+            let now = self.left(right, &better);
+            // Not less: rounding, or nothing left.
+            if norm(&now) >= norm(&left) {
+                break;
+            }
+            (x, left) = (better, now);
+        }
+        x.iter().all(|v| v.is_finite()).then_some(x)
+    }
+
+    /// The same, and the greatest backward error of a row: what is left of it, relative to the sizes of what it adds up
+    /// (Arioli, Demmel & Duff 1989, SIAM J. Matrix Anal. Appl. 10, 165-190).
+    pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let mut worst = 0.0f64;
+        let by_row = |(i, right): (usize, &f64)| {
+            let (mut left, mut size) = (*right, right.abs());
+            for &(j, value) in self.rows.row(i) {
+                left -= value * x[j];
+                size += (value * x[j]).abs();
+            }
+            // A row of zeros is solved; what is no number is not.
+            let error = if left == 0.0 { 0.0 } else { (left / size).abs() };
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            left
+        };
+        (right.iter().enumerate().map(by_row).collect(), worst)
+    }
+
+    /// What the equations without what was added leave of a right-hand side.
+    pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
+        right.iter().enumerate().map(|(i, right)| right - self.rows.row_dot(i, x)).collect()
+    }
+}

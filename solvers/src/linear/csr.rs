@@ -1,0 +1,94 @@
+//! A sparse matrix by its rows, for products with dense vectors.
+
+use voussoir_core::linear::Entries;
+
+/// CsrMatrix of (column, value); repeated entries stay apart and add up in products.
+#[derive(Debug, Clone, Default)]
+pub struct CsrMatrix {
+    start: Vec<usize>,
+    entries: Vec<(usize, f64)>,
+}
+
+impl CsrMatrix {
+    /// Entries sorted by row, otherwise in their order.
+    pub fn new(rows: usize, unsorted: &Entries) -> Self {
+        let mut start = vec![0; rows + 1];
+        for entry in unsorted {
+            start[entry.0 + 1] += 1;
+        }
+        for i in 0..rows {
+            start[i + 1] += start[i];
+        }
+        let mut next = start.clone();
+        let mut entries = vec![(0, 0.0); unsorted.len()];
+        for &(i, j, value) in unsorted {
+            entries[next[i]] = (j, value);
+            next[i] += 1;
+        }
+        CsrMatrix { start, entries }
+    }
+
+    /// From rows one by one.
+    pub fn from_rows(rows: &[Vec<(usize, f64)>]) -> Self {
+        let mut all = CsrMatrix { start: vec![0], entries: Vec::with_capacity(rows.iter().map(Vec::len).sum()) };
+        for row in rows {
+            all.entries.extend(row);
+            all.start.push(all.entries.len());
+        }
+        all
+    }
+
+    /// No row.
+    pub fn with_capacity(capacity: usize) -> Self {
+        CsrMatrix { start: vec![0], entries: Vec::with_capacity(capacity) }
+    }
+
+    /// CsrMatrix without entries.
+    pub fn empty(rows: usize) -> Self {
+        CsrMatrix { start: vec![0; rows + 1], entries: Vec::new() }
+    }
+
+    /// CsrMatrix with those of others added.
+    pub fn with(&self, others: &CsrMatrix) -> Self {
+        let mut both = CsrMatrix::with_capacity(self.entries.len() + others.entries.len());
+        for i in 0..self.len() {
+            both.entries.extend_from_slice(self.row(i));
+            both.entries.extend_from_slice(others.row(i));
+            both.end_row();
+        }
+        both
+    }
+
+    /// Entries of the row that [`CsrMatrix::end_row`] ends, after those of the rows before.
+    pub fn open_row(&mut self) -> &mut Vec<(usize, f64)> {
+        &mut self.entries
+    }
+
+    /// Ends a row.
+    pub fn end_row(&mut self) {
+        self.start.push(self.entries.len());
+    }
+
+    /// The last row, taken off.
+    pub fn pop(&mut self) {
+        if self.start.len() > 1 {
+            self.start.pop();
+            self.entries.truncate(self.start[self.start.len() - 1]);
+        }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// One row.
+    pub fn row(&self, i: usize) -> &[(usize, f64)] {
+        &self.entries[self.start[i]..self.start[i + 1]]
+    }
+
+    /// Row i times a vector.
+    pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
+        self.row(i).iter().map(|&(j, value)| value * x[j]).sum()
+    }
+}

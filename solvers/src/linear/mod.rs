@@ -1,0 +1,6 @@
+//! Sparse rows, factorisations that follow changes of few rows, equations bordered by a control.
+
+pub(crate) mod bordered;
+pub(crate) mod condensed;
+pub(crate) mod csr;
+pub(crate) mod updated_inverse;

@@ -1,0 +1,229 @@
+//! One factorisation for many events: every contact point has a mode in the factorised matrix, and points that have
+//! changed theirs since enter as right-hand sides of their own two rows. Contact
+//! forces with equations of their own are condensed out ([`condensed`](crate::linear::condensed)): of the
+//! responses to changed points only what is kept is stored.
+//!
+//! ```text
+//! stick   C ṙ + G q̇ = ε − λ̇ g_p          free    ṙ = ε
+//! facet   −a·ṙ = ε_1,  d⊥·(C ṙ + G q̇ + λ̇ g_p) = ε_2
+//! bodies  Gᵀ ṙ = −λ̇ p
+//! ```
+
+use super::system::{Load, System};
+use crate::contact::facet::across;
+use crate::contact::mode::ContactMode;
+use crate::linear::condensed::Condensed;
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+use voussoir_core::linear::Entries;
+
+/// Added to the flexibility of stuck points, relative to its mean, and taken out again by
+/// refinement: forces that equilibrium and flexibility leave open are shared evenly.
+const REGULARISATION: f64 = 1e-11;
+/// Steps of refinement of the response to a load.
+const REFINEMENTS: usize = 3;
+
+/// Response to ε of a row of a point.
+struct Column {
+    /// Kept unknowns.
+    y: Vec<f64>,
+    /// All unknowns, refined.
+    x: Option<Vec<f64>>,
+}
+
+/// A factorised system.
+pub struct UpdatedFactorisation {
+    /// ContactMode of each contact point in the matrix.
+    pub modes: Vec<ContactMode>,
+    /// Whether responses to single points are refined, as what is claimed of the rate problem needs.
+    pub refine_columns: bool,
+    equations: Condensed,
+    columns: BTreeMap<usize, [Column; 2]>,
+    load_rate: Option<(usize, Vec<f64>)>,
+}
+
+impl UpdatedFactorisation {
+    /// Assembles and factorises. `None` where the system is singular.
+    pub fn new(system: &System, modes: Vec<ContactMode>, refine_columns: bool) -> Option<Self> {
+        let nc = system.contacts;
+        let (mut entries, mut regularisation): (Entries, Entries) = (Vec::new(), Vec::new());
+        let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
+            entries.extend(system.flexibility.row(2 * c + i).iter().map(|&(j, v)| (row, j, factor * v)));
+            entries.extend(system.kinematics.row(2 * c + i).iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
+        };
+        for (c, mode) in modes.iter().enumerate() {
+            match mode {
+                ContactMode::Stick => {
+                    for i in 0..2 {
+                        gap_row(c, i, 2 * c + i, 1.0, &mut entries);
+                        regularisation.push((2 * c + i, 2 * c + i, REGULARISATION));
+                    }
+                }
+                ContactMode::Open | ContactMode::Corner(..) => {
+                    entries.extend((0..2).map(|i| (2 * c + i, 2 * c + i, 1.0)))
+                }
+                ContactMode::Facet(f) => {
+                    let facet = &system.facets[c].as_ref()?[*f as usize];
+                    entries.extend((0..2).map(|i| (2 * c, 2 * c + i, -facet.normal[i])));
+                    let n = across(facet.flow);
+                    for (i, n) in n.into_iter().enumerate() {
+                        gap_row(c, i, 2 * c + 1, n, &mut entries);
+                    }
+                }
+            }
+        }
+        for row in 0..2 * nc {
+            entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
+        }
+        let equations = Condensed::new(system.size(), nc, &entries, &regularisation)?;
+        Some(UpdatedFactorisation { modes, refine_columns, equations, columns: BTreeMap::new(), load_rate: None })
+    }
+
+    /// x for λ̇ = 1 with every mode as factorised.
+    pub fn load_rate(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
+        if self.load_rate.as_ref().is_none_or(|(i, _)| *i != index) {
+            let right = self.right(system, load);
+            self.load_rate = Some((index, self.equations.solve(&right, REFINEMENTS)?));
+        }
+        self.load_rate.as_ref().map(|(_, x)| x)
+    }
+
+    /// Another load comes.
+    pub fn forget_load(&mut self) {
+        self.load_rate = None;
+    }
+
+    fn right(&self, system: &System, load: &Load) -> Vec<f64> {
+        let mut right = vec![0.0; system.size()];
+        for (c, mode) in self.modes.iter().enumerate() {
+            match mode {
+                ContactMode::Stick => (0..2).for_each(|i| right[2 * c + i] = -load.gap[c][i]),
+                ContactMode::Facet(f) => {
+                    if let Some(facets) = &system.facets[c] {
+                        let n = across(facets[*f as usize].flow);
+                        right[2 * c + 1] = -(n[0] * load.gap[c][0] + n[1] * load.gap[c][1]);
+                    }
+                }
+                _ => {}
+            }
+        }
+        for (b, wrench) in load.wrench.iter().enumerate() {
+            (0..3).for_each(|i| right[2 * system.contacts + 3 * b + i] = -wrench[i]);
+        }
+        right
+    }
+
+    /// Kept unknowns for any right-hand side with every mode as factorised, not refined.
+    pub fn kept(&self, right: &[f64]) -> Option<Vec<f64>> {
+        Some(self.equations.condense(&[right.to_vec()])?.swap_remove(0))
+    }
+
+    /// Makes sure that the responses to the rows of these points are known. `solves` counts.
+    pub fn respond(&mut self, system: &System, points: &[usize], solves: &mut u64) -> Option<()> {
+        let new: Vec<usize> = points.iter().copied().filter(|c| !self.columns.contains_key(c)).collect();
+        if new.is_empty() {
+            return Some(());
+        }
+        let unit = |row: usize| {
+            let mut right = vec![0.0; system.size()];
+            right[row] = 1.0;
+            right
+        };
+        let right: Vec<Vec<f64>> = new.iter().flat_map(|c| [unit(2 * c), unit(2 * c + 1)]).collect();
+        *solves += right.len() as u64;
+        let mut columns: Vec<Column> = Vec::with_capacity(right.len());
+        if self.refine_columns {
+            for right in &right {
+                let x = self.equations.solve(right, REFINEMENTS)?;
+                columns.push(Column { y: self.equations.kept_of(&x), x: Some(x) });
+            }
+        } else {
+            columns.extend(self.equations.condense(&right)?.into_iter().map(|y| Column { y, x: None }));
+        }
+        let mut columns = columns.into_iter();
+        for c in new {
+            self.columns.insert(c, [columns.next()?, columns.next()?]);
+        }
+        Some(())
+    }
+
+    /// Number of points whose responses are known.
+    pub fn responses(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// (ṙ, ġ) at `points`, 4 rows each, per ε of `points` (2 columns each) and, last, per λ̇.
+    /// Responses and the load rate must be known.
+    pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
+        let n = points.len();
+        let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
+        let gap = |row: usize, x: &[f64]| {
+            system.flexibility.row_dot(row, x) + system.kinematics.row_dot(row, &x[2 * system.contacts..])
+        };
+        let at = |x: &[f64], c: usize| [x[2 * c], x[2 * c + 1], gap(2 * c, x), gap(2 * c + 1, x)];
+        for (k, own) in points.iter().enumerate() {
+            let Some(columns) = self.columns.get(own) else { continue };
+            for (i, column) in columns.iter().enumerate() {
+                let epsilon = [[1.0, 0.0], [0.0, 1.0]][i];
+                let right = |c: usize| if c == *own { epsilon } else { [0.0; 2] };
+                let seen = match &column.x {
+                    Some(x) => points.iter().map(|c| at(x, *c)).collect(),
+                    None => self.seen(system, points, right, &column.y),
+                };
+                for (row, here) in seen.into_iter().enumerate() {
+                    (0..4).for_each(|t| out[(4 * row + t, 2 * k + i)] = here[t]);
+                }
+            }
+        }
+        if let Some((_, x)) = &self.load_rate {
+            for (row, &c) in points.iter().enumerate() {
+                let here = at(x, c);
+                (0..2).for_each(|t| out[(4 * row + t, 2 * n)] = here[t]);
+                (0..2).for_each(|t| out[(4 * row + 2 + t, 2 * n)] = here[2 + t] + load.gap[c][t]);
+            }
+        }
+        out
+    }
+
+    /// (ṙ, ġ) at `points` from kept unknowns and the right-hand sides of contact points.
+    pub fn seen(
+        &self,
+        system: &System,
+        points: &[usize],
+        right: impl Fn(usize) -> [f64; 2],
+        y: &[f64],
+    ) -> Vec<[f64; 4]> {
+        let force = |c: usize| self.equations.force(c, right(c), y);
+        let forces = 2 * system.contacts;
+        let at = |&c: &usize| {
+            let here = force(c);
+            let gap = |row: usize| {
+                let by_force = |&(j, v): &(usize, f64)| v * if j / 2 == c { here[j % 2] } else { force(j / 2)[j % 2] };
+                let by_motion = |&(j, v): &(usize, f64)| v * self.equations.other(forces + j, y);
+                system.flexibility.row(row).iter().map(by_force).sum::<f64>()
+                    + system.kinematics.row(row).iter().map(by_motion).sum::<f64>()
+            };
+            [here[0], here[1], gap(2 * c), gap(2 * c + 1)]
+        };
+        points.iter().map(at).collect()
+    }
+
+    /// x for ε at `points`, on top of right-hand sides of all rows with their kept unknowns.
+    pub fn combine(&self, points: &[usize], epsilon: &[f64], onto: (Vec<f64>, Vec<f64>)) -> Vec<f64> {
+        let (mut right, mut y) = onto;
+        for (k, c) in points.iter().enumerate() {
+            let Some(columns) = self.columns.get(c) else { continue };
+            for (i, column) in columns.iter().enumerate() {
+                let epsilon = epsilon[2 * k + i];
+                right[2 * c + i] += epsilon;
+                y.iter_mut().zip(&column.y).for_each(|(y, v)| *y += epsilon * v);
+            }
+        }
+        self.equations.expand(&right, &y)
+    }
+
+    /// Nothing on the right-hand side, and its kept unknowns.
+    pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
+        self.equations.nothing()
+    }
+}

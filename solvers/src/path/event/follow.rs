@@ -1,0 +1,304 @@
+//! Following the path: from load step to load step and from event to event, and how it ends.
+
+use super::direction::{Next, next_direction};
+use super::force_method::{Followed, Sections, by_force_method};
+use super::next_event::{advance, next_event};
+use super::rates::Direction;
+use super::system::Load;
+use super::trace::Trace;
+use super::unique::unique;
+use voussoir_core::certificate::flow_residual;
+use voussoir_core::limit::{Counters, Status};
+use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
+
+/// Rate problems put to the whole system, at most, before the force method is tried again.
+const MOST_RESTS: u32 = 32;
+/// Residual of flow up to which a mechanism belongs to the limit point.
+const SAME_MECHANISM: f64 = 1e-6;
+
+/// How a path ended.
+enum End {
+    /// The loads are carried.
+    Stands,
+    /// At a limit point.
+    LimitPoint,
+    /// Not followed further, and why.
+    Stalled(String),
+    /// A direction without end under a load, and the sense of λ.
+    Ray(Direction, Load, f64),
+}
+
+/// One load step while it is followed.
+struct Run {
+    load: Load,
+    /// Sense of λ: 1 or −1.
+    sense: f64,
+    start: f64,
+    target: f64,
+    events: usize,
+    most_events: usize,
+    /// Rate problems that are put to the whole system before the force method is tried again, and how many next time.
+    rests: u32,
+    patience: u32,
+}
+
+/// A path with what only its end needs.
+struct Follower<'a> {
+    trace: Trace<'a>,
+    sections: Option<Sections>,
+    limit_point: Option<PathState>,
+}
+
+/// Follows all load steps of a problem.
+pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
+    let trace = Trace::new(problem, settings, observer);
+    let sections = Sections::new(&trace.system, problem);
+    let mut follower = Follower { trace, sections, limit_point: None };
+    for load_step in 0..problem.load_steps.len() {
+        let mut run = begin(&mut follower, load_step);
+        if follower.trace.last.is_none() && !follower.trace.record() {
+            return finish(follower, End::Stalled("stopped by its observer".into()));
+        }
+        let ended = loop {
+            match step(&mut follower, &mut run) {
+                Ok(true) => {}
+                Ok(false) => break None,
+                Err(end) => break Some(end),
+            }
+        };
+        if let Some(end) = ended {
+            return finish(follower, end);
+        }
+    }
+    if follower.limit_point.is_none() {
+        return finish(follower, End::Stands);
+    }
+    let factor = follower.trace.state.factor;
+    follower.trace.log.notes.push(format!("beyond the limit point λ rose again to {factor}"));
+    finish(follower, End::LimitPoint)
+}
+
+/// Begins a load step.
+fn begin(follower: &mut Follower, load_step: usize) -> Run {
+    let trace = &mut follower.trace;
+    let present = &trace.problem.load_steps[load_step];
+    (trace.state.load_step, trace.state.factor) = (load_step, present.start);
+    let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = present.end;
+    let sense = match present.end {
+        LoadStepEnd::Factor(f) if f < present.start => -1.0,
+        _ => 1.0,
+    };
+    let mut load = trace.system.load(trace.problem, &present.loading);
+    load.wrench.iter_mut().flatten().for_each(|v| *v *= sense);
+    load.gap.iter_mut().flatten().for_each(|v| *v *= sense);
+    if let Some(factors) = &mut trace.factors.present {
+        factors.forget_load();
+    }
+    trace.factors.refine_columns = false;
+    let most_events = 400 + 40 * trace.system.contacts;
+    Run { load, sense, start: present.start, target, events: 0, most_events, rests: 0, patience: 1 }
+}
+
+/// Goes on to the next event, or through many by the force method; whether the load step goes on. An error is the end.
+fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
+    if (run.target - follower.trace.state.factor) * run.sense <= 0.0 {
+        return Ok(false);
+    }
+    if try_force_method(follower, run)? {
+        return Ok(true);
+    }
+    run.events += 1;
+    if run.events > run.most_events {
+        return Err(lost(
+            follower,
+            format!(
+                "{} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them",
+                run.most_events
+            ),
+        ));
+    }
+    let direction = direction(follower, run)?;
+    let trace = &mut follower.trace;
+    let left = (run.target - trace.state.factor) * run.sense;
+    let fallen = (trace.state.factor - run.start) * run.sense;
+    let bound = match direction.factor {
+        f if f > 0.0 => left / f,
+        f if f < 0.0 => fallen.max(0.0) / -f,
+        _ => f64::INFINITY,
+    };
+    let (step, hits) = next_event(trace, &direction);
+    let whole = bound <= step;
+    let step = step.min(bound);
+    if step.is_infinite() {
+        return Err(End::Ray(direction, run.load.clone(), run.sense));
+    }
+    advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
+    if whole && direction.factor > 0.0 {
+        trace.state.factor = run.target;
+    }
+    if !trace.record() {
+        return Err(End::Stalled("stopped by its observer".into()));
+    }
+    if whole && direction.factor < 0.0 {
+        trace.log.notes.push("beyond the limit point λ fell back to where the loads began".into());
+        return Err(End::LimitPoint);
+    }
+    let stops = trace.settings.stop_displacement.is_some_and(|stop| trace.displacement().abs() > stop);
+    if follower.limit_point.is_some() && stops { Err(End::LimitPoint) } else { Ok(true) }
+}
+
+/// Follows the path by the force method as far as it goes; whether that reached the end of the load step.
+fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
+    if run.rests > 0 || follower.limit_point.is_some() {
+        run.rests = run.rests.saturating_sub(1);
+        return Ok(false);
+    }
+    let before = run.events;
+    let bounds = (run.sense, run.target, run.most_events);
+    match by_force_method(&mut follower.trace, follower.sections.as_ref(), &run.load, bounds, &mut run.events) {
+        Followed::Reached => return Ok(true),
+        Followed::Stopped => return Err(End::Stalled("stopped by its observer".into())),
+        Followed::Left => {}
+    }
+    run.patience = if run.events > before { 1 } else { (2 * run.patience).min(MOST_RESTS) };
+    run.rests = run.patience - 1;
+    Ok(false)
+}
+
+/// The direction in which the path goes on; where λ falls for the first time, the limit point is noted.
+fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
+    let factor = follower.trace.state.factor;
+    let excluded = "every combination of the contact points of the active set is excluded";
+    let (direction, note) = match next_direction(&mut follower.trace, &run.load) {
+        Next::Go(direction) => return Ok(direction),
+        Next::Falling(direction) => (
+            Some(direction),
+            format!(
+                "at λ = {factor:.12} no rate of solution has λ rising or standing still: {excluded}; the path goes on with λ falling"
+            ),
+        ),
+        Next::Nothing => (
+            None,
+            format!(
+                "at λ = {factor:.12} no rate of solution goes on, rising or falling: {excluded}; what follows is dynamic"
+            ),
+        ),
+        Next::NoneRises => (
+            None,
+            format!(
+                "at λ = {factor:.12} no rate of solution has λ rising: {excluded}; whether a rate goes on with λ standing still or falling is not decided"
+            ),
+        ),
+        Next::Lost(why) => return Err(lost(follower, why)),
+    };
+    if direction.is_none() || follower.limit_point.is_none() {
+        follower.trace.log.notes.push(note);
+    }
+    if direction.is_some() && follower.limit_point.is_none() {
+        follower.limit_point = Some(follower.trace.present());
+    }
+    direction.ok_or(End::LimitPoint)
+}
+
+/// The path cannot be followed further: an answer where a limit point is proven already.
+fn lost(follower: &mut Follower, why: String) -> End {
+    if follower.limit_point.is_none() {
+        return End::Stalled(why);
+    }
+    follower.trace.log.notes.push(format!("the branch beyond the limit point was not followed to an end: {why}"));
+    End::LimitPoint
+}
+
+/// The answer of an end.
+fn finish(follower: Follower, end: End) -> PathAnswer {
+    match end {
+        End::Stands => {
+            let reached = follower.trace.state.factor;
+            answer(follower, Status::Stands, Some(reached))
+        }
+        End::LimitPoint => answer(follower, Status::LimitPoint, None),
+        End::Stalled(why) => {
+            let mut answer = answer(follower, Status::Stalled, None);
+            answer.notes.push(why);
+            answer
+        }
+        End::Ray(direction, load, sense) => finish_ray(follower, &direction, &load, sense),
+    }
+}
+
+/// A direction without end: a mechanism where λ stands still, else a ray that carries any load.
+fn finish_ray(mut follower: Follower, direction: &Direction, load: &Load, sense: f64) -> PathAnswer {
+    let trace = &mut follower.trace;
+    let (contacts, force_unit) = (trace.system.contacts, trace.system.force_unit);
+    if direction.factor > 0.0 {
+        let of = |c: usize| [0, 1].map(|i| direction.x[2 * c + i] * force_unit / direction.factor * sense);
+        let ray = (0..contacts).map(of).collect();
+        return PathAnswer { ray: Some(ray), ..answer(follower, Status::Unbounded, None) };
+    }
+    if direction.factor < 0.0 {
+        trace.log.notes.push("beyond the limit point λ falls without end".into());
+        return answer(follower, Status::LimitPoint, None);
+    }
+    let q = &direction.x[2 * contacts..];
+    let power: f64 = load.wrench.iter().flatten().zip(q).map(|(w, q)| w * q).sum();
+    // p·q̇ = 1 in physical units.
+    let physical = power * force_unit * trace.system.displacement_unit * sense;
+    let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
+    let motion: Vec<[f64; 3]> = trace.bodies(&direction.x).into_iter().map(|b| b.map(|v| v * scale)).collect();
+    let gravity = trace.problem.load_steps[trace.state.load_step].gravity;
+    let (status, factor) = match (&follower.limit_point, gravity) {
+        (Some(_), _) => (Status::LimitPoint, None),
+        (None, true) => (Status::NoEquilibrium, None),
+        (None, false) => (Status::Collapse, Some(trace.state.factor)),
+    };
+    let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
+    // The mechanism belongs to the last state; the one at the limit point may not allow it.
+    let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SAME_MECHANISM;
+    let allowed = follower.limit_point.as_ref().is_none_or(allowed);
+    let mut answer = answer(follower, status, factor);
+    answer.motion = allowed.then_some(motion);
+    if status == Status::LimitPoint {
+        answer.notes.push("beyond the limit point the path ends in a mechanism".into());
+    }
+    answer.unique = unique;
+    answer
+}
+
+/// The answer at the present state, or at the limit point with the present state as its last one.
+fn answer(follower: Follower, status: Status, factor: Option<f64>) -> PathAnswer {
+    let Follower { trace, limit_point, .. } = follower;
+    let present = trace.present();
+    let log = trace.log;
+    let mut counters = Counters::new();
+    for (name, count) in [
+        ("factorisations", log.counts.factorisations),
+        ("solves", log.counts.solves),
+        ("rate_problems", log.counts.rate_problems),
+        ("rate_trials", log.counts.rates.trials),
+        ("bifurcations", log.counts.bifurcations),
+        ("rate_problems_by_redundants", log.counts.by_force_method),
+        ("sections_looked_at", log.counts.sections),
+        ("events", log.events.len() as u64),
+    ] {
+        counters.insert(name.into(), count);
+    }
+    counters.extend(log.counts.rates.decided.iter().map(|(by, count)| (by.name().to_string(), *count)));
+    counters.extend(trace.problem.counters.iter().map(|(name, count)| (name.clone(), *count)));
+    let (state, last) = match (status, limit_point) {
+        (Status::LimitPoint, Some(limit)) => (limit, Some(present)),
+        _ => (present, None),
+    };
+    PathAnswer {
+        status,
+        load_step: state.load_step,
+        factor: if status == Status::LimitPoint { Some(state.factor) } else { factor },
+        state,
+        last,
+        motion: None,
+        unique: None,
+        ray: None,
+        events: log.events,
+        counters,
+        notes: log.notes,
+    }
+}

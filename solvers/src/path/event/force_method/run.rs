@@ -1,0 +1,240 @@
+//! The run of the force method: from event to event by the equations of the cycles.
+
+use super::equations::Solution;
+use super::examine::{Change, examine};
+use super::section::Sections;
+use super::state::{Hit, Run};
+use crate::path::event::next_event::{arrive, stepped};
+use crate::path::event::system::Load;
+use crate::path::event::trace::Trace;
+use nalgebra::{DVector, Vector3};
+
+/// Points of the active set from which flow that is not associated is not examined for other rates.
+const UNEXAMINED: usize = 7;
+/// Slacks and gaps below this (in scaled units) are events of the same moment: a redundant is rounded by all
+/// sections of its cycle, which must not tell the two halves of a symmetric arch apart.
+const MOMENT: f64 = 1e-11;
+/// Rounds of the active set, and those in which all points change at once.
+const ROUNDS: [usize; 2] = [40, 12];
+/// Events that are all recorded; of more, so many each time their number grows e-fold.
+const RECORDED: u64 = 64;
+
+/// How it ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Followed {
+    /// At the target.
+    Reached,
+    /// Where the whole system must decide.
+    Left,
+    /// By its observer.
+    Stopped,
+}
+
+/// Follows the path from event to event as far as it goes, in a `sense` of λ to a `target`, until `steps`, which
+/// counts, are `most`.
+pub fn by_force_method(
+    trace: &mut Trace,
+    sections: Option<&Sections>,
+    load: &Load,
+    (sense, target, most): (f64, f64, usize),
+    steps: &mut usize,
+) -> Followed {
+    // From nothing every point is in the active set.
+    if trace.state.x.iter().all(|v| *v == 0.0) {
+        return Followed::Left;
+    }
+    let run = sections.and_then(|sections| Run::new(trace, sections, load));
+    run.and_then(|mut run| follow(&mut run, trace, (sense, target, most), steps)).unwrap_or(Followed::Left)
+}
+
+fn follow(
+    run: &mut Run,
+    trace: &mut Trace,
+    (sense, target, most): (f64, f64, usize),
+    steps: &mut usize,
+) -> Option<Followed> {
+    let mut unrecorded = 0;
+    let mut events: u64 = 0;
+    loop {
+        run.before.clear();
+        let bound = (target - trace.state.factor) * sense;
+        let next = if *steps < most { next(run, trace, bound) } else { None };
+        let Some((solution, step, hits)) = next.filter(|next| next.1.is_finite()) else {
+            for (c, mode) in run.before.drain(..).rev() {
+                trace.state.points[c].mode = mode;
+            }
+            return match unrecorded == 0 || record(run, trace) {
+                true => (events > 0).then_some(Followed::Left),
+                false => Some(Followed::Stopped),
+            };
+        };
+        let whole = step >= bound;
+        advance(run, trace, &solution, (step, sense), if whole { &[] } else { &hits });
+        if whole {
+            trace.state.factor = target;
+        }
+        *steps += 1;
+        events += 1;
+        unrecorded += 1;
+        trace.log.counts.rate_problems += 1;
+        trace.log.counts.by_force_method += 1;
+        if whole || unrecorded * RECORDED >= trace.log.counts.rate_problems {
+            unrecorded = 0;
+            if !record(run, trace) {
+                return Some(Followed::Stopped);
+            }
+        }
+        if whole {
+            return Some(Followed::Reached);
+        }
+    }
+}
+
+/// Tangents of sections that have changed. `None` where a point has no rate of its own.
+fn refresh(run: &mut Run, trace: &mut Trace) -> Option<()> {
+    for e in (0..run.joints.len()).filter(|e| run.joints[*e].stale).collect::<Vec<_>>() {
+        for place in &run.sections.all[e].places {
+            let point = &mut trace.state.points[place.contact];
+            point.mode = point.settled().unwrap_or(point.mode);
+        }
+        run.fresh.push(e);
+        run.joints[e].refresh(&run.sections.all[e], &trace.system.facets, &trace.state.points)?;
+        run.joints[e].deadline = f64::NEG_INFINITY;
+        run.equations.changed(e);
+    }
+    Some(())
+}
+
+/// The rates from the present state, how far they hold, and what ends them. `None` where that is not
+/// decided here.
+fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Solution, f64, Vec<Hit>)> {
+    for round in 0..ROUNDS[0] {
+        trace.log.counts.rates.trials += 1;
+        refresh(run, trace)?;
+        let active: usize = run.joints.iter().map(|j| j.active).sum();
+        if !trace.associated && active < UNEXAMINED {
+            return None;
+        }
+        let weak: Vec<usize> = (0..run.joints.len()).filter(|e| run.joints[*e].flexibility.is_none()).collect();
+        let solution = run.equations.solve(run.sections, &run.joints, &weak)?;
+        let mut own = solution.weak.iter();
+        let mut twists = Vec::with_capacity(run.joints.len());
+        for joint in &run.joints {
+            twists.push(match joint.twist_rate(&solution.redundants) {
+                Some(twist) => twist,
+                None => own.next()?.1,
+            });
+        }
+        let mut changes: Vec<Change> = Vec::new();
+        let best = examine_all(run, trace, &twists, bound, &mut changes);
+        if changes.is_empty() {
+            let all = run.examined.iter().flat_map(|(_, hits)| hits);
+            let hits = all.filter(|hit| (hit.0 - best) * hit.1 <= MOMENT).copied().collect();
+            return Some((solution, best, hits));
+        }
+        if round >= ROUNDS[1] {
+            changes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            changes.truncate(1);
+        }
+        for (_, c, to) in changes {
+            run.before.push((c, trace.state.points[c].mode));
+            trace.state.points[c].mode = to;
+            run.joints[run.sections.of[c]].stale = true;
+        }
+    }
+    None
+}
+
+/// Examines the sections in which something may happen before the nearest event, which is returned.
+fn examine_all(
+    run: &mut Run,
+    trace: &mut Trace,
+    twists: &[Vector3<f64>],
+    bound: f64,
+    changes: &mut Vec<Change>,
+) -> f64 {
+    let mut best = bound;
+    let mut waiting: Vec<(f64, usize)> = Vec::new();
+    run.examined.clear();
+    // |h| at the points of a section, at most.
+    let sections = run.sections;
+    let size = |e: usize, v: &Vector3<f64>| v[0].abs() + v[1].abs() + 1.5 * sections.all[e].lever * v[2].abs();
+    run.sizes[1] = twists.iter().enumerate().map(|(e, twist)| size(e, twist)).fold(0.0, f64::max);
+    for (e, twist) in twists.iter().enumerate() {
+        let (joint, section) = (&run.joints[e], &sections.all[e]);
+        let turned = |slip: &Vector3<f64>| joint.slips.is_some_and(|sense| sense * slip.dot(twist) < 0.0);
+        let weak = joint.flexibility.is_none();
+        let left = size(e, &(twist - joint.seen)) > joint.allowed || section.slip.as_ref().is_some_and(turned);
+        if left || weak || joint.may_leave || joint.deadline == f64::NEG_INFINITY {
+            best = best.min(examine(run, trace, e, *twist, changes));
+        } else {
+            waiting.push((joint.deadline - run.progress.arc(), e));
+        }
+    }
+    if changes.is_empty() {
+        waiting.retain(|w| w.0 < best);
+        waiting.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for (earliest, e) in waiting {
+            if earliest >= best {
+                break;
+            }
+            best = best.min(examine(run, trace, e, twists[e], changes));
+        }
+    }
+    best
+}
+
+/// Goes a step and notes the events at its end.
+fn advance(run: &mut Run, trace: &mut Trace, solution: &Solution, (step, sense): (f64, f64), hits: &[Hit]) {
+    let last = run.progress.place.len() - 1;
+    let rate = DVector::from_fn(last + 1, |i, _| if i < last { solution.redundants[i] } else { 1.0 });
+    run.progress.step(&rate, step);
+    let before = trace.state.factor;
+    trace.state.factor += sense * step;
+    let moved = sense * solution.displacement * step;
+    run.since[0] += 0.5 * (before + trace.state.factor) * moved;
+    run.since[1] += moved;
+    let examined = std::mem::take(&mut run.examined);
+    let leaving = examined.iter().map(|l| l.0).filter(|e| run.joints[*e].may_leave);
+    let mut ended: Vec<usize> = std::mem::take(&mut run.fresh).into_iter().chain(leaving).collect();
+    ended.sort_unstable();
+    ended.dedup();
+    for &(e, twist) in solution.weak.iter().filter(|w| ended.binary_search(&w.0).is_err()) {
+        run.update_all(trace, e, Some((twist, step)));
+    }
+    for e in ended {
+        let weak = solution.weak.iter().find(|w| w.0 == e).map(|w| (w.1, step));
+        let openings = run.update(trace, e, weak);
+        for (k, place) in run.sections.all[e].places.iter().enumerate() {
+            let opening = openings.get(k).copied().unwrap_or(0.0);
+            stepped(trace, place.contact, run.joints[e].rates[k], opening, before, run.sizes[0]);
+        }
+        let joint = &mut run.joints[e];
+        joint.count(&run.sections.all[e], &trace.state.points);
+        joint.deadline = f64::NEG_INFINITY;
+    }
+    for hit in hits {
+        let e = run.sections.of[hit.2];
+        run.update_all(trace, e, None);
+        run.joints[e].stale = true;
+    }
+    let hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();
+    arrive(trace, &hits);
+}
+
+/// Writes the present state to the path and records it.
+fn record(run: &mut Run, trace: &mut Trace) -> bool {
+    for e in 0..run.joints.len() {
+        run.update_all(trace, e, None);
+    }
+    let twists: Vec<Vector3<f64>> = run.joints.iter().map(|j| j.twist).collect();
+    let start = 2 * trace.system.contacts;
+    for (b, motion) in run.sections.motions(&twists).into_iter().enumerate() {
+        (0..3).for_each(|i| trace.state.x[start + 3 * b + i] = run.motions[3 * b + i] + motion[i]);
+    }
+    let [work, moved, factor] = run.since;
+    let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
+    trace.state.work += (work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
+    run.since = [0.0, 0.0, trace.state.factor];
+    trace.record()
+}

@@ -1,0 +1,174 @@
+//! A step along a direction: how far it is to the next events, and what they change.
+
+use super::rates::{Direction, MECHANISM};
+use super::trace::Trace;
+use crate::contact::facet::{dot, slack};
+use crate::contact::mode::ContactMode;
+use voussoir_core::law::FacetMode;
+use voussoir_core::path::{ContactEvent, PathEvent};
+
+/// Slacks and gaps below this (in scaled units) are events of the same moment.
+const SAME: f64 = 1e-12;
+
+/// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
+/// closing) of which points they are.
+pub fn next_event(trace: &Trace, direction: &Direction) -> (f64, Vec<(usize, usize)>) {
+    // A rate that is rounding brings no event.
+    let size = direction.x[..2 * trace.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let gap_size = direction.gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (of_forces, share) = if direction.factor == 0.0 { (size.max(gap_size), MECHANISM) } else { (size, 1e-13) };
+    let (least_force, least_gap) = (share * of_forces, share * gap_size);
+    let mut step = f64::INFINITY;
+    let mut hits: Vec<(f64, f64, usize, usize)> = Vec::new();
+    let mut meet = |when: f64, speed: f64, c: usize, what: usize| {
+        if (when - step) * speed <= SAME {
+            hits.push((when, speed, c, what));
+        }
+        step = step.min(when);
+    };
+    for (c, point) in trace.state.points.iter().enumerate() {
+        let Some(facets) = &trace.system.facets[c] else { continue };
+        if point.open() {
+            let rate = opening_rate(trace, c, direction.gaps[c]);
+            if -rate > least_gap {
+                meet(point.opening / -rate, -rate, c, usize::MAX);
+            }
+            if point.apex {
+                continue;
+            }
+        }
+        let force = trace.state.force(c);
+        let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
+        for (f, facet) in facets.iter().enumerate() {
+            let falls = dot(facet.normal, rate);
+            if falls > least_force && !point.active.contains(&f) {
+                meet(slack(facet, force, 1.0).max(0.0) / falls, falls, c, f);
+            }
+        }
+    }
+    let same = |e: &&(f64, f64, usize, usize)| (e.0 - step) * e.1 <= SAME;
+    (step, hits.iter().filter(same).map(|e| (e.2, e.3)).collect())
+}
+
+/// Rate of the opening above the dilated surface.
+pub fn opening_rate(trace: &Trace, c: usize, gap: [f64; 2]) -> f64 {
+    let Some(facets) = &trace.system.facets[c] else { return 0.0 };
+    dot(trace.state.points[c].mode.opening(facets, if gap[1] < 0.0 { -1.0 } else { 1.0 }), gap)
+}
+
+/// Rate of the gap without its `opening` rate, which is reversible: a tensile strength that opens stores
+/// the work of its force and gives it back.
+fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2] {
+    match (&trace.system.facets[c], trace.state.points[c].opening_facet) {
+        (Some(facets), Some(open)) if trace.state.points[c].mode != ContactMode::Open => {
+            [0, 1].map(|i| gap[i] + opening * facets[open].flow[i])
+        }
+        _ => gap,
+    }
+}
+
+/// Goes a step along a direction and notes the events at its end.
+pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
+    let unit = trace.system.force_unit * trace.system.displacement_unit;
+    let openings: Vec<f64> = (0..trace.state.points.len()).map(|c| opening_rate(trace, c, direction.gaps[c])).collect();
+    let mut dissipated = trace.state.dissipated;
+    for (c, point) in trace.state.points.iter().enumerate() {
+        if matches!(point.mode, ContactMode::Stick | ContactMode::Open) {
+            continue;
+        }
+        let mean = [0, 1].map(|i| trace.state.x[2 * c + i] + 0.5 * step * direction.x[2 * c + i]);
+        let flow = irreversible(trace, c, direction.gaps[c], openings[c]);
+        dissipated -= dot(mean, flow) * step * unit;
+    }
+    trace.state.dissipated = dissipated;
+    let before = trace.state.factor;
+    for (x, rate) in trace.state.x.iter_mut().zip(&direction.x) {
+        *x += step * rate;
+    }
+    trace.state.factor += sense * step * direction.factor;
+    let size = direction.x[..2 * trace.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    for (c, opening_rate) in openings.into_iter().enumerate() {
+        let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
+        stepped(trace, c, rate, step * opening_rate, before, size);
+    }
+    arrive(trace, hits);
+}
+
+/// What a step changes of a contact point: its opening, which facets it leaves, and what it then notes as
+/// having happened at the factor `before` it. `size`: greatest rate of force.
+pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before: f64, size: f64) {
+    let Some(facets) = &trace.system.facets[c] else { return };
+    let was_open = trace.state.points[c].open();
+    let was_hit = std::mem::take(&mut trace.state.points[c].hit);
+    let point = &mut trace.state.points[c];
+    if !was_open && point.mode == ContactMode::Stick && point.active.is_empty() {
+        return;
+    }
+    let flows = point.mode != ContactMode::Stick;
+    point.opening = if was_open || flows { (point.opening + opening).max(0.0) } else { 0.0 };
+    let mut happened = Vec::new();
+    if !was_open && point.open() {
+        happened.push(ContactEvent::Opens);
+    }
+    // What began to flow in this step began at its start.
+    if let ContactMode::Facet(f) = point.mode
+        && was_hit
+    {
+        let facet = &facets[f as usize];
+        happened.extend(match facet.mode {
+            FacetMode::Sliding if facet.flow[1] > 0.0 => Some(ContactEvent::SlipsBackward),
+            FacetMode::Sliding => Some(ContactEvent::SlipsForward),
+            FacetMode::Crushing => Some(ContactEvent::Crushes),
+            FacetMode::Opening => None,
+        });
+    }
+    // Facets that this direction leaves are active no more.
+    if !(point.open() && point.apex) {
+        let force = [trace.state.x[2 * c], trace.state.x[2 * c + 1]];
+        let had = point.active.len();
+        point.active.retain(|f| {
+            let facet = &facets[*f];
+            dot(facet.normal, rate) > -1e-11 * size || slack(facet, force, 1.0) <= SAME
+        });
+        if had > 0 && point.active.is_empty() && !was_hit && point.noted {
+            happened.push(ContactEvent::Sticks);
+        }
+    }
+    point.noted |= !happened.is_empty();
+    let (load_step, factor, contact) = (trace.state.load_step, before, c);
+    trace.log.events.extend(happened.into_iter().map(|what| PathEvent { load_step, factor, contact, what }));
+}
+
+/// Contact points that arrive at a facet, or (`usize::MAX`) close.
+pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
+    let state = &mut trace.state;
+    for &(c, f) in hits {
+        let Some(facets) = &trace.system.facets[c] else { continue };
+        let force = state.force(c);
+        let point = &mut state.points[c];
+        point.hit = true;
+        // At the apex all facets meet.
+        let bare = || (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
+        if f == usize::MAX {
+            point.opening = 0.0;
+            if point.apex {
+                point.active = bare();
+            }
+            point.mode = ContactMode::Stick;
+            point.noted = true;
+            let (load_step, factor) = (state.load_step, state.factor);
+            trace.log.events.push(PathEvent { load_step, factor, contact: c, what: ContactEvent::Closes });
+            continue;
+        }
+        if !point.active.contains(&f) {
+            point.active.push(f);
+        }
+        point.mode = ContactMode::Facet(f as u8);
+        if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SAME) {
+            point.active = bare();
+            point.mode = ContactMode::Open;
+        } else if let (true, Some(open)) = (point.open(), point.opening_facet) {
+            point.mode = ContactMode::Corner(open as u8, f as u8);
+        }
+    }
+}

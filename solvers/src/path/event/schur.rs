@@ -1,0 +1,122 @@
+//! The Schur complement of a factorisation on some contact points: ṙ = S ġ + s λ̇ over those whose mode is open,
+//! while all others keep theirs, whichever the factorised matrix has for them.
+
+use super::factorisation::UpdatedFactorisation;
+use super::point::{Point, active_points};
+use super::system::{Load, System};
+use crate::contact::mode::ContactMode;
+use crate::rate::problem::{Rate, RateProblem};
+use nalgebra::{DMatrix, DVector};
+
+/// A rate problem over points with the way back to all unknowns.
+pub struct SchurComplement<'a> {
+    /// Over the points whose mode is open.
+    pub rate: RateProblem<'a>,
+    /// The problem in its units.
+    pub system: &'a System,
+    /// Those points, then others whose mode is not the factorised one.
+    points: Vec<usize>,
+    /// Number of points whose mode is open.
+    open: usize,
+    /// (ṙ, ġ) of all of them per ε and, last, λ̇.
+    response: DMatrix<f64>,
+    /// ε of all of them per ġ of the open points and, last, λ̇.
+    epsilon: DMatrix<f64>,
+}
+
+/// Rows that fix ε of points times (ṙ, ġ) there.
+fn picked(picks: &[[[f64; 4]; 2]], seen: &DMatrix<f64>, columns: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(2 * picks.len(), columns, |i, j| {
+        let (k, pick) = (i / 2, &picks[i / 2][i % 2]);
+        (0..4).filter(|t| pick[*t] != 0.0).map(|t| pick[t] * seen[(4 * k + t, j)]).sum()
+    })
+}
+
+impl<'a> SchurComplement<'a> {
+    /// Reduces to the `open` points; all others keep their `modes`. `None` where linear algebra fails.
+    pub fn new(
+        (system, all): (&'a System, &[Point]),
+        base: &mut UpdatedFactorisation,
+        (load_step, load): (usize, &Load),
+        open: &[usize],
+        modes: &[ContactMode],
+        solves: &mut u64,
+    ) -> Option<Self> {
+        let mut points = open.to_vec();
+        let changed = (0..modes.len()).filter(|c| modes[*c] != base.modes[*c]);
+        points.extend(changed.filter(|c| !open.contains(c)));
+        let (n, m) = (points.len(), open.len());
+        base.respond(system, &points, solves)?;
+        base.load_rate(system, load_step, load)?;
+        let response = base.local(system, &points, load);
+        // Rows that fix ε: ġ of the open points, the mode of the others.
+        let mode = |(k, c): (usize, &usize)| system.rows(*c, if k < m { ContactMode::Stick } else { modes[*c] });
+        let picks: Vec<[[f64; 4]; 2]> = points.iter().enumerate().map(mode).collect::<Option<_>>()?;
+        let fixed = picked(&picks, &response, 2 * n + 1);
+        let mut right = DMatrix::zeros(2 * n, 2 * m + 1);
+        (0..2 * m).for_each(|i| right[(i, i)] = 1.0);
+        right.set_column(2 * m, &-fixed.column(2 * n));
+        let epsilon = if n == 0 { right } else { fixed.columns(0, 2 * n).into_owned().lu().solve(&right)? };
+        if epsilon.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let responses = response.view((0, 0), (4 * m, 2 * n)) * &epsilon;
+        let row = |i: usize| 4 * (i / 2) + i % 2;
+        let rate = RateProblem {
+            points: active_points(system, all, open),
+            s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
+            load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
+            from_nothing: false,
+        };
+        Some(SchurComplement { rate, system, points, open: m, response, epsilon })
+    }
+
+    /// All unknowns of a solution. `None` where the response to the load is not known.
+    pub fn combine(
+        &self,
+        base: &mut UpdatedFactorisation,
+        (load_step, load): (usize, &Load),
+        rate: &Rate,
+    ) -> Option<Vec<f64>> {
+        let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
+        gaps.push(rate.factor);
+        let epsilon = &self.epsilon * DVector::from_vec(gaps);
+        let mut x = if self.points.is_empty() {
+            vec![0.0; self.system.size()]
+        } else {
+            base.combine(&self.points, epsilon.as_slice(), base.nothing())
+        };
+        let load_rate = base.load_rate(self.system, load_step, load)?;
+        x.iter_mut().zip(load_rate).for_each(|(x, d)| *x += rate.factor * d);
+        Some(x)
+    }
+
+    /// What takes away what a direction leaves of the equations: one step of refinement with the points'
+    /// `modes`, or, where these are `still` (a mechanism: with its modes nothing holds it), with the gaps
+    /// of the open points held. `None` where linear algebra fails.
+    pub fn refinement(
+        &self,
+        base: &UpdatedFactorisation,
+        modes: &[ContactMode],
+        still: bool,
+        left: &[f64],
+    ) -> Option<Vec<f64>> {
+        let n = self.points.len();
+        let mut right = left.to_vec();
+        self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
+        // Where only these points are left over, nothing else is to be solved.
+        let y = if right.iter().any(|v| *v != 0.0) { base.kept(&right)? } else { base.nothing().1 };
+        let held = |k: usize| still && k < self.open;
+        let mode = |(k, c): (usize, &usize)| self.system.rows(*c, if held(k) { ContactMode::Stick } else { modes[*c] });
+        let picks: Vec<[[f64; 4]; 2]> = self.points.iter().enumerate().map(mode).collect::<Option<_>>()?;
+        let seen = base.seen(self.system, &self.points, |c| [right[2 * c], right[2 * c + 1]], &y);
+        let wanted = DVector::from_fn(2 * n, |i, _| {
+            let (k, c) = (i / 2, self.points[i / 2]);
+            let now: f64 = (0..4).map(|t| picks[k][i % 2][t] * seen[k][t]).sum();
+            if held(k) { -now } else { left[2 * c + i % 2] - now }
+        });
+        let epsilon = if n == 0 { wanted } else { picked(&picks, &self.response, 2 * n).lu().solve(&wanted)? };
+        let step = base.combine(&self.points, epsilon.as_slice(), (right, y));
+        step.iter().all(|v| v.is_finite()).then_some(step)
+    }
+}

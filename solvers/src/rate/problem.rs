@@ -1,0 +1,284 @@
+//! The rate problem over the active set: the contact points that may change their mode.
+//!
+//! Everything else keeps its mode, so that forces and gaps of those points are linear: ṙ = S ġ + s λ̇. Each of
+//! them must find a mode of its law that its rate does not violate
+//! ([`active_point`](crate::contact::active_point)). For a given combination of modes that is a small linear system;
+//! where it is singular with one null vector, that vector is a mechanism.
+//! Sources: Klarbring (1990), Ing.-Arch. 60; Björkman (1992) on rate problems with friction.
+
+use crate::contact::active_point::ActivePoint;
+use crate::contact::mode::ContactMode;
+use nalgebra::{DMatrix, DVector};
+
+/// A solution of the rate problem.
+#[derive(Debug, Clone)]
+pub struct Rate {
+    /// 1, 0 or −1: the sense of λ.
+    pub factor: f64,
+    /// Mode of each point.
+    pub modes: Vec<ContactMode>,
+    /// ġ of each point.
+    pub gaps: Vec<[f64; 2]>,
+}
+
+impl Rate {
+    /// Whether gaps of another rate are the same within a share of its greatest.
+    pub fn is_same(&self, other: &Rate, tolerance: f64) -> bool {
+        let size = other.gaps.iter().flatten().fold(1e-300, |a: f64, g| a.max(g.abs()));
+        let mut both = self.gaps.iter().flatten().zip(other.gaps.iter().flatten());
+        self.factor == other.factor && both.all(|(a, b)| (a - b).abs() <= tolerance * size)
+    }
+}
+
+/// What is known of the solutions.
+#[derive(Debug, Clone)]
+pub enum RateOutcome {
+    /// One was taken; how many others with growing λ there are, where that was examined.
+    Found(Rate, Option<usize>),
+    /// None with λ̇ ≥ 0 (all combinations are excluded); one with λ̇ < 0 that is no mere unloading.
+    Falling(Rate),
+    /// None at all that goes on: all combinations are excluded.
+    NoRate,
+    /// None with λ̇ > 0; whether there are others is not decided.
+    NoneRises,
+    /// Not decided; how many combinations there are.
+    Undecided(usize),
+}
+
+/// Share of a singular value below which a combination of modes is a mechanism.
+const SINGULAR: f64 = 1e-10;
+/// Relative tolerance of inequalities.
+pub const INEQUALITY: f64 = 1e-10;
+/// Unknowns above which linear algebra is that of large systems.
+const LARGE: usize = 30;
+
+/// The rate problem: ṙ = `s` ġ + `load_rate` λ̇ over the points.
+#[derive(Debug)]
+pub struct RateProblem<'a> {
+    /// The active set.
+    pub points: Vec<ActivePoint<'a>>,
+    /// S.
+    pub s: DMatrix<f64>,
+    /// s.
+    pub load_rate: DVector<f64>,
+    /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
+    /// associated does not prove that the load cannot be carried.
+    pub from_nothing: bool,
+}
+
+/// The linear system of a combination of modes, solved.
+pub struct Attempt {
+    /// Multipliers, or gap rates of open points, mode after mode.
+    unknowns: Vec<f64>,
+    /// ġ.
+    pub gaps: DVector<f64>,
+    forces: DVector<f64>,
+    /// Whether it is a null vector.
+    pub singular: bool,
+}
+
+impl Attempt {
+    fn gaps_of_points(&self) -> Vec<[f64; 2]> {
+        self.gaps.as_slice().chunks_exact(2).map(|gap| [gap[0], gap[1]]).collect()
+    }
+}
+
+/// A direction at a point.
+type At = (usize, [f64; 2]);
+
+impl RateProblem<'_> {
+    /// Directions of ġ and functionals of ṙ of a combination of modes, in the points' own units.
+    fn flows_and_rows(&self, modes: &[ContactMode]) -> (Vec<At>, Vec<At>) {
+        let (mut flows, mut rows) = (Vec::new(), Vec::new());
+        for (k, (point, mode)) in self.points.iter().zip(modes).enumerate() {
+            let unit = point.stiffness.sqrt();
+            flows.extend(mode.flows(point.facets).into_iter().map(|f| (k, f.map(|x| x / unit))));
+            rows.extend(mode.force_rows(point.facets).into_iter().map(|r| (k, r.map(|x| x / unit))));
+        }
+        (flows, rows)
+    }
+
+    fn matrix(&self, flows: &[At], rows: &[At]) -> DMatrix<f64> {
+        let entry = |(i, a): &At, (j, d): &At| {
+            a[0] * (self.s[(2 * i, 2 * j)] * d[0] + self.s[(2 * i, 2 * j + 1)] * d[1])
+                + a[1] * (self.s[(2 * i + 1, 2 * j)] * d[0] + self.s[(2 * i + 1, 2 * j + 1)] * d[1])
+        };
+        DMatrix::from_fn(flows.len(), flows.len(), |i, j| entry(&rows[i], &flows[j]))
+    }
+
+    /// Flows of a combination of modes and its matrix.
+    fn system(&self, modes: &[ContactMode]) -> (Vec<At>, DMatrix<f64>) {
+        let (flows, rows) = self.flows_and_rows(modes);
+        let matrix = self.matrix(&flows, &rows);
+        (flows, matrix)
+    }
+
+    /// Solves for the unknowns of a combination of modes with λ̇ = `factor`; where the combination
+    /// is singular with one null vector, that vector.
+    pub fn attempt(&self, modes: &[ContactMode], factor: f64) -> Option<Attempt> {
+        let (flows, rows) = self.flows_and_rows(modes);
+        let n = flows.len();
+        let mut singular = false;
+        let scaled: Vec<f64> = if n == 0 {
+            Vec::new()
+        } else {
+            let matrix = self.matrix(&flows, &rows);
+            let right = DVector::from_fn(n, |i, _| {
+                let (k, a) = &rows[i];
+                -(a[0] * self.load_rate[2 * k] + a[1] * self.load_rate[2 * k + 1]) * factor
+            });
+            if n > LARGE {
+                let lu = matrix.lu();
+                let solved: Vec<f64> = lu.solve(&right)?.iter().copied().collect();
+                let pivots = lu.u().diagonal().abs();
+                if pivots.min() <= SINGULAR * 1e-3 * pivots.max() {
+                    return None;
+                }
+                return self.completed(&flows, &solved, factor, false);
+            }
+            let svd = matrix.svd(true, true);
+            let (u, v_t) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
+            let null = svd.singular_values.iter().filter(|s| **s <= SINGULAR).count();
+            match null {
+                0 => {
+                    let projected = u.transpose() * right;
+                    let weighted = DVector::from_fn(n, |i, _| projected[i] / svd.singular_values[i]);
+                    (v_t.transpose() * weighted).iter().copied().collect()
+                }
+                1 => {
+                    singular = true;
+                    let least = svd.singular_values.imin();
+                    v_t.row(least).iter().copied().collect()
+                }
+                _ => return None,
+            }
+        };
+        self.completed(&flows, &scaled, factor, singular)
+    }
+
+    /// Gaps, forces and unknowns of an attempt from the scaled unknowns.
+    fn completed(&self, flows: &[At], scaled: &[f64], factor: f64, singular: bool) -> Option<Attempt> {
+        let mut gaps = DVector::zeros(2 * self.points.len());
+        for ((k, f), c) in flows.iter().zip(scaled) {
+            gaps[2 * k] += f[0] * c;
+            gaps[2 * k + 1] += f[1] * c;
+        }
+        let forces = &self.s * &gaps + &self.load_rate * if singular { 0.0 } else { factor };
+        let unknowns = scaled.iter().zip(flows).map(|(v, (k, _))| v / self.points[*k].stiffness.sqrt()).collect();
+        Some(Attempt { unknowns, gaps, forces, singular })
+    }
+
+    /// The violations of an attempt: how far, at which point, and the mode that mends it.
+    pub fn violations(&self, modes: &[ContactMode], attempt: &Attempt, sign: f64) -> Vec<(f64, usize, ContactMode)> {
+        let gap_size = attempt.gaps.amax().max(1e-300);
+        let force_size = attempt.forces.amax().max(if attempt.singular {
+            // A mechanism moves without forces: their size is that of what stiffness could do.
+            gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
+        } else {
+            1e-4 * self.load_rate.amax()
+        });
+        let sizes = [force_size.max(1e-300), gap_size];
+        let mut at = 0;
+        let mut out = Vec::new();
+        for (k, (point, mode)) in self.points.iter().zip(modes).enumerate() {
+            let count = mode.flows(point.facets).len();
+            let v: Vec<f64> = attempt.unknowns[at..at + count].iter().map(|v| v * sign).collect();
+            at += count;
+            let force = [attempt.forces[2 * k] * sign, attempt.forces[2 * k + 1] * sign];
+            if let Some((size, to)) = point.violation(*mode, &v, force, sizes)
+                && size > INEQUALITY
+            {
+                out.push((size, k, to));
+            }
+        }
+        out
+    }
+
+    /// The rate of an attempt in the sense `sign`.
+    pub fn rate(&self, modes: &[ContactMode], attempt: &Attempt, sign: f64, factor: f64) -> Rate {
+        let gaps = attempt.gaps_of_points().into_iter().map(|gap| gap.map(|g| g * sign));
+        Rate { factor, modes: modes.to_vec(), gaps: gaps.collect() }
+    }
+
+    /// Work of the load on a motion without forces, by virtual work with the forces that a growing
+    /// load causes at points that do not move (exact where all else sticks or flows associated). At
+    /// a constant load a path goes on in the sense in which the load does work, not back.
+    pub fn power(&self, gaps: &[[f64; 2]]) -> f64 {
+        -gaps.iter().flatten().zip(&self.load_rate).map(|(gap, force)| gap * force).sum::<f64>()
+    }
+
+    /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
+    pub fn leads_on(&self, rate: &Rate) -> bool {
+        let gaps = rate.gaps.iter().flatten();
+        let size = gaps.zip(&self.load_rate).map(|(gap, force)| (gap * force).abs()).sum::<f64>();
+        rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
+    }
+
+    /// Whether a rate with λ falling is more than unloading: a point that has just arrived flows.
+    pub fn goes_on(&self, rate: &Rate) -> bool {
+        let mut points = self.points.iter().zip(&rate.modes);
+        rate.factor < 0.0 && points.any(|(point, mode)| point.hit && *mode != ContactMode::Stick)
+    }
+
+    /// The rate of some modes with λ̇ = `factor`, where it fits them.
+    pub fn exactly(&self, modes: Vec<ContactMode>, factor: f64) -> Option<Rate> {
+        let attempt = self.attempt(&modes, 1.0).filter(|attempt| !attempt.singular)?;
+        self.violations(&modes, &attempt, factor).is_empty().then(|| self.rate(&modes, &attempt, factor, factor))
+    }
+
+    /// The motion at constant load that some modes allow, where the load does work on it.
+    pub fn at_constant_load(&self, modes: &[ContactMode]) -> Option<Rate> {
+        let attempt = self.attempt(modes, 1.0).filter(|attempt| attempt.singular)?;
+        let fits = |sign: &f64| {
+            self.violations(modes, &attempt, *sign).is_empty() && self.leads_on(&self.rate(modes, &attempt, *sign, 0.0))
+        };
+        [1.0, -1.0].into_iter().find(fits).map(|sign| self.rate(modes, &attempt, sign, 0.0))
+    }
+
+    /// Number of combinations of modes.
+    pub fn combinations(&self) -> usize {
+        self.points.iter().fold(1usize, |n, p| n.saturating_mul(p.candidates().len()))
+    }
+
+    /// Whether flow is associated.
+    pub fn is_associated(&self) -> bool {
+        self.points.iter().flat_map(|p| p.facets).all(|f| f.flow == f.normal)
+    }
+
+    /// A motion without forces in which every point keeps its mode, close to a given one.
+    pub fn mechanism_near(&self, modes: &[ContactMode], gaps: &[[f64; 2]]) -> Option<Rate> {
+        let (flows, matrix) = self.system(modes);
+        let n = flows.len();
+        if n == 0 {
+            return None;
+        }
+        // Inverse iteration: what the matrix makes nothing of the given motion.
+        let shifted = &matrix + DMatrix::identity(n, n) * (1e-12 * matrix.amax().max(1e-300));
+        let lu = shifted.lu();
+        let points = self.points.iter().zip(modes).zip(gaps);
+        let unknowns = points.flat_map(|((point, mode), gap)| {
+            let unit = point.stiffness.sqrt();
+            mode.unknowns(point.facets, *gap).into_iter().map(move |v| v * unit)
+        });
+        let mut v = DVector::from_vec(unknowns.collect::<Vec<f64>>());
+        if v.len() != n || v.amax() == 0.0 {
+            return None;
+        }
+        for _ in 0..4 {
+            v = lu.solve(&v)?;
+            let size = v.amax();
+            if !size.is_finite() || size == 0.0 {
+                return None;
+            }
+            v /= size;
+        }
+        if (&matrix * &v).amax() > 1e-9 * matrix.amax() {
+            return None;
+        }
+        let v: Vec<f64> = v.iter().copied().collect();
+        let attempt = self.completed(&flows, &v, 1.0, true)?;
+        let forward = if self.power(&attempt.gaps_of_points()) < 0.0 { -1.0 } else { 1.0 };
+        let sign = [forward, -forward].into_iter().find(|sign| self.violations(modes, &attempt, *sign).is_empty())?;
+        Some(self.rate(modes, &attempt, sign, 0.0))
+    }
+}

@@ -1,0 +1,96 @@
+//! Diagnostics: what is wrong with an input, at which key and place, and what to do about it.
+
+use crate::config::origin::Origin;
+use std::fmt;
+
+/// One mistake in a study, with its place.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct LocatedDiagnostic {
+    /// Where the key or value was written.
+    pub origin: Origin,
+    /// The dotted key; empty where there is none (syntax errors).
+    pub key: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do, where that can be said.
+    pub help: Option<String>,
+    /// The case it was found in, where other cases do not have it.
+    pub case: Option<String>,
+}
+
+impl LocatedDiagnostic {
+    /// A mistake at a place.
+    pub fn new(origin: &Origin, key: impl Into<String>, message: impl Into<String>) -> Self {
+        LocatedDiagnostic { origin: origin.clone(), key: key.into(), message: message.into(), help: None, case: None }
+    }
+
+    /// With advice.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+impl fmt::Display for LocatedDiagnostic {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}: ", self.origin)?;
+        // "--set KEY" has named its key already.
+        if !self.key.is_empty() && !matches!(&self.origin, Origin::Set(key) if **key == *self.key) {
+            write!(out, "{}: ", self.key)?;
+        }
+        write!(out, "{}", self.message)?;
+        if let Some(help) = &self.help {
+            write!(out, "\n  help: {help}")?;
+        }
+        if let Some(case) = &self.case {
+            write!(out, "\n  first in the case {case}")?;
+        }
+        Ok(())
+    }
+}
+
+/// All mistakes, one below the other, in the order of the file; command line last.
+pub fn sort(mistakes: &mut [LocatedDiagnostic]) {
+    mistakes.sort_by_key(|mistake| match &mistake.origin {
+        Origin::File { line, column, .. } => (*line, *column),
+        Origin::Set(_) => (usize::MAX, 0),
+    });
+}
+
+/// Words as `"a", "b" or "c"`.
+pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let words: Vec<_> = words.into_iter().map(|word| format!("\"{word}\"")).collect();
+    match words.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => words.concat(),
+    }
+}
+
+/// Advice for a wrong name: the nearest right one, or the list of all.
+pub fn suggest(wrong: &str, names: &[&str], what: &str) -> String {
+    match voussoir_core::plugin::nearest(wrong, names.iter().copied()) {
+        Some(name) => format!("did you mean \"{name}\"?"),
+        None if names.is_empty() => format!("there are no {what}"),
+        None => format!("{what}: {}", names.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistake_reads_place_key_message_help() {
+        let origin = Origin::File { file: "a.toml".into(), line: 3, column: 5 };
+        let mistake = LocatedDiagnostic::new(&origin, "scene.span", "is missing").help("add it");
+        assert_eq!(mistake.to_string(), "a.toml:3:5: scene.span: is missing\n  help: add it");
+        let mistake = LocatedDiagnostic::new(&Origin::Set("scene.span".into()), "scene.span", "-1 m is out of range");
+        assert_eq!(mistake.to_string(), "--set scene.span: -1 m is out of range");
+    }
+
+    #[test]
+    fn words_are_listed_with_or() {
+        assert_eq!(any_of(["a"]), "\"a\"");
+        assert_eq!(any_of(["a", "b", "c"]), "\"a\", \"b\" or \"c\"");
+    }
+}

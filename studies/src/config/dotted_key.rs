@@ -1,0 +1,36 @@
+//! Dotted keys such as `scene.profile.rise`: apart and together again.
+
+/// The segments of a dotted key; a segment in double quotes may hold dots.
+pub fn segments(path: &str) -> Vec<String> {
+    let (mut out, mut segment, mut quoted) = (Vec::new(), String::new(), false);
+    for character in path.chars() {
+        match character {
+            '"' => quoted = !quoted,
+            '.' if !quoted => out.push(std::mem::take(&mut segment)),
+            _ => segment.push(character),
+        }
+    }
+    if !path.is_empty() {
+        out.push(segment);
+    }
+    out.iter_mut().for_each(|segment| *segment = segment.trim().to_string());
+    out
+}
+
+/// A dotted key, one segment longer.
+pub fn join(path: &str, segment: &str) -> String {
+    let quote = segment.is_empty() || segment.contains(['.', ' ']);
+    let segment = if quote { format!("\"{segment}\"") } else { segment.to_string() };
+    if path.is_empty() { segment } else { format!("{path}.{segment}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quoted_segments_may_hold_dots() {
+        assert_eq!(segments("sweep.\"a.b\".list"), ["sweep", "a.b", "list"]);
+        assert_eq!(join("sweep", "a.b"), "sweep.\"a.b\"");
+    }
+}

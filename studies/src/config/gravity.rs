@@ -1,0 +1,19 @@
+//! The gravity of a study, by which specific weights become densities.
+
+use crate::config::document::{Node, Value};
+use voussoir_core::plugin::{Quantity, STANDARD_GRAVITY};
+
+/// The magnitude of the first gravity in the study's stages; standard gravity where there is none.
+pub fn gravity_of(root: &Node) -> f64 {
+    let number = |node: &Node| match &node.value {
+        Value::String(text) => Quantity::Acceleration.parse(text, STANDARD_GRAVITY).ok(),
+        _ => node.number(),
+    };
+    let stages = root.table().and_then(|table| table.get("stages")?.array()).unwrap_or_default();
+    let given = stages.iter().find_map(|stage| stage.table()?.get("gravity"));
+    let size = given.and_then(|node| match node.array() {
+        Some([x, y]) => Some(number(x)?.hypot(number(y)?)),
+        _ => number(node).map(f64::abs),
+    });
+    size.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(STANDARD_GRAVITY)
+}

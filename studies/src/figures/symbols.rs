@@ -1,0 +1,190 @@
+//! Marks for joints: hinges, sliding, crushing; and the symbols of a legend.
+
+use super::svg_canvas::{LegendSymbol, SvgCanvas};
+use super::text_layout::{Area, Spot};
+use voussoir_core::certificate::Mechanism;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Joint};
+
+/// Fill of free blocks.
+pub const STONE: &str = "#e9dfcb";
+/// Outline of blocks.
+pub const OUTLINE: &str = "#6b6150";
+/// Loads.
+pub const LOAD: &str = "#0072b2";
+/// Thrust line and joint forces.
+pub const THRUST: &str = "#009e73";
+/// Strut of an unbounded case.
+pub const STRUT: &str = "#cc79a7";
+/// Hinges and sliding joints.
+pub const MOTION: &str = "#c8102e";
+/// Elements that have yielded.
+pub const YIELDED: &str = "#6f6f6f";
+/// Crushing joints.
+pub const CRUSH: &str = "#7b2d8b";
+/// More hinges than this are not numbered.
+pub const NUMBERED: usize = 24;
+
+/// A legend's symbol, 34 px wide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Symbol {
+    /// A free block.
+    Block,
+    /// The ground.
+    Ground,
+    /// A load's arrow.
+    Load,
+    /// The thrust line.
+    Thrust,
+    /// A joint's force.
+    Force,
+    /// The strut of an unbounded case.
+    Strut,
+    /// A hinge.
+    Hinge,
+    /// A hinge with its sense of rotation.
+    TurningHinge,
+    /// A sliding joint.
+    Sliding,
+    /// A crushing joint.
+    Crushing,
+    /// An element that has yielded.
+    Yielded,
+    /// Where blocks were.
+    Before,
+}
+
+impl LegendSymbol for Symbol {
+    fn draw(self, canvas: &mut SvgCanvas, [x, y]: Spot) {
+        let ends = [[x, y], [x + 34.0, y]];
+        let middle = [x + 17.0, y];
+        match self {
+            Symbol::Block => boxed(canvas, [x, y], STONE, OUTLINE, ""),
+            Symbol::Ground => boxed(canvas, [x, y], "url(#ground)", OUTLINE, ""),
+            Symbol::Before => boxed(canvas, [x, y], "none", "#999999", "4 3"),
+            Symbol::Load => canvas.arrow(ends[0], ends[1], LOAD, 2.2, 10.0),
+            Symbol::Thrust => canvas.line(&ends, THRUST, 2.2, ""),
+            Symbol::Force => canvas.line(&[[x + 6.0, y], [x + 28.0, y]], THRUST, 5.0, ""),
+            Symbol::Strut => canvas.line(&ends, STRUT, 3.0, "9 5"),
+            Symbol::Hinge => hinge(canvas, middle),
+            Symbol::TurningHinge => {
+                hinge(canvas, middle);
+                turning(canvas, middle, 1.0);
+            }
+            Symbol::Sliding => sliding(canvas, middle, [1.0, 0.0], 28.0, 1.0),
+            Symbol::Yielded => boxed(canvas, [x, y], YIELDED, "none", ""),
+            Symbol::Crushing => canvas.line(&ends, CRUSH, 6.0, ""),
+        }
+    }
+}
+
+fn boxed(canvas: &mut SvgCanvas, [x, y]: Spot, fill: &str, stroke: &str, dash: &str) {
+    canvas.pixels(
+        &[[x + 4.0, y - 7.0], [x + 30.0, y - 7.0], [x + 30.0, y + 7.0], [x + 4.0, y + 7.0]],
+        fill,
+        stroke,
+        dash,
+    );
+}
+
+fn hinge(canvas: &mut SvgCanvas, spot: Spot) {
+    canvas.circle(spot, 5.0, "white", MOTION, 2.2);
+}
+
+/// An arc with a head around a hinge; `sense` > 0 anticlockwise.
+fn turning(canvas: &mut SvgCanvas, [x, y]: Spot, sense: f64) {
+    let radius = 11.0;
+    let sign = if sense >= 0.0 { -1.0 } else { 1.0 };
+    let on = |angle: f64| [x + radius * angle.cos(), y + radius * angle.sin()];
+    let start = if sign < 0.0 { 0.6 } else { std::f64::consts::PI - 0.6 };
+    let arc: Vec<Spot> = (0..=16).map(|i| on(start + sign * 4.3 * i as f64 / 16.0)).collect();
+    canvas.line(&arc, MOTION, 1.6, "");
+    let end = start + sign * 4.3;
+    let tip = on(end + sign * 0.5);
+    let direction = [-sign * (end + sign * 0.3).sin(), sign * (end + sign * 0.3).cos()];
+    canvas.head(tip, direction, 8.0, MOTION);
+}
+
+/// Two lines along the unit vector `t` and half arrows: the left side of `t` moves along
+/// −`sense`·t relative to the right side (on the canvas, y down).
+fn sliding(canvas: &mut SvgCanvas, [x, y]: Spot, t: Spot, length: f64, sense: f64) {
+    let across = [-t[1], t[0]];
+    let at = |s: f64, d: f64| [x + s * t[0] + d * across[0], y + s * t[1] + d * across[1]];
+    let half = length / 2.0;
+    for side in [-1.0, 1.0] {
+        canvas.line(&[at(-half, 1.8 * side), at(half, 1.8 * side)], MOTION, 1.3, "");
+        let way = side * sense;
+        let reach = half.clamp(7.0, 16.0);
+        canvas.arrow(at(-reach * way, 6.5 * side), at(reach * way, 6.5 * side), MOTION, 1.3, 6.5);
+    }
+}
+
+fn on_canvas(canvas: &SvgCanvas, direction: Vec2) -> Spot {
+    let (from, to) = (canvas.at(Vec2::zeros()), canvas.at(direction));
+    let (x, y) = (to[0] - from[0], to[1] - from[1]);
+    let length = x.hypot(y).max(1e-12);
+    [x / length, y / length]
+}
+
+/// Marks hinges, sliding and crushing joints where `place` puts a joint's points, and returns what
+/// the legend must say.
+pub fn mark(
+    canvas: &mut SvgCanvas,
+    assembly: &Assembly,
+    mechanism: &Mechanism,
+    senses: bool,
+    place: impl Fn(&Joint, Vec2) -> Vec2,
+) -> Vec<(Symbol, String)> {
+    let mut legend = Vec::new();
+    let joint_of = |index: usize| assembly.joints.get(index);
+    for crushing in &mechanism.crushing {
+        let Some(joint) = joint_of(crushing.joint) else { continue };
+        let ends = joint.ends.map(|end| canvas.at(place(joint, end)));
+        canvas.line(&ends, CRUSH, 6.0, "");
+    }
+    for slide in &mechanism.sliding {
+        let Some(joint) = joint_of(slide.joint) else { continue };
+        let t = on_canvas(canvas, joint.frame().1);
+        let length = (joint.height() * canvas.scale()).max(8.0);
+        let spot = canvas.at(place(joint, joint.middle()));
+        // n is right of t; on the canvas (y down) plus lies where `across` is positive.
+        sliding(canvas, spot, t, length, slide.slip.signum());
+    }
+    let spots: Vec<(Spot, Spot, String, f64)> = mechanism
+        .hinges
+        .iter()
+        .filter_map(|hinge| {
+            let joint = joint_of(hinge.joint)?;
+            let point = Vec2::from(hinge.point);
+            let outward = on_canvas(canvas, point - joint.middle());
+            Some((canvas.at(place(joint, point)), outward, hinge.joint.to_string(), hinge.rotation))
+        })
+        .collect();
+    let reach = if senses { 14.0 } else { 7.0 };
+    for (spot, _, _, rotation) in &spots {
+        hinge(canvas, *spot);
+        if senses && spots.len() <= NUMBERED {
+            turning(canvas, *spot, *rotation);
+        }
+        canvas.take(Area::around(*spot, [reach, reach]));
+    }
+    if spots.len() <= NUMBERED {
+        for (spot, outward, text, _) in &spots {
+            canvas.label(*spot, *outward, text, MOTION, true);
+        }
+    }
+    if !spots.is_empty() {
+        let numbered = if spots.len() <= NUMBERED { "with its joint's number" } else { "too many to number" };
+        let symbol = if senses && spots.len() <= NUMBERED { Symbol::TurningHinge } else { Symbol::Hinge };
+        let sense =
+            if symbol == Symbol::TurningHinge { "; arrow: how its plus side turns (right on arches)" } else { "" };
+        legend.push((symbol, format!("hinge {numbered}{sense}")));
+    }
+    if !mechanism.sliding.is_empty() {
+        legend.push((Symbol::Sliding, "sliding joint".into()));
+    }
+    if !mechanism.crushing.is_empty() {
+        legend.push((Symbol::Crushing, "crushing joint".into()));
+    }
+    legend
+}

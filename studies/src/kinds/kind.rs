@@ -1,0 +1,129 @@
+//! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
+
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::results::{CaseResult, Comparison};
+use crate::solve::{Observer, solve_cases};
+use crate::study::{Outline, Study, StudySource};
+use serde_json::{Map, Value as Json};
+use voussoir_core::plugin::{Diagnostic, Parameter};
+
+/// A kind of study, chosen by `kind = …`. Instances register with
+/// `inventory::submit! { KindEntry { … } }` beside their card. The card's parameters are the keys of the
+/// table that is called like the kind.
+pub trait StudyKind: Sync {
+    /// Reads a study file of this kind.
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>>;
+
+    /// All keys of its study files, where they are not those of studies with a scene.
+    fn file_keys(&self) -> Option<&'static [Parameter]> {
+        None
+    }
+
+    /// Mistakes in a study's axes and in the table of this kind, beyond those of single keys.
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
+        let _ = outline;
+        Vec::new()
+    }
+
+    /// Solves the cases of a study whose ids are in `wanted`, in order of id. `jobs` cases side by
+    /// side; the results do not depend on it. A kind that chooses values itself makes further cases
+    /// by [`Study::at`].
+    fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+        solve_cases(study, wanted, jobs, observer)
+    }
+
+    /// What this kind adds to the results of the cases; a pure function of its arguments, so that
+    /// `verify` can repeat it.
+    fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
+        let _ = (study, cases);
+        OwnResults::default()
+    }
+}
+
+/// What a study kind adds to the results of the cases.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct OwnResults {
+    /// The cases beside each other.
+    pub comparison: Option<Comparison>,
+    /// Other entries of results.json, by name.
+    pub other: Map<String, Json>,
+}
+
+/// A study of any kind, free of mistakes, as commands see it.
+pub trait LoadedStudy: Send + Sync {
+    /// Its name.
+    fn name(&self) -> &str;
+
+    /// Number of its cases.
+    fn count(&self) -> usize;
+
+    /// The file with `--set` applied.
+    fn resolved(&self) -> &toml::Value;
+
+    /// What will be solved, in words.
+    fn explain(&self) -> String;
+
+    /// Solves what is wanted and turns it into the texts of files.
+    fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
+
+    /// Checks the text of a results.json; an error where it cannot be read.
+    fn verify(&self, results: &str) -> Result<Verification, String>;
+}
+
+/// What is asked of a run.
+#[derive(Debug, Clone, Default)]
+pub struct RunRequest {
+    /// Ids of the cases, in order.
+    pub wanted: Vec<usize>,
+    /// Cases side by side.
+    pub jobs: usize,
+    /// Results of an interrupted run of the same study: results.json, and a line of JSON for each case that
+    /// was finished later.
+    pub stored: Option<[String; 2]>,
+    /// Version of the program, for results.json.
+    pub version: String,
+}
+
+/// What a run has made.
+#[derive(Debug, Clone, Default)]
+pub struct RunOutput {
+    /// (file name relative to the result folder, bytes), in a fixed order.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// The table for the terminal.
+    pub table: String,
+    /// Whether every case is answered and certified.
+    pub certified: bool,
+}
+
+/// What a check of results has found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Verification {
+    /// Number of cases in the results.
+    pub cases: usize,
+    /// How many of them are stalled.
+    pub stalled: usize,
+    /// What is wrong, by case.
+    pub findings: Vec<(usize, String)>,
+}
+
+/// Connects a tag with a study kind.
+pub struct KindEntry {
+    /// The tag of its card.
+    pub tag: &'static str,
+    /// What answers.
+    pub kind: &'static dyn StudyKind,
+}
+
+voussoir_core::inventory::collect!(KindEntry);
+
+/// All study kinds, sorted by tag.
+pub fn kinds() -> Vec<&'static KindEntry> {
+    let mut all: Vec<_> = voussoir_core::inventory::iter::<KindEntry>.into_iter().collect();
+    all.sort_by_key(|entry| entry.tag);
+    all
+}
+
+/// The study kind with this tag.
+pub fn kind(tag: &str) -> Option<&'static dyn StudyKind> {
+    kinds().into_iter().find(|entry| entry.tag == tag).map(|entry| entry.kind)
+}

@@ -1,0 +1,66 @@
+//! The result of a driven point, and the names of its numbers.
+
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
+use std::collections::BTreeMap;
+use voussoir_solvers::point::PointLaw;
+
+/// How a path ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PathStatus {
+    /// At its end.
+    Reached,
+    /// Before it; the notes say why.
+    Stalled,
+}
+
+/// A driven point: a row of numbers and a region per step.
+#[derive(Debug, Clone, Serialize)]
+pub struct PointResult {
+    /// Index from 0, variants outermost.
+    pub id: usize,
+    /// Name of its variant.
+    pub variant: Option<String>,
+    /// Swept key → value.
+    pub parameters: Map<String, Json>,
+    /// Tag of the law.
+    pub law: String,
+    /// How it ended.
+    pub status: PathStatus,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// Names of the numbers in a row, with units.
+    pub columns: Vec<String>,
+    /// One row per step, the first before any.
+    pub rows: Vec<Vec<f64>>,
+    /// Region or regime of each row.
+    pub regions: Vec<&'static str>,
+    /// Segment of each row.
+    pub segments: Vec<usize>,
+    /// Greatest error of a controlled stress \[Pa\].
+    pub largest_control_error: f64,
+    /// Work done.
+    pub counters: BTreeMap<&'static str, u64>,
+}
+
+/// Names of a row's numbers.
+pub fn columns(law: &PointLaw) -> Vec<String> {
+    let names = law.names();
+    let (strain, stress, energy) = match law {
+        PointLaw::Joint(_) => (("gap", "m"), "traction", "J/m2"),
+        _ => (("strain", "-"), "stress", "J/m3"),
+    };
+    let mut out: Vec<String> = names.iter().map(|name| format!("{}_{name} [{}]", strain.0, strain.1)).collect();
+    out.extend(names.iter().map(|name| format!("{stress}_{name} [Pa]")));
+    match law {
+        PointLaw::Space(..) => out.extend(["p [Pa]".into(), "q [Pa]".into()]),
+        PointLaw::Plane(..) => {
+            out.extend(["strain_zz [-]".into(), "stress_zz [Pa]".into(), "p [Pa]".into(), "q [Pa]".into()]);
+        }
+        PointLaw::Joint(_) => {}
+    }
+    out.push(format!("dissipated [{energy}]"));
+    out.extend(law.state_names().iter().map(|name| name.to_string()));
+    out
+}

@@ -1,0 +1,146 @@
+//! Blocks at the end of a path: displacements and stresses on their meshes, recovered from the
+//! result alone (contact forces, loads and motions of the blocks).
+
+use crate::results::CaseResult;
+use crate::results::inelastic_state;
+use crate::verify::fields::{path_forces, path_motion};
+use voussoir_core::elastic::{Condenser, IsotropicElastic};
+use voussoir_core::law::Deformability;
+use voussoir_core::limit::Status;
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage};
+use voussoir_core::path::{PathProblem, PathState};
+
+/// A block with its mesh; a rigid one is a single cell of its vertices.
+#[derive(Debug, Clone)]
+pub struct DisplacedBlock {
+    /// Index of the block.
+    pub block: usize,
+    /// Places before any load \[m\].
+    pub nodes: Vec<Vec2>,
+    /// Displacement of each node \[m\].
+    pub displacement: Vec<Vec2>,
+    /// (σ_xx, σ_yy, σ_zz, σ_xy) at each node, tension positive \[Pa\]; in axes that turn with the
+    /// block where displacements are finite; empty for a rigid block.
+    pub stress: Vec<[f64; 4]>,
+    /// The same in the middle of each cell; empty for a rigid block.
+    pub cell_stress: Vec<[f64; 4]>,
+    /// Nodes of each cell, in VTK's order.
+    pub cells: Vec<Vec<usize>>,
+    /// Order of the elements; 0 for a rigid block.
+    pub order: usize,
+    /// Mean equivalent plastic strain of each cell; empty where the block has not yielded.
+    pub plastic_strain: Vec<f64>,
+    /// Greatest resultant that is left on the block, its weight included, relative to the forces on
+    /// it (moments divided by the size of the scene); 0 for a rigid block.
+    pub imbalance: f64,
+}
+
+/// The state at which `result` ends, on the problem that its case poses.
+fn end_state(
+    problem: &PathProblem,
+    assembly: &Assembly,
+    result: &CaseResult,
+    finite: bool,
+) -> Result<PathState, String> {
+    let stage = result.stages.len().checked_sub(1).ok_or("no stage was begun")?;
+    let first =
+        problem.load_steps.iter().position(|d| d.stage == stage).filter(|_| result.status == Status::NoEquilibrium);
+    let load_step = first.or(problem.load_steps.iter().rposition(|d| d.stage <= stage)).ok_or("no load was applied")?;
+    let force = path_forces(assembly, problem, result.proof.field.as_deref().ok_or("no contact forces")?)?;
+    let motion = path_motion(assembly, problem, result, finite)?;
+    let factor = result.proof.field_factor.ok_or("no factor of the contact forces")?;
+    let yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;
+    Ok(PathState { load_step, factor, force, motion, yielded, ..PathState::default() })
+}
+
+/// The blocks of a case at the end of its path, or why there are none. Blocks without a shape are
+/// left out.
+pub fn displaced_blocks(
+    assembly: &Assembly,
+    stages: &[Stage],
+    result: &CaseResult,
+    finite: bool,
+) -> Result<Vec<DisplacedBlock>, String> {
+    if result.path.displacements.is_none() {
+        return Err("limit analysis leaves no deformed state".into());
+    }
+    let problem = PathProblem::new(assembly, stages)?;
+    let state = end_state(&problem, assembly, result, finite)?;
+    let forces = problem.forces_on_points(&state, finite);
+    let applied = problem.applied(state.load_step, state.factor);
+    let gravity: Vec2 =
+        problem.load_steps.iter().zip(applied).map(|(load_step, factor)| load_step.loading.acceleration * factor).sum();
+    let mut condenser = Condenser::new(assembly.plane, assembly.width);
+    let mut blocks = Vec::new();
+    for (block, shape) in assembly.bodies.iter().enumerate() {
+        if shape.vertices.len() < 3 {
+            continue;
+        }
+        let body = problem.body_of[block];
+        let pole = problem.bodies[body].pole;
+        let [x, y, theta] = state.motion[body];
+        let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
+        let swing = |v: Vec2| if finite { turn(theta, v) - v } else { turned(v) * theta };
+        let rigid = |place: Vec2| Vec2::new(x, y) + swing(place - pole);
+        if problem.bodies[body].flexibility.is_none() {
+            blocks.push(DisplacedBlock {
+                block,
+                displacement: shape.vertices.iter().map(|v| rigid(*v)).collect(),
+                cells: vec![(0..shape.vertices.len()).collect()],
+                nodes: shape.vertices.clone(),
+                stress: Vec::new(),
+                cell_stress: Vec::new(),
+                plastic_strain: Vec::new(),
+                order: 0,
+                imbalance: 0.0,
+            });
+            continue;
+        }
+        let material = &assembly.catalogue.materials[shape.material].1;
+        let (young_modulus, poisson_ratio) = match material.deformability() {
+            Deformability::LinearElastic { young_modulus, poisson_ratio }
+            | Deformability::Inelastic { young_modulus, poisson_ratio } => (young_modulus, poisson_ratio),
+            _ => return Err(format!("the material of \"{}\" does not deform", shape.name)),
+        };
+        let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
+        let (points, own) = (&problem.bodies[body].points, &forces[body]);
+        let weight = turn(-theta, gravity);
+        let mut recovered = condenser.recover(&shape.vertices, elastic, &assembly.mesh, points, own, weight)?;
+        let (mut plastic_strain, mut yielded_across) = (Vec::new(), None);
+        if let (Some(inelastic), Some(own)) = (&problem.bodies[body].inelastic, state.inelastic(body)) {
+            let imbalance = recovered.imbalance;
+            let (found, zz) = inelastic.recover(&own.displacement, &own.state)?;
+            recovered = voussoir_core::elastic::Recovered { imbalance, ..found };
+            yielded_across = Some(zz);
+            plastic_strain = inelastic.by_element(&own.state.equivalent);
+        }
+        let across = match assembly.plane {
+            voussoir_core::law::Plane::Strain => poisson_ratio,
+            voussoir_core::law::Plane::Stress => 0.0,
+        };
+        let full = |stress: &[[f64; 3]], own: Option<&Vec<f64>>| -> Vec<[f64; 4]> {
+            let zz = |i: usize, [xx, yy, _]: [f64; 3]| own.map_or(across * (xx + yy), |own| own[i]);
+            stress.iter().enumerate().map(|(i, s)| [s[0], s[1], zz(i, *s), s[2]]).collect()
+        };
+        let [fx, fy, moment] = recovered.imbalance;
+        let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * problem.bodies[body].mass;
+        blocks.push(DisplacedBlock {
+            block,
+            displacement: recovered
+                .nodes
+                .iter()
+                .zip(&recovered.displacement)
+                .map(|(node, u)| rigid(*node) + turn(theta, *u))
+                .collect(),
+            stress: full(&recovered.stress, yielded_across.as_ref().map(|zz| &zz[0])),
+            cell_stress: full(&recovered.element_stress, yielded_across.as_ref().map(|zz| &zz[1])),
+            nodes: recovered.nodes,
+            cells: recovered.elements,
+            order: recovered.order,
+            plastic_strain,
+            imbalance: fx.hypot(fy).max(moment.abs() / problem.length) / size.max(f64::MIN_POSITIVE),
+        });
+    }
+    Ok(blocks)
+}

@@ -1,0 +1,157 @@
+//! The result of a case, as it stands in `results.json`.
+
+use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json};
+use voussoir_core::certificate::{Certificate, Mechanism};
+use voussoir_core::limit::{Counters, LowerProof, Status};
+
+/// Which case of its study it is.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct CaseLabel {
+    /// Index from 0, variants outermost.
+    pub id: usize,
+    /// Name of the variant, if the study has variants.
+    pub variant: Option<String>,
+    /// Name of the scene, where the study compares several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
+    /// Swept key → value.
+    pub parameters: Map<String, Json>,
+}
+
+/// What a non-associated answer says besides: the associated answer, and what its own lower bound rests on.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct NonAssociatedAnswer {
+    /// The factor with associated flow, where the solver answers another question.
+    pub associated_load_factor: Option<f64>,
+    /// Velocities of the mechanism that proves `associated_load_factor`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub associated_motion: Option<Vec<MotionEntry>>,
+    /// What the lower bound rests on where joints flow as their laws say, with what `verify` needs to check it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_proof: Option<LowerProof>,
+}
+
+/// Forces and velocities that prove an answer.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProofFields {
+    /// The factor at which `field` is in equilibrium.
+    pub field_factor: Option<f64>,
+    /// Contact forces.
+    pub field: Option<Vec<FieldEntry>>,
+    /// Velocities of the mechanism.
+    pub motion: Option<Vec<MotionEntry>>,
+    /// Contact forces that balance the live load alone, for `unbounded`.
+    pub ray: Option<Vec<FieldEntry>>,
+    /// On arches, where the resultant crosses each joint \[m\]; `null` where a joint carries nothing.
+    pub thrust_line: Option<Vec<Option<[f64; 2]>>>,
+}
+
+/// What only a path leaves behind.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathRecord {
+    /// What happened at the contact points, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventEntry>,
+    /// On request: \[displacement of the load point \[m\], factor\] of the last stage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<Vec<[f64; 2]>>,
+    /// Displacement of every body as a rigid motion at the state of the field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacements: Option<Vec<DisplacementEntry>>,
+    /// With laws of tractions from gaps: their states (such as damage) at the start of the step that ended at
+    /// the field, contact point after contact point, from which the laws give its forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_states: Option<Vec<f64>>,
+    /// Blocks whose material has yielded at the state of the field.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub yielded: Vec<YieldedEntry>,
+}
+
+/// What one stage came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageResult {
+    /// Its name.
+    pub name: String,
+    /// How it ended.
+    pub status: Status,
+    /// The factor it reached; `null` where it reached none, or any.
+    pub factor: Option<f64>,
+    /// Hinges of the mechanism that ended it, else empty.
+    pub hinges: Vec<usize>,
+}
+
+/// The answer to one case with what proves it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct CaseResult {
+    /// Which case it is.
+    #[serde(flatten)]
+    pub label: CaseLabel,
+    /// How it ends.
+    pub status: Status,
+    /// The collapse factor.
+    pub load_factor: Option<f64>,
+    /// \[lower, upper\], from the field and from the mechanism.
+    pub bounds: Option<[f64; 2]>,
+    /// What a non-associated answer says besides.
+    #[serde(flatten)]
+    pub non_associated: NonAssociatedAnswer,
+    /// All factors with an admissible field, where dead load alone has none; `null` ends are infinite.
+    pub feasible_interval: Option<[Option<f64>; 2]>,
+    /// `"associated"` where a non-associated law was read so.
+    pub flow_read_as: Option<String>,
+    /// The solver that answered.
+    pub solver: String,
+    /// What a user should know.
+    pub notes: Vec<String>,
+    /// The collapse mechanism, or the one that refutes equilibrium.
+    pub mechanism: Option<Mechanism>,
+    /// Forces and velocities that prove the answer.
+    #[serde(flatten)]
+    pub proof: ProofFields,
+    /// Named residuals.
+    pub certificate: Certificate,
+    /// Work done.
+    pub counters: Counters,
+    /// Wall time \[s\].
+    pub seconds: f64,
+    /// Each stage in turn.
+    pub stages: Vec<StageResult>,
+    /// What a path leaves behind.
+    #[serde(flatten)]
+    pub path: PathRecord,
+}
+
+impl CaseResult {
+    /// An answer that nothing proves, with the reason.
+    pub fn stalled(why: impl Into<String>) -> Self {
+        CaseResult { notes: vec![why.into()], ..CaseResult::empty() }
+    }
+
+    /// A stalled answer that says nothing, to be filled in.
+    pub fn empty() -> Self {
+        CaseResult {
+            label: CaseLabel::default(),
+            status: Status::Stalled,
+            load_factor: None,
+            bounds: None,
+            non_associated: NonAssociatedAnswer::default(),
+            feasible_interval: None,
+            flow_read_as: None,
+            solver: String::new(),
+            notes: Vec::new(),
+            mechanism: None,
+            proof: ProofFields::default(),
+            certificate: Certificate {
+                passed: false,
+                residuals: Default::default(),
+                failures: vec!["not proven".into()],
+            },
+            counters: Counters::new(),
+            seconds: 0.0,
+            stages: Vec::new(),
+            path: PathRecord::default(),
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Entries of a result: forces, velocities, displacements, yielded blocks and events, one by one.
+
+use serde::{Deserialize, Serialize};
+use voussoir_core::path::ContactEvent;
+
+/// A contact force at a point of a joint \[N\].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FieldEntry {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Where it acts \[m\].
+    pub point: [f64; 2],
+    /// \[r_n, r_t\] on the plus body.
+    pub force: [f64; 2],
+}
+
+/// Velocity of a body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MotionEntry {
+    /// Name of the body.
+    pub body: String,
+    /// \[v_x, v_y, ω\] at its centroid.
+    pub velocity: [f64; 3],
+}
+
+/// Displacement of a body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DisplacementEntry {
+    /// Name of the body.
+    pub body: String,
+    /// \[u_x, u_y, θ\] at its centroid.
+    pub displacement: [f64; 3],
+}
+
+/// A block whose material has yielded, at the state of the field: what `verify` needs to recompute its
+/// stresses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct YieldedEntry {
+    /// Name of the body.
+    pub body: String,
+    /// Displacements (x, y) of the nodes of its mesh relative to the mean rigid motion, in the frame of
+    /// its first edge, in units of √area.
+    pub displacement: Vec<f64>,
+    /// Gauss points that have yielded: index, cumulated equivalent plastic strain, the part of it under
+    /// compression, state of the law.
+    pub points: Vec<(usize, f64, f64, Vec<f64>)>,
+    /// Mean equivalent plastic strain of each element.
+    pub elements: Vec<f64>,
+}
+
+/// An event of a path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EventEntry {
+    /// Name of the stage; gravity of a stage comes before its loads.
+    pub stage: String,
+    /// The factor of that stage's loads (of its gravity, where `gravity` is set).
+    pub factor: f64,
+    /// Whether it happened while gravity was applied.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub gravity: bool,
+    /// Index of the joint.
+    pub joint: usize,
+    /// Where \[m\].
+    pub point: [f64; 2],
+    /// What happened there.
+    pub what: ContactEvent,
+}

@@ -1,0 +1,16 @@
+//! Results: what is written of each case, of a study, and how forces and motions become entries.
+
+mod case_result;
+mod comparison;
+pub mod convert;
+mod entries;
+pub mod inelastic_state;
+pub mod path_state;
+pub mod stage_start;
+mod study_results;
+pub mod thrust_line;
+
+pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, ProofFields, StageResult};
+pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
+pub use entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+pub use study_results::StudyResults;

@@ -1,0 +1,23 @@
+//! The results of a study, as they stand in `results.json`.
+
+use super::case_result::CaseResult;
+use super::comparison::Comparison;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json};
+
+/// All results of a study.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct StudyResults {
+    /// Name of the study.
+    pub study: String,
+    /// Version of the program.
+    pub version: String,
+    /// One entry per case, by `id`.
+    pub cases: Vec<CaseResult>,
+    /// Of `kind = "compare"` and `"map"`: the cases beside each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+    /// What other study kinds add, by name.
+    #[serde(flatten)]
+    pub own: Map<String, Json>,
+}

@@ -1,0 +1,77 @@
+//! Solving cases: one, or several side by side.
+
+use super::auto::select_path_solver;
+use super::case_input::CaseInput;
+use super::observer::{Observer, PathProgress};
+use super::{limit, path};
+use crate::results::{CaseLabel, CaseResult};
+use crate::study::{Case, Study};
+use rayon::prelude::*;
+use std::time::Instant;
+use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
+
+/// Solves a case; an observer sees the states of a path. The label and `seconds` are left for the caller to fill.
+pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
+    match select_path_solver(input) {
+        Some((tag, solver)) => path::solve_by_path(input, &tag, &*solver, observer),
+        None => limit::solve_by_limit_analysis(input),
+    }
+}
+
+/// Solves one case.
+pub fn solve_case(case: &Case) -> CaseResult {
+    solve_observed(case, &mut Unobserved)
+}
+
+fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
+    let started = Instant::now();
+    let mut result = solve_input(&CaseInput::of(case), observer);
+    result.label = CaseLabel {
+        id: case.id,
+        variant: case.variant.clone(),
+        scene: case.scene.clone(),
+        parameters: case.parameters.clone(),
+    };
+    result.notes.extend(case.notes.iter().cloned());
+    if !case.output_curve {
+        result.path.curve = None;
+    }
+    result.seconds = started.elapsed().as_secs_f64();
+    result
+}
+
+/// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`.
+pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+    let one = |id: &usize| {
+        let case = &study.cases[*id];
+        let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
+        observer.answered(&result);
+        result
+    };
+    match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
+        Ok(pool) if jobs > 1 => pool.install(|| wanted.par_iter().map(one).collect()),
+        _ => wanted.iter().map(one).collect(),
+    }
+}
+
+/// Tells an observer of a study how far the path of a case has come.
+struct Followed<'a> {
+    case: &'a Case,
+    observer: &'a dyn Observer,
+    states: u64,
+}
+
+impl PathObserver for Followed<'_> {
+    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.states += 1;
+        let load_step = &problem.load_steps[state.load_step];
+        self.observer.on_path(&PathProgress {
+            case: self.case.id,
+            stage: &self.case.stages[load_step.stage].name,
+            gravity: load_step.gravity,
+            factor: state.factor,
+            states: self.states,
+        });
+        true
+    }
+}

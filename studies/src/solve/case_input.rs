@@ -1,0 +1,30 @@
+//! What is needed to solve a case, without the study that it came from.
+
+use crate::study::{Case, SelectedSolver};
+use voussoir_core::model::{Assembly, Stage};
+use voussoir_core::path::PathSettings;
+
+/// One case, ready to be solved.
+#[derive(Debug, Clone, Copy)]
+pub struct CaseInput<'a> {
+    /// Blocks and joints.
+    pub assembly: &'a Assembly,
+    /// Stages in order.
+    pub stages: &'a [Stage],
+    /// Which solver.
+    pub solver: &'a SelectedSolver,
+    /// What a path solver is told; its tolerance is the greatest relative gap between bounds too.
+    pub settings: &'a PathSettings,
+}
+
+impl<'a> CaseInput<'a> {
+    /// What a case of a study asks for.
+    pub fn of(case: &'a Case) -> Self {
+        CaseInput {
+            assembly: &case.assembly,
+            stages: &case.stages,
+            solver: &case.solver.solver,
+            settings: &case.solver.settings,
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Explaining a study: what will be solved, after everything that the scene does not need is gone.
+
+use super::auto::{limit_solvers, select_path_solver};
+use super::case_input::CaseInput;
+use crate::results::stage_start::search_start;
+use crate::study::{Case, Study};
+use std::fmt::Write;
+use voussoir_core::law::Tangential;
+use voussoir_core::limit::LimitProblem;
+use voussoir_core::model::{Bond, Target, stage_loads};
+use voussoir_core::path::{LoadStepEnd, PathProblem};
+
+/// What will be solved, in words, for the first case; the others differ by their parameters only.
+pub fn explain(study: &Study) -> String {
+    let mut text = format!("study \"{}\" ({}): {} case(s)\n", study.name, study.kind, study.cases.len());
+    match study.cases.first() {
+        Some(case) => explain_case(case, &mut text),
+        None => text.push_str("nothing to solve\n"),
+    }
+    text
+}
+
+fn explain_case(case: &Case, text: &mut String) {
+    let assembly = &case.assembly;
+    let bonded = assembly.joints.iter().filter(|joint| joint.bond == Bond::Bonded).count();
+    let _ = writeln!(
+        text,
+        "case 0: {} bodies, {} joints, of which {bonded} bonded (they vanish)",
+        assembly.bodies.len(),
+        assembly.joints.len()
+    );
+    let input = CaseInput::of(case);
+    if let Some((tag, _)) = select_path_solver(&input) {
+        return explain_path(case, &tag, input.settings.finite, text);
+    }
+    for (stage, loads) in case.stages.iter().zip(stage_loads(assembly, &case.stages)) {
+        let problem = match LimitProblem::new(assembly, &loads) {
+            Ok(problem) => problem,
+            Err(why) => {
+                let _ = writeln!(text, "stage \"{}\": {why}", stage.name);
+                continue;
+            }
+        };
+        let count = |kind: Tangential| problem.joints.iter().filter(|j| j.strength.tangential() == kind).count();
+        let blocks = problem.joints.iter().filter(|joint| joint.strength.block.is_some()).count();
+        let _ = writeln!(
+            text,
+            "stage \"{}\": {} free bodies (rigid: no mesh), {} joints: {} with friction, {} stuck and {} frictionless (no tangential rows), {blocks} that can crush",
+            stage.name,
+            problem.groups,
+            problem.joints.len(),
+            count(Tangential::Friction),
+            count(Tangential::Stuck),
+            count(Tangential::Free),
+        );
+        let tag = limit_solvers(input.solver, &problem).swap_remove(0).0;
+        let _ = match stage.target {
+            Target::Collapse => {
+                writeln!(text, "  {tag}: stands at factor {}? then the greatest factor", search_start(stage))
+            }
+            Target::Factor(factor) => {
+                writeln!(text, "  {tag}: stands up to factor {factor}? (left to the next stage where that starts here)")
+            }
+        };
+        if tag == "limit_chain" {
+            let _ = writeln!(
+                text,
+                "  chains of bodies: three redundants each and the factor, instead of {} equations",
+                3 * problem.groups
+            );
+        }
+    }
+}
+
+fn explain_path(case: &Case, tag: &str, finite: bool, text: &mut String) {
+    let problem = match PathProblem::new(&case.assembly, &case.stages) {
+        Ok(problem) => problem,
+        Err(why) => {
+            let _ = writeln!(text, "{tag}: {why}");
+            return;
+        }
+    };
+    let free = || problem.bodies.iter().filter(|body| !body.held);
+    let yields = free().filter(|body| body.inelastic.is_some()).count();
+    let elastic = free().filter(|body| body.flexibility.is_some()).count() - yields;
+    let factorisations = problem.counters.get("condensation_factorisations").copied().unwrap_or(0);
+    let _ = writeln!(
+        text,
+        "path: {} free bodies: {} rigid (no mesh), {elastic} elastic (condensed on their contact and load points) and {yields} that may \
+         yield (condensed too until they do); {factorisations} factorisation(s), one for each shape",
+        free().count(),
+        free().count() - elastic - yields,
+    );
+    let points = problem.contacts.len();
+    let bonded = problem.contacts.iter().filter(|contact| contact.law.is_bonded()).count();
+    let softening = (0..points).filter(|contact| problem.response(*contact).is_some()).count();
+    let _ = writeln!(
+        text,
+        "{points} contact points: {bonded} bonded, {} with facets, {softening} with tractions from gaps",
+        points - bonded - softening,
+    );
+    let kinematics = if finite { "finite" } else { "small" };
+    for load_step in &problem.load_steps {
+        let what = if load_step.gravity { "gravity" } else { "loads" };
+        let end = match load_step.end {
+            LoadStepEnd::Factor(factor) => format!("to factor {factor}"),
+            LoadStepEnd::Collapse(most) if most.is_finite() => format!("until collapse, up to factor {most}"),
+            LoadStepEnd::Collapse(_) => "until collapse".into(),
+        };
+        let stage = &case.stages[load_step.stage].name;
+        let _ = writeln!(text, "  stage \"{stage}\", {what}: {tag}, {kinematics} displacements, {end}");
+    }
+}

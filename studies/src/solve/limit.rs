@@ -1,0 +1,142 @@
+//! Solving a case by limit analysis: its stages in turn, each with its certificate.
+
+use super::auto::limit_solvers;
+use super::case_input::CaseInput;
+use super::limit_result::certified;
+use crate::results::stage_start::search_start;
+use crate::results::{CaseResult, StageResult};
+use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
+use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
+
+/// What is asked of a stage: can it stand at its start, and how far does it go from there?
+fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
+    let idle = problem.magnitude(&problem.varying) == 0.0;
+    match stage.target {
+        Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Admissible(0.0),
+        Target::Factor(factor) if factor < 0.0 => LimitQuestion::Admissible(factor),
+        Target::Factor(factor) => LimitQuestion::Collapse { start: 0.0, max: factor },
+        Target::Collapse => LimitQuestion::Collapse { start: search_start(stage), max: stage.factor_max },
+    }
+}
+
+/// Whether the next stage's own check of its start answers this stage too.
+fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
+    let Some(next) = stages.get(index + 1) else {
+        return false;
+    };
+    let reached = match stages[index].target {
+        Target::Factor(factor) => factor,
+        Target::Collapse => return false,
+    };
+    let idle = reached == 0.0 || loads[index].varying.iter().all(|w| *w == [0.0; 3]);
+    idle && next.target == Target::Collapse && next.gravity.is_none() && search_start(next) == 0.0
+}
+
+/// Solves a case stage by stage, until one does not stand.
+pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
+    let CaseInput { assembly, stages, .. } = *input;
+    let loads = stage_loads(assembly, stages);
+    let mut done: Vec<StageResult> = Vec::new();
+    let mut counters = Counters::new();
+    for index in 0..stages.len() {
+        if covered(stages, &loads, index) {
+            continue;
+        }
+        let mut result = match LimitProblem::new(assembly, &loads[index]) {
+            Ok(problem) => solve_stage(input, &stages[index], &problem, &loads[index]),
+            Err(why) => CaseResult::stalled(why),
+        };
+        for (name, count) in std::mem::take(&mut result.counters) {
+            *counters.entry(name).or_default() += count;
+        }
+        record_stages(&mut done, stages, index, &result);
+        if result.status != Status::Stands || index + 1 == stages.len() {
+            result.stages = done;
+            result.counters = counters;
+            return result;
+        }
+    }
+    CaseResult::stalled("the study has no stage")
+}
+
+/// Adds what stage `index` came to, and the stages before it that its check of its start answers too.
+fn record_stages(done: &mut Vec<StageResult>, stages: &[Stage], index: usize, result: &CaseResult) {
+    let stage = |index: usize, status, factor, hinges| {
+        let name = stages[index].name.clone();
+        StageResult { name, status, factor, hinges }
+    };
+    let carried = !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
+    let status = if carried { Status::Stands } else { result.status };
+    for (earlier, covered) in stages.iter().enumerate().take(index).skip(done.len()) {
+        let Target::Factor(factor) = covered.target else { continue };
+        done.push(stage(earlier, status, carried.then_some(factor), Vec::new()));
+    }
+    let reached = match (result.status, stages[index].target) {
+        (Status::Collapse, _) => result.load_factor,
+        (Status::Stands, Target::Factor(factor)) => Some(factor),
+        (Status::Stands, Target::Collapse) => result.proof.field_factor,
+        _ => None,
+    };
+    let hinges = result.mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
+    done.push(stage(index, result.status, reached, hinges));
+}
+
+/// The first certified answer of the solvers to try; without one the stage is stalled.
+fn solve_stage(input: &CaseInput, stage: &Stage, problem: &LimitProblem, loads: &StageLoads) -> CaseResult {
+    let mut notes = Vec::new();
+    let mut best: Option<CaseResult> = None;
+    for (tag, solver) in limit_solvers(input.solver, problem) {
+        if let Some(why) = solver.refuses(problem) {
+            notes.push(format!("{tag}: {why}"));
+            continue;
+        }
+        let asked = ask(stage, problem);
+        let solved = solver.solve(problem, asked);
+        let mut result = certified(input, stage, (problem, loads), asked, solved);
+        result.solver = tag.clone();
+        if result.certificate.passed {
+            best = Some(result);
+            break;
+        }
+        notes.push(format!("{tag}: {}", result.certificate.failures.join("; ")));
+        notes.append(&mut result.notes);
+        best.get_or_insert(result);
+    }
+    let mut result = best.unwrap_or_else(|| CaseResult::stalled("no solver takes this scene"));
+    if !result.certificate.passed {
+        // An answer without proof is no answer.
+        result.status = Status::Stalled;
+        result.load_factor = None;
+        result.bounds = None;
+        result.notes = notes;
+    }
+    result.notes.extend(readings(input.assembly, problem, &result));
+    result
+}
+
+/// Notes on how limit analysis reads a scene that says more.
+fn readings(assembly: &Assembly, problem: &LimitProblem, result: &CaseResult) -> Vec<String> {
+    let mut notes = Vec::new();
+    if result.flow_read_as.is_some() {
+        notes.push(
+            "a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its \
+             friction angle): every load factor is an upper bound"
+                .into(),
+        );
+    }
+    let mut free = (0..assembly.bodies.len()).filter(|body| problem.group_of[*body].is_some());
+    if free.clone().any(|body| !assembly.is_rigid(body)) {
+        notes.push(
+            "blocks are read as rigid: with small displacements the limit load does not depend on their elasticity"
+                .into(),
+        );
+    }
+    if free.any(|body| assembly.yields(body)) {
+        notes.push(
+            "the material of blocks yields, which limit analysis of rigid blocks does not see: crushing counts here only \
+             where a joint has a compressive_strength; newton_path follows blocks that yield"
+                .into(),
+        );
+    }
+    notes
+}

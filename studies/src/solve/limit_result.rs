@@ -1,0 +1,120 @@
+//! A limit solver's answer in the form of a result, with its certificate.
+
+use super::case_input::CaseInput;
+use crate::results::convert::{field_entries, motion_entries};
+use crate::results::thrust_line::thrust_line;
+use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields};
+use voussoir_core::certificate::{
+    CentroidVelocity, Claim, ContactForce, NonAssociatedClaim, certify, jumps, largest_jump, mechanism,
+};
+use voussoir_core::law::FlowRule;
+use voussoir_core::limit::{JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity};
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage, StageLoads, Target};
+
+/// The result of one stage, certified.
+pub(super) fn certified(
+    input: &CaseInput,
+    stage: &Stage,
+    (problem, loads): (&LimitProblem, &StageLoads),
+    asked: LimitQuestion,
+    solved: LimitAnswer,
+) -> CaseResult {
+    let assembly = input.assembly;
+    let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
+    let ray = solved.ray.as_ref().map(|forces| contact_forces(problem, forces));
+    let motion = scaled_motion(assembly, problem, &solved);
+    let own = solved.non_associated.as_ref();
+    let associated_motion =
+        own.and_then(|own| own.associated_motion.as_ref()).map(|motion| body_velocities(assembly, problem, motion));
+    let reading = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
+    let claim = Claim {
+        status: solved.status,
+        factor: solved.factor,
+        field_factor: solved.field_factor,
+        start: match asked {
+            LimitQuestion::Admissible(factor) => factor,
+            LimitQuestion::Collapse { start, .. } => start,
+        },
+        field: field.as_deref(),
+        motion: motion.as_deref(),
+        ray: ray.as_deref(),
+        feasible_interval: solved.feasible_interval,
+        non_associated: own.map(|own| NonAssociatedClaim {
+            proved_lower: own.proved_lower,
+            lower_proof: own.lower_proof.as_ref(),
+            associated_factor: own.associated_factor,
+            associated_motion: associated_motion.as_deref(),
+        }),
+    };
+    let (certificate, bounds) = certify(assembly, loads, &claim, input.settings.tolerance);
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let mut notes = solved.notes;
+    if solved.status == Status::Stands && stage.target == Target::Collapse {
+        notes.push(format!("no collapse up to factor_max = {}", stage.factor_max));
+    }
+    CaseResult {
+        status: solved.status,
+        load_factor: solved.factor,
+        bounds,
+        flow_read_as: (problem.non_associated && own.is_none()).then(|| "associated".into()),
+        feasible_interval: solved.feasible_interval.map(|ends| ends.map(finite)),
+        mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, reading)),
+        proof: ProofFields {
+            field_factor: field.is_some().then_some(solved.field_factor),
+            thrust_line: field.as_ref().and_then(|field| thrust_line(assembly, field)),
+            field: field.as_deref().map(field_entries),
+            ray: ray.as_deref().map(field_entries),
+            motion: motion.map(|motion| motion_entries(assembly, motion)),
+        },
+        non_associated: NonAssociatedAnswer {
+            associated_load_factor: own.and_then(|own| own.associated_factor),
+            associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
+            lower_proof: solved.non_associated.and_then(|own| own.lower_proof),
+        },
+        certificate,
+        counters: solved.counters,
+        notes,
+        ..CaseResult::empty()
+    }
+}
+
+/// Velocities of all bodies; those that refute equilibrium without a factor are scaled to a greatest jump of 1.
+fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnswer) -> Option<Vec<CentroidVelocity>> {
+    let mut motion = body_velocities(assembly, problem, solved.motion.as_ref()?);
+    if (solved.status, solved.feasible_interval) == (Status::NoEquilibrium, None) {
+        let largest = largest_jump(&jumps(assembly, &motion));
+        motion.iter_mut().flatten().for_each(|v| *v /= largest);
+    }
+    Some(motion)
+}
+
+/// Forces at the two ends of every joint; shear goes with the normal forces, so that each end's
+/// force lies in the cone of dry friction where the sum does.
+fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactForce> {
+    let mut contacts = Vec::with_capacity(2 * forces.len());
+    for (joint, force) in problem.joints.iter().zip(forces) {
+        let sum = force.normal[0] + force.normal[1];
+        let share = |end: usize| {
+            if force.normal[0] >= 0.0 && force.normal[1] >= 0.0 && sum > 0.0 { force.normal[end] / sum } else { 0.5 }
+        };
+        let shears = [force.shear * share(0), force.shear - force.shear * share(0)];
+        for (end, shear) in shears.into_iter().enumerate() {
+            let force = [force.normal[end], shear];
+            contacts.push(ContactForce { joint: joint.joint, point: joint.ends[end], force });
+        }
+    }
+    contacts
+}
+
+fn body_velocities(assembly: &Assembly, problem: &LimitProblem, motion: &[Velocity]) -> Vec<CentroidVelocity> {
+    let velocity = |body: usize| match problem.group_of[body] {
+        None => [0.0; 3],
+        Some(group) => {
+            let [x, y, omega] = motion[group];
+            let v = Vec2::new(x, y) + turned(assembly.inertia(body).centroid - problem.pole) * omega;
+            [v.x, v.y, omega]
+        }
+    };
+    (0..assembly.bodies.len()).map(velocity).collect()
+}

@@ -1,0 +1,18 @@
+//! From a case to its result: who solves it, and the answer with its certificate.
+//!
+//! [`solve_case`] solves one case, [`solve_cases`] several side by side, [`explain`](explain::explain) says what
+//! would be solved. Checking a result without a solver is [`crate::verify`].
+
+pub mod auto;
+mod case;
+mod case_input;
+pub mod explain;
+mod limit;
+mod limit_result;
+mod observer;
+mod path;
+mod path_result;
+
+pub use case::{solve_case, solve_cases, solve_input};
+pub use case_input::CaseInput;
+pub use observer::{Observer, PathProgress};

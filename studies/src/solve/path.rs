@@ -1,0 +1,43 @@
+//! Solving a case along its path, while the certificate looks on.
+
+use super::case_input::CaseInput;
+use super::path_result::path_result;
+use crate::results::CaseResult;
+use voussoir_core::certificate::PathChecker;
+use voussoir_core::path::{PathObserver, PathProblem, PathSolver, PathState};
+
+/// A path's certificate, with somebody else who looks on.
+struct Watched<'a> {
+    watch: PathChecker,
+    observer: &'a mut dyn PathObserver,
+}
+
+impl PathObserver for Watched<'_> {
+    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.watch.state(problem, state) && self.observer.state(problem, state)
+    }
+}
+
+/// Solves a case along its path; `observer` sees every state.
+pub(super) fn solve_by_path(
+    input: &CaseInput,
+    tag: &str,
+    solver: &dyn PathSolver,
+    observer: &mut dyn PathObserver,
+) -> CaseResult {
+    let assembly = input.assembly;
+    let problem = match PathProblem::new(assembly, input.stages) {
+        Ok(problem) => problem,
+        Err(why) => return failed(tag, why),
+    };
+    if let Some(why) = solver.refuses(&problem, input.settings) {
+        return failed(tag, format!("{tag}: {why}"));
+    }
+    let mut watched = Watched { watch: PathChecker::new(input.settings.finite), observer };
+    let solved = solver.trace(&problem, input.settings, &mut watched);
+    path_result(input, tag, &problem, solved, watched.watch)
+}
+
+fn failed(tag: &str, why: String) -> CaseResult {
+    CaseResult { solver: tag.into(), ..CaseResult::stalled(why) }
+}

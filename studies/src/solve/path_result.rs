@@ -1,0 +1,228 @@
+//! A path solver's answer in the form of a result, with its certificate.
+
+use super::case_input::CaseInput;
+use crate::results::convert::{field_entries, motion_entries};
+use crate::results::inelastic_state;
+use crate::results::path_state::{carried, mechanism_of, small};
+use crate::results::thrust_line::thrust_line;
+use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, ProofFields, StageResult};
+use std::collections::BTreeMap;
+use voussoir_core::certificate::{
+    CentroidVelocity, Certificate, ContactForce, PathChecker, flow_residual, jumps, largest_jump,
+};
+use voussoir_core::limit::Status;
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::{Assembly, Stage, Target};
+use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, coarse_joints};
+
+/// The result of a path that `watch` has looked on.
+pub(super) fn path_result(
+    input: &CaseInput,
+    tag: &str,
+    problem: &PathProblem,
+    solved: PathAnswer,
+    watch: PathChecker,
+) -> CaseResult {
+    let (assembly, finite) = (input.assembly, input.settings.finite);
+    let certificate = certificate(problem, &solved, &watch, finite);
+    let (mut status, mut notes) = (solved.status, solved.notes.clone());
+    notes.extend(coarse_note(problem, assembly));
+    if !certificate.passed && status != Status::Stalled {
+        // An answer without proof is no answer.
+        notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
+        status = Status::Stalled;
+    }
+    let load_step = &problem.load_steps[solved.load_step];
+    let load_factor = match status {
+        Status::Collapse | Status::LimitPoint if !load_step.gravity => solved.factor,
+        _ => None,
+    };
+    let rates = scaled_rates(assembly, problem, &solved);
+    let motion = rates.as_ref().map(|rates| velocities(assembly, problem, rates, None));
+    // The mechanism is read at the undeformed place, velocities are those at the displaced one.
+    let mechanism = motion
+        .as_deref()
+        .and_then(|motion| mechanism_of((assembly, problem), &solved.state, motion, solved.unique, finite));
+    let reached = match (status, input.stages[load_step.stage].target) {
+        (Status::Stands, Target::Factor(factor)) => Some(factor),
+        (Status::Stands, Target::Collapse) => solved.factor,
+        _ => load_factor,
+    };
+    let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
+    let motion = match (finite, &rates) {
+        (true, Some(rates)) => Some(velocities(assembly, problem, rates, Some(&solved.state.motion))),
+        _ => motion,
+    };
+    let field = contact_forces(problem, &solved.state.force);
+    let mut counters = solved.counters.clone();
+    counters.insert("states".into(), watch.states);
+    CaseResult {
+        status,
+        load_factor,
+        solver: tag.into(),
+        mechanism,
+        proof: ProofFields {
+            field_factor: Some(solved.state.factor),
+            thrust_line: thrust_line(assembly, &unbonded(problem, &field)),
+            field: Some(field_entries(&field)),
+            ray: solved.ray.as_ref().map(|ray| field_entries(&contact_forces(problem, ray))),
+            motion: motion.map(|motion| motion_entries(assembly, motion)),
+        },
+        certificate,
+        counters,
+        stages: stage_results(input.stages, load_step.stage, status, reached, hinges),
+        notes,
+        path: path_record(input, problem, solved, watch),
+        ..CaseResult::empty()
+    }
+}
+
+/// What the state, the events and the curve of a path are written as.
+fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, watch: PathChecker) -> PathRecord {
+    let assembly = input.assembly;
+    let name = |body: usize| assembly.bodies[body].name.clone();
+    let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
+    let entry = |(body, displacement)| DisplacementEntry { body: name(body), displacement };
+    PathRecord {
+        displacements: Some(displaced.into_iter().enumerate().map(entry).collect()),
+        yielded: inelastic_state::entries(assembly, problem, &solved.state),
+        joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
+        events: events(input.stages, problem, &solved.events),
+        curve: Some(watch.curve),
+    }
+}
+
+/// Residuals of all states and of the mechanism's flow, against their bounds.
+fn certificate(problem: &PathProblem, solved: &PathAnswer, watch: &PathChecker, finite: bool) -> Certificate {
+    let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
+    for (name, value) in &watch.worst {
+        certificate.residuals.insert((*name).into(), *value);
+        if !small(name, *value) {
+            certificate.passed = false;
+            certificate.failures.push(format!("{name} is {value:.2e}"));
+        }
+    }
+    if let (Some(motion), false) = (&solved.motion, finite) {
+        let flow = flow_residual(problem, &solved.state.force, motion);
+        certificate.residuals.insert("path_flow".into(), flow);
+        if !small("path_flow", flow) {
+            certificate.passed = false;
+            certificate.failures.push(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
+        }
+    }
+    if solved.status == Status::Stalled {
+        certificate.passed = false;
+        certificate.failures.push("not proven".into());
+    }
+    certificate
+}
+
+/// A warning where the mesh is coarse beside the characteristic length of a softening joint.
+fn coarse_note(problem: &PathProblem, assembly: &Assembly) -> Option<String> {
+    coarse_joints(problem, assembly).first().map(|coarse| {
+        format!(
+            "joint {}: contact points {:.3} m apart are coarse for its characteristic length E G_I / f_t² = {:.3} m; \
+             refine scene.mesh until three points and more stand in that length",
+            coarse.joint, coarse.spacing, coarse.length
+        )
+    })
+}
+
+/// Forces at the contact points in the form of certificates.
+fn contact_forces(problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForce> {
+    let pairs = problem.contacts.iter().zip(forces);
+    pairs.map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force }).collect()
+}
+
+/// Those of them at joints that are not bonded.
+fn unbonded(problem: &PathProblem, field: &[ContactForce]) -> Vec<ContactForce> {
+    let pairs = problem.contacts.iter().zip(field);
+    pairs.filter(|(contact, _)| !contact.law.is_bonded()).map(|(_, force)| *force).collect()
+}
+
+/// Rates of the path's bodies; those that refute equilibrium are scaled to a greatest jump of 1.
+fn scaled_rates(assembly: &Assembly, problem: &PathProblem, solved: &PathAnswer) -> Option<Vec<[f64; 3]>> {
+    let mut rates = solved.motion.clone()?;
+    if solved.status == Status::NoEquilibrium {
+        let largest = largest_jump(&jumps(assembly, &velocities(assembly, problem, &rates, None)));
+        rates.iter_mut().flatten().for_each(|v| *v /= largest);
+    }
+    Some(rates)
+}
+
+/// What each stage came to: those before `last` stood; those after it, where it stands, change nothing.
+fn stage_results(
+    stages: &[Stage],
+    last: usize,
+    status: Status,
+    reached: Option<f64>,
+    hinges: Vec<usize>,
+) -> Vec<StageResult> {
+    let stood = |stage: &Stage| {
+        let factor = match stage.target {
+            Target::Factor(factor) => Some(factor),
+            Target::Collapse => None,
+        };
+        StageResult { name: stage.name.clone(), status: Status::Stands, factor, hinges: Vec::new() }
+    };
+    let mut results: Vec<StageResult> = stages[..last].iter().map(stood).collect();
+    results.push(StageResult { name: stages[last].name.clone(), status, factor: reached, hinges });
+    if status == Status::Stands {
+        results.extend(stages[last + 1..].iter().map(stood).filter(|idle| idle.factor.is_some()));
+    }
+    results
+}
+
+fn events(stages: &[Stage], problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
+    let entry = |event: &PathEvent| {
+        let (load_step, contact) = (&problem.load_steps[event.load_step], &problem.contacts[event.contact]);
+        EventEntry {
+            stage: stages[load_step.stage].name.clone(),
+            factor: event.factor,
+            gravity: load_step.gravity,
+            joint: contact.joint,
+            point: contact.position.into(),
+            what: event.what,
+        }
+    };
+    events.iter().map(entry).collect()
+}
+
+/// Displacement of every block at its centroid from the rigid motions of the path's bodies.
+fn displacements(assembly: &Assembly, problem: &PathProblem, motion: &[[f64; 3]], finite: bool) -> Vec<[f64; 3]> {
+    let of_block = |block: usize| {
+        let body = problem.body_of[block];
+        let u = carried(motion[body], problem.bodies[body].pole, assembly.inertia(block).centroid, finite);
+        [u.x, u.y, motion[body][2]]
+    };
+    (0..assembly.bodies.len()).map(of_block).collect()
+}
+
+/// Velocity of every block at its centroid from those of the path's bodies about their poles, which
+/// are in the places that `placed` moves them to. What moves by rounding beside the greatest stands
+/// still where the ground holds it.
+fn velocities(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    rates: &[[f64; 3]],
+    placed: Option<&[[f64; 3]]>,
+) -> Vec<CentroidVelocity> {
+    let mut all: Vec<CentroidVelocity> = (0..assembly.bodies.len())
+        .map(|block| {
+            let body = problem.body_of[block];
+            let [x, y, omega] = rates[body];
+            let arm = assembly.inertia(block).centroid - problem.bodies[body].pole;
+            let angle = placed.map_or(0.0, |motion| motion[body][2]);
+            let arm = arm * angle.cos() + turned(arm) * angle.sin();
+            let v = Vec2::new(x, y) + turned(arm) * omega;
+            [v.x, v.y, omega]
+        })
+        .collect();
+    let largest = all.iter().flatten().fold(0.0, |a: f64, v| a.max(v.abs()));
+    for (velocity, group) in all.iter_mut().zip(assembly.rigid_groups().0) {
+        if group.is_none() && velocity.iter().all(|v| v.abs() <= 1e-7 * largest) {
+            *velocity = [0.0; 3];
+        }
+    }
+    all
+}

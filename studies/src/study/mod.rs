@@ -1,0 +1,23 @@
+//! Studies: what the keys of a study file mean, and the cases it becomes.
+//!
+//! [`study_keys`] is the schema of the file, [`load`](load()) the way from text to [`Study`]. Every mistake of
+//! the whole file is reported at once. Solving the cases is not done here.
+
+mod assemble;
+mod case;
+mod diagnostics;
+mod keys;
+mod load;
+mod model;
+mod outline;
+mod solver;
+mod source;
+mod stages;
+
+pub(crate) use assemble::read_plugin;
+pub use diagnostics::DiagnosticList;
+pub use keys::{OUTPUT, VARIANT, study_keys};
+pub use load::load;
+pub use model::{Case, Output, SelectedSolver, SolverChoice, Study};
+pub use outline::Outline;
+pub use source::{StudySource, kind_of};

@@ -1,0 +1,87 @@
+//! A study as it was read: its cases, each with everything that is needed to solve it. How it is read
+//! stands in [`super::load`].
+
+use super::outline::Outline;
+use crate::config::expand::Plan;
+use serde_json::{Map, Value as Json};
+use std::sync::Arc;
+use voussoir_core::limit::LimitSolver;
+use voussoir_core::model::{Assembly, Stage};
+use voussoir_core::path::{PathSettings, PathSolver};
+
+/// Who solves a case.
+#[derive(Debug, Clone)]
+pub enum SelectedSolver {
+    /// The cheapest that answers, chosen by the cards of solvers.
+    Auto,
+    /// This limit solver, with its tag.
+    Limit(String, Arc<dyn LimitSolver>),
+    /// This path solver, with its tag.
+    Path(String, Arc<dyn PathSolver>),
+}
+
+/// How a case is to be solved: `[solver]`, built.
+#[derive(Debug, Clone)]
+pub struct SolverChoice {
+    /// Who solves it.
+    pub solver: SelectedSolver,
+    /// What a path solver is told; its tolerance is that of certificates too.
+    pub settings: PathSettings,
+}
+
+/// One case, ready to be solved.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Index from 0, variants outermost.
+    pub id: usize,
+    /// Name of its variant, if the study has variants.
+    pub variant: Option<String>,
+    /// Name of its scene, where the study compares several.
+    pub scene: Option<String>,
+    /// Swept key → value.
+    pub parameters: Map<String, Json>,
+    /// Bodies and joints.
+    pub assembly: Assembly,
+    /// Loads, stage by stage.
+    pub stages: Vec<Stage>,
+    /// How it is to be solved.
+    pub solver: SolverChoice,
+    /// Whether force-displacement points are asked for.
+    pub output_curve: bool,
+    /// Keys that were given and have no influence.
+    pub notes: Vec<String>,
+    /// The case's own study file: numbers in SI units, defaults filled in.
+    pub resolved: Json,
+}
+
+/// What is written besides the results.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Output {
+    /// Force-displacement points.
+    pub curve: bool,
+    /// Figures and the report.
+    pub figures: bool,
+    /// Files for ParaView.
+    pub vtu: bool,
+}
+
+/// A study file that holds no mistake.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// Its name.
+    pub name: String,
+    /// What is done with the cases: the tag of a study kind.
+    pub kind: String,
+    /// Its axes and the table of its kind.
+    pub outline: Outline,
+    /// What is written.
+    pub output: Output,
+    /// All cases in order.
+    pub cases: Vec<Case>,
+    /// The file with `--set` applied. Values stand as they were written and defaults are not filled
+    /// in, because a variant may change what a default or a specific weight means; read again, it
+    /// makes exactly the same cases.
+    pub resolved: toml::Value,
+    /// Its base, variants, scenes and axes, from which cases are made.
+    pub(crate) plan: Plan,
+}

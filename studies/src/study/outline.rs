@@ -1,0 +1,24 @@
+//! The axes of a study and the table of its kind: all that a kind is told before cases are made.
+
+use serde_json::{Map, Value as Json};
+
+/// The axes of a study, outermost first, and what its kind is told.
+#[derive(Debug, Clone, Default)]
+pub struct Outline {
+    /// Names of the variants; empty where there are none.
+    pub variants: Vec<String>,
+    /// Names of the scenes compared; empty where there is only one.
+    pub scenes: Vec<String>,
+    /// Keys of each axis of the sweep, which change together, and whether the first takes numbers.
+    pub axes: Vec<(Vec<String>, bool)>,
+    /// The table named after the study's kind; empty where it has none.
+    pub table: Map<String, Json>,
+}
+
+impl Outline {
+    /// The index of the variant that `key` of the kind's table names.
+    pub fn variant(&self, key: &str) -> Option<usize> {
+        let name = self.table.get(key)?.as_str()?;
+        self.variants.iter().position(|variant| variant == name)
+    }
+}

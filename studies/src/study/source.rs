@@ -1,0 +1,48 @@
+//! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
+
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::config::document::{Node, Value, parse, parse_value};
+use crate::config::origin::Origin;
+use crate::config::overlay::set;
+
+/// A study file as a tree of keys, and what was found wrong with it so far.
+#[derive(Debug, Clone)]
+pub struct StudySource {
+    /// The whole file.
+    pub root: Node,
+    /// Keys set on the command line, with their values.
+    pub sets: Vec<(String, String)>,
+    /// Found wrong so far.
+    pub diagnostics: Vec<LocatedDiagnostic>,
+}
+
+impl StudySource {
+    /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
+    /// a value that is no TOML is taken as text. Errors are those of syntax.
+    pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let mut root = parse(text, file)?;
+        let mut diagnostics = Vec::new();
+        for (path, value) in sets {
+            let origin = Origin::Set(path.as_str().into());
+            diagnostics.extend(set(&mut root, path, value_of(value, &origin), &origin).err().map(|wrong| *wrong));
+        }
+        Ok(StudySource { root, sets: sets.to_vec(), diagnostics })
+    }
+
+    /// The tag of the study's kind.
+    pub fn kind(&self) -> &str {
+        kind_of(&self.root)
+    }
+}
+
+/// A value as TOML, or else as text.
+fn value_of(text: &str, origin: &Origin) -> Node {
+    parse_value(text, origin)
+        .or_else(|| parse_value(&format!("{text:?}"), origin))
+        .unwrap_or_else(|| Node { value: Value::String(text.into()), origin: origin.clone() })
+}
+
+/// The word after `kind`.
+pub fn kind_of(root: &Node) -> &str {
+    root.table().and_then(|table| table.get("kind")?.text()).unwrap_or("run")
+}

@@ -1,0 +1,155 @@
+//! The stages of a case: what its loads, gravity and settlements do to the blocks.
+
+use super::diagnostics::DiagnosticList;
+use crate::config::diagnostic::suggest;
+use crate::config::dotted_key::join;
+use crate::loads::{Load, place};
+use serde_json::Value as Json;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Joint, PointForce, Settlement, Stage, Target};
+
+/// All stages, or `None` where there is no list of them.
+pub(super) fn build_stages(
+    diagnostics: &mut DiagnosticList<'_>,
+    stages: &Json,
+    assembly: Option<&Assembly>,
+) -> Option<Vec<Stage>> {
+    let stages = stages.as_array()?;
+    let before = diagnostics.found.len();
+    let mut out: Vec<Stage> = Vec::new();
+    for (index, stage) in stages.iter().enumerate() {
+        let at = format!("stages.{index}");
+        let (target, factors) = build_target(diagnostics, stages, index, &at);
+        let settlements = assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
+        let settlements = settlements.unwrap_or_default();
+        let (forces, accelerations) = build_loads(diagnostics, stage, assembly, &at);
+        let stage = Stage {
+            name: stage["name"].as_str().unwrap_or_default().to_string(),
+            gravity: gravity(&stage["gravity"]),
+            forces,
+            accelerations,
+            settlements,
+            target,
+            factor_min: factors[0],
+            factor_max: factors[1],
+        };
+        if assembly.is_some() && diagnostics.found.len() == before && raises_nothing(&stage) {
+            let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
+            let message = "\"collapse\" needs a load to raise, but this stage has none";
+            diagnostics.wrong(&join(&at, "until"), message, help);
+        }
+        out.push(stage);
+    }
+    Some(out)
+}
+
+/// Whether a stage that goes until collapse has nothing that grows.
+fn raises_nothing(stage: &Stage) -> bool {
+    stage.target == Target::Collapse
+        && stage.forces.iter().all(|force| force.force.norm() == 0.0)
+        && stage.accelerations.iter().all(|acceleration| acceleration.norm() == 0.0)
+        && stage.settlements.is_empty()
+}
+
+/// Where a stage goes, and the least and greatest factor searched; its name is checked too.
+fn build_target(diagnostics: &mut DiagnosticList<'_>, stages: &[Json], index: usize, at: &str) -> (Target, [f64; 2]) {
+    let stage = &stages[index];
+    if stages[..index].iter().any(|earlier| earlier["name"] == stage["name"]) {
+        let message = format!("two stages are called \"{}\"", stage["name"].as_str().unwrap_or_default());
+        diagnostics.wrong(&join(at, "name"), message, "give each stage a name of its own");
+    }
+    let collapse = stage["until"] == "collapse";
+    if collapse && stage.get("factor").is_some() {
+        let help = "keep until to raise the loads to collapse, or factor to stop at that factor";
+        diagnostics.wrong(&join(at, "factor"), "is given besides until = \"collapse\"", help);
+    }
+    if collapse && index + 1 < stages.len() {
+        let message = "\"collapse\" is only possible in the last stage: nothing can be loaded after it";
+        diagnostics.wrong(&join(at, "until"), message, "make it the last stage, or give this stage a factor");
+    }
+    let factor = |key: &str| stage.get(key).and_then(Json::as_f64);
+    let (least, greatest) = (factor("factor_min").unwrap_or(0.0), factor("factor_max").unwrap_or(f64::INFINITY));
+    if least > greatest {
+        let named = if factor("factor_max").is_some() { "factor_max" } else { "factor_min" };
+        let message = format!("the search would go from factor_min = {least} to factor_max = {greatest}");
+        diagnostics.wrong(&join(at, named), message, "factor_min must be at most factor_max");
+    }
+    let target = if collapse { Target::Collapse } else { Target::Factor(factor("factor").unwrap_or(1.0)) };
+    (target, [least, greatest])
+}
+
+/// Gravity from a stage on: downwards, or a vector.
+fn gravity(value: &Json) -> Option<Vec2> {
+    match value {
+        Json::Array(vector) => Some(Vec2::new(vector[0].as_f64().unwrap_or(0.0), vector[1].as_f64().unwrap_or(0.0))),
+        number => number.as_f64().map(|down| Vec2::new(0.0, -down)),
+    }
+}
+
+/// Forces on blocks and accelerations of all of them, load by load.
+fn build_loads(
+    diagnostics: &mut DiagnosticList<'_>,
+    stage: &Json,
+    assembly: Option<&Assembly>,
+    at: &str,
+) -> (Vec<PointForce>, Vec<Vec2>) {
+    let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
+    for (number, table) in stage["loads"].as_array().into_iter().flatten().enumerate() {
+        let path = format!("{at}.loads.{number}");
+        let load: Option<Load> = match serde_json::from_value(table.clone()) {
+            Ok(load) => Some(load),
+            Err(error) => {
+                diagnostics.wrong(&path, format!("cannot be read: {error}"), "correct this load");
+                None
+            }
+        };
+        let (Some(load), Some(assembly)) = (load, assembly) else { continue };
+        match place(&load, assembly, &path) {
+            Ok((placed, accelerated)) => {
+                let (groups, _) = assembly.rigid_groups();
+                let held = placed.iter().find(|f| groups[f.body].is_none() && assembly.is_rigid(f.body));
+                if let Some(force) = held {
+                    let name = &assembly.bodies[force.body].name;
+                    let message = format!(
+                        "the load acts on \"{name}\", which is rigid and held by the ground, so it has no effect"
+                    );
+                    let help = "move the load to a block that can move, or join the ends: ends = \"jointed\"";
+                    diagnostics.wrong(&path, message, help);
+                }
+                forces.extend(placed);
+                accelerations.extend(accelerated);
+            }
+            Err(wrong) => diagnostics.extend(wrong),
+        }
+    }
+    (forces, accelerations)
+}
+
+/// The movements of supports of a stage.
+fn build_settlements(
+    diagnostics: &mut DiagnosticList<'_>,
+    list: &Json,
+    assembly: &Assembly,
+    at: &str,
+) -> Vec<Settlement> {
+    let mut out = Vec::new();
+    for (number, entry) in list.as_array().into_iter().flatten().enumerate() {
+        let support = entry["support"].as_str().unwrap_or_default();
+        let fixed: Vec<&str> = assembly.bodies.iter().filter(|b| b.fixed).map(|b| b.name.as_str()).collect();
+        let Some(body) = assembly.body(support).filter(|body| assembly.bodies[*body].fixed) else {
+            let path = format!("{at}.settlement.{number}.support");
+            let help = suggest(support, &fixed, "supports here");
+            diagnostics.wrong(&path, format!("there is no support \"{support}\""), help);
+            continue;
+        };
+        let joint = assembly.joints.iter().find(|joint| joint.minus == body || joint.plus == body);
+        let number = |key: &str, i: usize| entry[key][i].as_f64().unwrap_or(0.0);
+        out.push(Settlement {
+            body,
+            displacement: Vec2::new(number("displacement", 0), number("displacement", 1)),
+            rotation: entry["rotation"].as_f64().unwrap_or(0.0),
+            about: joint.map_or(Vec2::zeros(), Joint::middle),
+        });
+    }
+    out
+}

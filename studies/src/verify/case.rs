@@ -1,0 +1,53 @@
+//! One case: its label, its stages, and then what limit analysis or a path claims.
+
+use super::findings::Findings;
+use super::{limit, path};
+use crate::results::CaseResult;
+use crate::study::Case;
+use voussoir_core::limit::Status;
+use voussoir_core::model::Target;
+use voussoir_core::plugin::{PluginKind, card};
+
+/// What is wrong with a result.
+pub(super) fn verify_case(case: &Case, result: &CaseResult) -> Vec<String> {
+    let mut findings = Findings::default();
+    match recompute(case, result, &mut findings) {
+        Ok(()) => findings.0,
+        Err(why) => vec![why],
+    }
+}
+
+fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
+    findings.expect(result.label.variant == case.variant, "variant is not that of the study");
+    findings.expect(result.label.scene == case.scene, "scene is not that of the study");
+    findings.expect(result.label.parameters == case.parameters, "parameters are not those of the study");
+    let last = result.stages.len().checked_sub(1).ok_or("no stage")?;
+    case.stages.get(last).ok_or("more stages than the study has")?;
+    verify_stages(case, result, last, findings);
+    if result.status == Status::Stalled {
+        findings.expect(result.load_factor.is_none(), "stalled with a load factor");
+        return Ok(());
+    }
+    match card(PluginKind::PathSolver, &result.solver) {
+        Some(_) => path::verify(case, result, findings),
+        None => limit::verify(case, result, last, findings),
+    }
+}
+
+/// Names, factors and statuses of the stages up to the last that was begun.
+fn verify_stages(case: &Case, result: &CaseResult, last: usize, findings: &mut Findings) {
+    let named = result.stages.iter().zip(&case.stages).all(|(done, stage)| done.name == stage.name);
+    findings.expect(named, "stages are not those of the study");
+    findings.expect(result.stages[last].status == result.status, "status is not that of the last stage");
+    let earlier_stand = result.stages[..last].iter().all(|s| s.status == Status::Stands);
+    findings.expect(
+        earlier_stand || result.status == Status::NoEquilibrium || result.status == Status::Stalled,
+        "an earlier stage did not stand",
+    );
+    for (done, stage) in result.stages[..last].iter().zip(&case.stages) {
+        let reached = matches!(stage.target, Target::Factor(factor) if done.factor == Some(factor));
+        let fine = reached || done.status != Status::Stands;
+        findings.expect(fine, "the factor of an earlier stage is not that of the study");
+        findings.expect(done.hinges.is_empty(), "an earlier stage has hinges");
+    }
+}

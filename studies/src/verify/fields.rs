@@ -1,0 +1,91 @@
+//! Stored forces and motions, read back with their checks: they stand on the scene and hold finite numbers.
+
+use crate::results::path_state::motion_of_body;
+use crate::results::{CaseResult, FieldEntry, MotionEntry};
+use voussoir_core::certificate::{CentroidVelocity, ContactForce};
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::{Vec2, distance_to_segment};
+use voussoir_core::path::PathProblem;
+
+/// Relative difference up to which recomputed numbers count as equal.
+pub const EQUAL: f64 = 1e-9;
+
+/// Whether two numbers are equal but for rounding; NaN is equal to nothing.
+pub fn close(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= EQUAL * a.abs().max(b.abs())
+}
+
+/// Contact forces of a stored field, or why it is none.
+pub fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<ContactForce>, String> {
+    let size = assembly.size();
+    field
+        .iter()
+        .map(|entry| {
+            let joint = assembly.joints.get(entry.joint).ok_or(format!("field: no joint {}", entry.joint))?;
+            let point = Vec2::from(entry.point);
+            // Written so that NaN fails.
+            let on_joint = distance_to_segment(point, joint.ends[0], joint.ends[1]) <= EQUAL * size;
+            if !on_joint || !entry.force.iter().all(|f| f.is_finite()) {
+                return Err(format!("field: a force of joint {} does not act on that joint", entry.joint));
+            }
+            Ok(ContactForce { joint: entry.joint, point, force: entry.force })
+        })
+        .collect()
+}
+
+/// Forces of a stored field at the contact points of a path's problem, in their order.
+pub fn path_forces(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    entries: &[FieldEntry],
+) -> Result<Vec<[f64; 2]>, String> {
+    let forces = contacts(assembly, entries)?;
+    let same = forces.len() == problem.contacts.len()
+        && forces
+            .iter()
+            .zip(&problem.contacts)
+            .all(|(f, c)| f.joint == c.joint && (f.point - c.position).norm() <= 1e-9 * problem.length);
+    if same {
+        Ok(forces.iter().map(|f| f.force).collect())
+    } else {
+        Err("field: not the contact points of the scene".into())
+    }
+}
+
+/// Rigid motions of a path's bodies from the stored displacements of the blocks.
+pub fn path_motion(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    result: &CaseResult,
+    finite: bool,
+) -> Result<Vec<[f64; 3]>, String> {
+    let displaced = result.path.displacements.as_ref().ok_or("no displacements")?;
+    if displaced.len() != assembly.bodies.len() {
+        return Err("displacements: not one per block".into());
+    }
+    let mut motion = vec![[0.0; 3]; problem.bodies.len()];
+    for (block, entry) in displaced.iter().enumerate() {
+        if entry.body != assembly.bodies[block].name {
+            return Err("displacements: another block".into());
+        }
+        motion[problem.body_of[block]] = motion_of_body(assembly, problem, block, entry.displacement, finite);
+    }
+    Ok(motion)
+}
+
+/// Velocities of a stored motion, one for each body, or why it is none.
+pub fn velocities(assembly: &Assembly, motion: &[MotionEntry]) -> Result<Vec<CentroidVelocity>, String> {
+    if motion.len() != assembly.bodies.len() {
+        return Err("motion: not one velocity for each body".into());
+    }
+    assembly
+        .bodies
+        .iter()
+        .zip(motion)
+        .map(|(body, entry)| {
+            let fine = body.name == entry.body && entry.velocity.iter().all(|v| v.is_finite());
+            fine.then_some(entry.velocity)
+                .ok_or(format!("motion: \"{}\" is not the velocity of \"{}\"", entry.body, body.name))
+        })
+        .collect()
+}

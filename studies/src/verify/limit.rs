@@ -1,0 +1,168 @@
+//! What a result of limit analysis claims: the certificate from the stored fields, bounds, factors, mechanism.
+
+use super::fields::{EQUAL, close, contacts, velocities};
+use super::findings::Findings;
+use super::mechanism::{differences, same_line};
+use crate::results::CaseResult;
+use crate::results::stage_start::search_start;
+use crate::results::thrust_line::thrust_line;
+use crate::study::Case;
+use voussoir_core::certificate::{
+    CentroidVelocity, Certificate, Claim, ContactForce, NonAssociatedClaim, certify, mechanism,
+};
+use voussoir_core::law::{FlowRule, is_associated};
+use voussoir_core::limit::Status;
+use voussoir_core::model::{Assembly, Bond, Stage, StageLoads, Target, stage_loads};
+
+/// Stored forces and velocities, as certificates read them.
+struct Stored {
+    field: Option<Vec<ContactForce>>,
+    ray: Option<Vec<ContactForce>>,
+    motion: Option<Vec<CentroidVelocity>>,
+    associated_motion: Option<Vec<CentroidVelocity>>,
+}
+
+impl Stored {
+    fn read(assembly: &Assembly, result: &CaseResult) -> Result<Self, String> {
+        let forces = |entries: Option<&[_]>| entries.map(|entries| contacts(assembly, entries)).transpose();
+        let motions = |entries: Option<&[_]>| entries.map(|entries| velocities(assembly, entries)).transpose();
+        Ok(Stored {
+            field: forces(result.proof.field.as_deref())?,
+            ray: forces(result.proof.ray.as_deref())?,
+            motion: motions(result.proof.motion.as_deref())?,
+            associated_motion: motions(result.non_associated.associated_motion.as_deref())?,
+        })
+    }
+}
+
+/// Whether some joint's own flow is not associated.
+fn non_associated(assembly: &Assembly) -> bool {
+    assembly.joints.iter().any(|joint| match joint.bond {
+        Bond::Bonded => false,
+        Bond::Law(law) => {
+            let facets = assembly.catalogue.laws[law].1.formulation().facets();
+            facets.is_some_and(|facets| !is_associated(&facets))
+        }
+    })
+}
+
+/// Checks the result of a case whose stage `last` ended it.
+pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &mut Findings) -> Result<(), String> {
+    let (assembly, stage) = (&case.assembly, &case.stages[last]);
+    let stored = Stored::read(assembly, result)?;
+    let start = match stage.target {
+        Target::Collapse => search_start(stage),
+        // A stage whose loads decrease is asked at its end, any other at its start.
+        Target::Factor(factor) => factor.min(0.0),
+    };
+    let non_associated = non_associated(assembly);
+    let associated_factor = result.non_associated.associated_load_factor;
+    let own = (non_associated && result.flow_read_as.is_none()) || associated_factor.is_some();
+    findings.expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
+    let infinite = [f64::NEG_INFINITY, f64::INFINITY];
+    let claim = Claim {
+        status: result.status,
+        factor: result.load_factor,
+        field_factor: result.proof.field_factor.unwrap_or(start),
+        start,
+        field: stored.field.as_deref(),
+        motion: stored.motion.as_deref(),
+        ray: stored.ray.as_deref(),
+        feasible_interval: result.feasible_interval.map(|ends| [0, 1].map(|i| ends[i].unwrap_or(infinite[i]))),
+        non_associated: own.then_some(NonAssociatedClaim {
+            proved_lower: result.bounds.map(|b| b[0]),
+            lower_proof: result.non_associated.lower_proof.as_ref(),
+            associated_factor,
+            associated_motion: stored.associated_motion.as_deref(),
+        }),
+    };
+    let loads = &stage_loads(assembly, &case.stages)[last];
+    let (certificate, bounds) = certify(assembly, loads, &claim, case.solver.settings.tolerance);
+    verify_certificate(result, &certificate, bounds, findings);
+    verify_factors(result, (stage, loads), &claim, last, findings);
+    let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
+    verify_mechanism(assembly, result, &stored, reading, last, findings);
+    let fits = result.flow_read_as.as_deref().is_none_or(|word| word == "associated" && non_associated);
+    findings.expect(fits, "flow_read_as does not fit the laws");
+    if !certificate.passed {
+        findings.0.extend(certificate.failures);
+    }
+    Ok(())
+}
+
+/// The stored certificate and bounds against the recomputed ones.
+fn verify_certificate(
+    result: &CaseResult,
+    certificate: &Certificate,
+    bounds: Option<[f64; 2]>,
+    findings: &mut Findings,
+) {
+    let verdict = certificate.passed == result.certificate.passed;
+    findings.expect(verdict, "the stored verdict is not the recomputed one");
+    let same = certificate.residuals.iter().all(|(name, value)| {
+        result.certificate.residuals.get(name).is_some_and(|stored| (stored - value).abs() <= EQUAL)
+    });
+    findings.expect(same, "stored residuals are not the recomputed ones");
+    let collapse = result.status == Status::Collapse;
+    findings.expect(result.load_factor.is_some() == collapse, "only a collapse has a load factor");
+    let bounds_match = match (result.bounds, bounds) {
+        (Some(a), Some(b)) => close(a[0], b[0]) && close(a[1], b[1]),
+        (None, None) => true,
+        _ => false,
+    };
+    findings.expect(bounds_match, "bounds are not those of field and mechanism");
+}
+
+/// The factors of the last stage, of the field and of the feasible interval.
+fn verify_factors(
+    result: &CaseResult,
+    (stage, loads): (&Stage, &StageLoads),
+    claim: &Claim,
+    last: usize,
+    findings: &mut Findings,
+) {
+    let start = claim.start;
+    if let Some([Some(low), Some(high)]) = result.feasible_interval {
+        let apart = low <= high && !(low <= start && start <= high);
+        findings.expect(apart, "the feasible interval holds the start");
+    }
+    if let (Some(reached), Target::Factor(factor)) = (result.stages[last].factor, stage.target) {
+        let expected = if result.status == Status::Collapse { result.load_factor.unwrap_or(f64::NAN) } else { factor };
+        findings.expect(close(reached, expected), "the factor of the last stage is not the load factor");
+    }
+    if let (Status::Collapse, Target::Collapse) = (result.status, stage.target) {
+        let same = result.stages[last].factor == result.load_factor;
+        findings.expect(same, "the factor of the last stage is not the load factor");
+    }
+    if result.status == Status::Stands {
+        let reached = match stage.target {
+            Target::Factor(factor) => factor,
+            Target::Collapse => stage.factor_max,
+        };
+        let idle = loads.varying.iter().all(|w| *w == [0.0; 3]);
+        let there = idle || close(claim.field_factor, reached);
+        findings.expect(there, "the field is not at the factor the stage goes to");
+    }
+}
+
+/// Mechanism, hinges of the last stage and thrust line against those of motion and forces.
+fn verify_mechanism(
+    assembly: &Assembly,
+    result: &CaseResult,
+    stored: &Stored,
+    reading: FlowRule,
+    last: usize,
+    findings: &mut Findings,
+) {
+    let unique = result.mechanism.as_ref().and_then(|m| m.unique);
+    let recomputed = stored.motion.as_ref().and_then(|motion| mechanism(assembly, motion, unique, reading));
+    match (&result.mechanism, &recomputed) {
+        (Some(stored), Some(recomputed)) => findings.0.extend(differences(stored, recomputed)),
+        (None, None) => {}
+        _ => findings.expect(false, "there is a motion without a mechanism, or a mechanism without a motion"),
+    }
+    let hinges: Vec<usize> = result.mechanism.iter().flat_map(|m| &m.hinges).map(|h| h.joint).collect();
+    findings.expect(result.stages[last].hinges == hinges, "hinges of the last stage are not those of the mechanism");
+    let line = stored.field.as_ref().and_then(|field| thrust_line(assembly, field));
+    findings.expect(same_line(&line, &result.proof.thrust_line), "the thrust line is not that of the field");
+}

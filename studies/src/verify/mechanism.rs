@@ -1,0 +1,59 @@
+//! A stored mechanism and thrust line against those that follow from the stored motion and forces.
+
+use super::fields::{EQUAL, close};
+use voussoir_core::certificate::Mechanism;
+use voussoir_core::model::geometry::Vec2;
+
+/// In what a stored mechanism is not the recomputed one.
+pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {
+    let mut wrong = Vec::new();
+    if stored.kind != recomputed.kind {
+        wrong.push(format!("kind {:?}, by the motion {:?}", stored.kind, recomputed.kind));
+    }
+    if stored.hinge_count != recomputed.hinge_count {
+        wrong.push(format!("hinge_count {}, by the motion {}", stored.hinge_count, recomputed.hinge_count));
+    }
+    let hinges = stored.hinges.len() == recomputed.hinges.len()
+        && stored.hinges.iter().zip(&recomputed.hinges).all(|(a, b)| {
+            (a.joint, &a.between, a.side) == (b.joint, &b.between, b.side)
+                && close(a.rotation, b.rotation)
+                && (Vec2::from(a.point) - Vec2::from(b.point)).norm() <= EQUAL * (1.0 + Vec2::from(b.point).norm())
+        });
+    if !hinges {
+        wrong.push("hinges are not those of the motion".into());
+    }
+    let sliding = stored.sliding.len() == recomputed.sliding.len()
+        && stored
+            .sliding
+            .iter()
+            .zip(&recomputed.sliding)
+            .all(|(a, b)| (a.joint, &a.between) == (b.joint, &b.between) && close(a.slip, b.slip));
+    let crushing = stored.crushing.len() == recomputed.crushing.len()
+        && stored
+            .crushing
+            .iter()
+            .zip(&recomputed.crushing)
+            .all(|(a, b)| (a.joint, &a.between) == (b.joint, &b.between) && close(a.share, b.share));
+    if !sliding || !crushing {
+        wrong.push("sliding or crushing joints are not those of the motion".into());
+    }
+    wrong
+}
+
+/// Whether two thrust lines are the same but for rounding.
+pub(super) fn same_line(a: &Option<Vec<Option<[f64; 2]>>>, b: &Option<Vec<Option<[f64; 2]>>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            a.len() == b.len()
+                && a.iter().zip(b).all(|pair| match pair {
+                    (Some(p), Some(q)) => {
+                        (Vec2::from(*p) - Vec2::from(*q)).norm() <= EQUAL * (1.0 + Vec2::from(*q).norm())
+                    }
+                    (None, None) => true,
+                    _ => false,
+                })
+        }
+        (None, None) => true,
+        _ => false,
+    }
+}

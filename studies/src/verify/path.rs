@@ -1,0 +1,96 @@
+//! What a path's result claims. The history (slip before the end) is not stored; equilibrium, strength, contact
+//! and mechanism of the state are recomputed.
+
+use super::fields::{path_forces, path_motion, velocities};
+use super::findings::Findings;
+use crate::results::CaseResult;
+use crate::results::inelastic_state;
+use crate::results::path_state::{mechanism_of, small};
+use crate::study::Case;
+use voussoir_core::certificate::{
+    CentroidVelocity, Mechanism, PathChecker, flow_residual, power_residual, ray_residual,
+};
+use voussoir_core::limit::Status;
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::path::{Displaced, PathObserver, PathProblem, PathState};
+
+/// Checks the result of a case that a path solver answered.
+pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
+    let assembly = &case.assembly;
+    let problem = PathProblem::new(assembly, &case.stages)?;
+    let finite = case.solver.settings.finite;
+    let state = stored_state(assembly, &problem, result, finite)?;
+    let mut watch = PathChecker::new(finite);
+    watch.state(&problem, &state);
+    for (name, value) in &watch.worst {
+        findings.expect(small(name, *value), &format!("{name} is {value:.2e}"));
+    }
+    if matches!(result.status, Status::Collapse | Status::LimitPoint) && result.load_factor.is_some() {
+        let same = result.load_factor == result.proof.field_factor;
+        findings.expect(same, "the load factor is not that of the field");
+    }
+    if result.status == Status::Collapse {
+        findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
+    }
+    if let (Some(motion), false) = (&result.proof.motion, finite) {
+        let velocities = velocities(assembly, motion)?;
+        verify_motion((assembly, &problem), &state, &velocities, result, findings);
+    }
+    if result.status == Status::Unbounded {
+        let ray = path_forces(assembly, &problem, result.proof.ray.as_deref().ok_or("unbounded without a ray")?)?;
+        let residual = ray_residual(&problem, &problem.load_steps[state.load_step].loading, &ray);
+        findings.expect(small("path_ray", residual), "the ray does not carry the load");
+    }
+    Ok(())
+}
+
+/// The state that a result ends at, from its entries.
+fn stored_state(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    result: &CaseResult,
+    finite: bool,
+) -> Result<PathState, String> {
+    let stage = result.stages.len() - 1;
+    let load_step = problem.load_steps.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
+    let load_step = match result.status {
+        Status::NoEquilibrium => problem.load_steps.iter().position(|d| d.stage == stage).unwrap_or(load_step),
+        _ => load_step,
+    };
+    let force = path_forces(assembly, problem, result.proof.field.as_deref().ok_or("no field")?)?;
+    let motion = path_motion(assembly, problem, result, finite)?;
+    let factor = result.proof.field_factor.ok_or("no factor of the field")?;
+    let mut state = PathState { load_step, factor, force, motion, ..PathState::default() };
+    state.gap = vec![[0.0; 2]; problem.contacts.len()];
+    state.memory = result.path.joint_states.clone().unwrap_or_default();
+    state.yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;
+    state.gap = Displaced::new(problem, &state, finite).gaps();
+    Ok(state)
+}
+
+/// The motion of a path with small displacements: its flow, its scale and its mechanism.
+fn verify_motion(
+    (assembly, problem): (&Assembly, &PathProblem),
+    state: &PathState,
+    velocities: &[CentroidVelocity],
+    result: &CaseResult,
+    findings: &mut Findings,
+) {
+    let mut rates = vec![[0.0; 3]; problem.bodies.len()];
+    for (block, [x, y, omega]) in velocities.iter().enumerate() {
+        let body = problem.body_of[block];
+        let v = Vec2::new(*x, *y) + turned(problem.bodies[body].pole - assembly.inertia(block).centroid) * *omega;
+        rates[body] = [v.x, v.y, *omega];
+    }
+    let flow = flow_residual(problem, &state.force, &rates);
+    findings.expect(small("path_flow", flow), &format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
+    if result.status == Status::Collapse {
+        let power = power_residual(problem, &problem.load_steps[state.load_step].loading, &rates);
+        findings.expect(small("path_power", power), "the mechanism is not scaled to p·q̇ = 1");
+    }
+    let unique = result.mechanism.as_ref().and_then(|m| m.unique);
+    let found = mechanism_of((assembly, problem), state, velocities, unique, false);
+    let kind = |m: &Option<Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
+    findings.expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
+}
