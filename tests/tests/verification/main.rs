@@ -11,6 +11,7 @@ mod event;
 mod finite;
 mod flow_rule;
 mod newton;
+mod path_certificate;
 mod paths_read;
 mod plastic;
 mod redundants;
