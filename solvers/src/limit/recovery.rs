@@ -1,6 +1,6 @@
 //! Fields and mechanisms to rounding from the rows that are known to yield and to move.
 
-use super::driven;
+use super::scale::with_unit_power;
 use super::systems::Systems;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 use voussoir_core::linear::{Entries, SparseLdlt};
@@ -102,7 +102,7 @@ impl Systems {
         let (z, error) = nearest(&rows, &right, start)?;
         let violation = z[bodies..].iter().map(|g| -g).fold(error, f64::max);
         let motion = z[..bodies].chunks(3).map(|q| [q[0], q[1], q[2] / self.length]).collect();
-        Some((driven(&problem.varying, motion), violation / greatest))
+        Some((with_unit_power(&problem.varying, motion), violation / greatest))
     }
 
     /// Joint forces \[N\] of force variables.

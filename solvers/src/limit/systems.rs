@@ -4,7 +4,7 @@
 //! E r + p θ = −w and s = b − A r ≥ 0, 0 ≤ θ ≤ t; *kinematics* is Eᵀ q̇ + Dᵀ γ = 0, p·q̇ = 1,
 //! γ ≥ 0. A pair i is a row of a joint: s_i γ_i = 0.
 
-use super::{force_scale, force_unit};
+use super::scale::{force_scale, force_unit};
 use crate::optimise::dense_simplex::{Dictionary, Equations};
 use voussoir_core::law::{FacetMode, Tangential};
 use voussoir_core::limit::LimitProblem;
@@ -141,7 +141,7 @@ impl Systems {
     }
 
     /// Index of t − θ, of statics, and of t − (power), of kinematics.
-    pub fn room(&self) -> usize {
+    pub fn upper_slack(&self) -> usize {
         self.pairs.len() + 1
     }
 
@@ -175,7 +175,7 @@ impl Systems {
     }
 
     /// Index of (power) − a, of kinematics, where a ≤ θ.
-    pub fn excess(&self) -> usize {
+    pub fn lower_slack(&self) -> usize {
         self.pairs.len() + 2
     }
 
@@ -196,7 +196,7 @@ impl Systems {
         for i in moving() {
             self.pairs[i].flow.iter().for_each(|&(j, v)| rows[j][free + i] += v);
         }
-        let bounds = [(range[1], 1.0, 0, self.room()), (range[0], -1.0, 1, self.excess())];
+        let bounds = [(range[1], 1.0, 0, self.upper_slack()), (range[0], -1.0, 1, self.lower_slack())];
         for (bound, sign, side, variable) in bounds {
             if !bound.is_finite() || moving().any(|i| !dissipation[i][side].is_finite()) {
                 continue;

@@ -5,7 +5,7 @@ use crate::study::SelectedSolver;
 use std::sync::Arc;
 use voussoir_core::limit::{LimitProblem, LimitSolver};
 use voussoir_core::path::PathSolver;
-use voussoir_solvers::limit::{chain::LimitChain, conic::LimitConic, least::LimitLeast};
+use voussoir_solvers::limit::{chain::LimitChain, conic::LimitConic, nonassociated::LimitNonassociated};
 use voussoir_solvers::path::{event::EventPath, newton::NewtonPath};
 
 /// The path solver that answers, if it is not for limit analysis: the one named, or for `auto` on
@@ -46,7 +46,7 @@ pub fn limit_solvers(selected: &SelectedSolver, problem: &LimitProblem) -> Vec<(
                 all.insert(0, ("limit_chain".to_string(), chain));
             }
             if problem.non_associated {
-                all.insert(0, ("limit_least".to_string(), Arc::new(LimitLeast::default())));
+                all.insert(0, ("limit_least".to_string(), Arc::new(LimitNonassociated::default())));
             }
             all
         }

@@ -1,7 +1,7 @@
 //! The program of one optimisation in scaled, sparse form.
 
 use voussoir_core::law::{StressBlock, Tangential};
-use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
 
 /// A sparse row of coefficients.
@@ -78,6 +78,40 @@ pub struct Loads<'a> {
     pub force: f64,
 }
 
+/// Rows and crushing of one joint from its first variable on.
+fn strength_rows(
+    joint: &LimitJoint,
+    first: usize,
+    shear: bool,
+    loads: &Loads,
+    (rows, bounds, blocks): (&mut Vec<Row>, &mut Vec<f64>, &mut Vec<Block>),
+) {
+    for row in &joint.strength.rows {
+        let entries: Row = (0..if shear { 3 } else { 2 })
+            .filter(|&k| row.normal[k] != 0.0)
+            .map(|k| (first + k, row.normal[k]))
+            .collect();
+        if !entries.is_empty() {
+            rows.push(entries);
+            bounds.push(if loads.strengths { row.bound / loads.force } else { 0.0 });
+        }
+    }
+    match joint.strength.block {
+        Some(block) if loads.strengths => {
+            let strength = StressBlock { tension: block.tension / loads.force, total: block.total / loads.force };
+            blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
+        }
+        Some(_) => {
+            // A bounded normal force has no direction to grow in.
+            for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                rows.push(vec![(first + k, sign)]);
+                bounds.push(0.0);
+            }
+        }
+        None => {}
+    }
+}
+
 impl System {
     /// Builds and scales.
     pub fn new(problem: &LimitProblem, loads: &Loads) -> Self {
@@ -111,30 +145,7 @@ impl System {
                     }
                 }
             }
-            for row in &joint.strength.rows {
-                let entries: Row = (0..if shear { 3 } else { 2 })
-                    .filter(|&k| row.normal[k] != 0.0)
-                    .map(|k| (first + k, row.normal[k]))
-                    .collect();
-                if !entries.is_empty() {
-                    rows.push(entries);
-                    bounds.push(if loads.strengths { row.bound / force } else { 0.0 });
-                }
-            }
-            match joint.strength.block {
-                Some(block) if loads.strengths => {
-                    let strength = StressBlock { tension: block.tension / force, total: block.total / force };
-                    blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
-                }
-                Some(_) => {
-                    // A bounded normal force has no direction to grow in.
-                    for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
-                        rows.push(vec![(first + k, sign)]);
-                        bounds.push(0.0);
-                    }
-                }
-                None => {}
-            }
+            strength_rows(joint, first, shear, loads, (&mut rows, &mut bounds, &mut blocks));
         }
         for group in 0..problem.groups {
             for i in 0..3 {
