@@ -5,14 +5,19 @@
 //! results read back, `messages` the exact text of every error, `architecture` the house itself. One file of one:
 //! `cargo test --release -p voussoir-tests --test verification arch::`.
 
+mod arch;
+pub mod by_hand;
+pub mod known;
 pub mod random;
 pub mod samples;
 pub mod seen;
+mod wall;
 pub mod written;
 
+pub use arch::{Arch, as_blocks};
+pub use wall::Wall;
+
 use voussoir::core::limit::Status;
-use voussoir::core::model::Assembly;
-use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::PathSettings;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
@@ -54,50 +59,10 @@ pub fn assert_close(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a:.16} is not {b:.16}: relative difference {:.2e}", (a - b) / b);
 }
 
-/// The reference arch with its variations: everything a test may want to change.
-#[derive(Debug, Clone)]
-pub struct Arch {
-    /// Intrados span \[m\].
-    pub span: f64,
-    /// Rise \[m\].
-    pub rise: f64,
-    /// Ring thickness \[m\].
-    pub thickness: f64,
-    /// Out of plane \[m\].
-    pub width: f64,
-    /// Number of voussoirs.
-    pub voussoirs: usize,
-    /// `bonded` or `jointed`.
-    pub ends: &'static str,
-    /// Table of the joint law, without brackets.
-    pub joint: String,
-    /// Load position along the span.
-    pub span_fraction: f64,
-    /// Downward load for factor 1 \[N\].
-    pub load: f64,
-    /// ρ \[kg/m³\].
-    pub density: f64,
-    /// Solver tag.
-    pub solver: &'static str,
-}
-
-impl Default for Arch {
-    /// The Strathmashie bridge of Drosopoulos et al. (2008), 15 voussoirs, bonded ends, μ 0.6.
-    fn default() -> Self {
-        Arch {
-            span: 9.42,
-            rise: 2.99,
-            thickness: 0.6,
-            width: 5.81,
-            voussoirs: 15,
-            ends: "bonded",
-            joint: friction(0.6),
-            span_fraction: 0.25,
-            load: 1000.0,
-            density: 2200.0,
-            solver: "auto",
-        }
-    }
+/// The text with something else in the place of `from`, which must be there.
+pub fn changed(text: &str, from: &str, to: &str) -> String {
+    assert!(text.contains(from), "nothing to change: {from:?} is not in\n{text}");
+    text.replace(from, to)
 }
 
 /// Associated Coulomb friction.
@@ -110,118 +75,12 @@ pub fn crushing(mu: f64, strength: f64) -> String {
     format!("law = \"mohr_coulomb\"\nfriction = {mu:?}\ncompressive_strength = {strength:?}")
 }
 
-impl Arch {
-    /// The scene and its laws without stages.
-    fn head(&self) -> String {
-        format!(
-            r#"name = "arch"
-[scene]
-scene = "arch"
-profile = {{ shape = "segmental", span = {:?}, rise = {:?} }}
-thickness = {:?}
-width = {:?}
-voussoirs = {}
-ends = "{}"
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = {:?}
-[joints.dry]
-{}
-[solver]
-solver = "{}"
-[[stages]]
-name = "dead"
-gravity = 9.81
-"#,
-            self.span,
-            self.rise,
-            self.thickness,
-            self.width,
-            self.voussoirs,
-            self.ends,
-            self.density,
-            self.joint,
-            self.solver
-        )
-    }
-
-    /// The study with a point load grown until collapse.
-    pub fn study(&self) -> String {
-        format!(
-            "{}[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{{ kind = \"point\", span_fraction = {:?}, force = [0.0, {:?}] }}]\n",
-            self.head(),
-            self.span_fraction,
-            -self.load
-        )
-    }
-
-    /// The study under its own weight only.
-    pub fn dead_study(&self) -> String {
-        self.head()
-    }
+/// A linear elastic material without its density.
+pub fn elastic(young_modulus: f64, poisson_ratio: f64) -> String {
+    format!("law = \"elastic\"\nyoung_modulus = {young_modulus:?}\npoisson_ratio = {poisson_ratio:?}")
 }
 
-/// A `blocks` study of the same blocks and laws as the arch, every point sent through `map`, gravity
-/// and load through `turn`; `order` gives the order of the blocks.
-pub fn as_blocks(arch: &Arch, map: impl Fn(Vec2) -> Vec2, turn: impl Fn(Vec2) -> Vec2, order: &[usize]) -> String {
-    let case = first_case(&arch.study());
-    let assembly: &Assembly = &case.assembly;
-    let vertices = |points: &[Vec2]| {
-        let all: Vec<String> = points.iter().map(|p| map(*p)).map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
-        format!("[{}]", all.join(", "))
-    };
-    let mut blocks: Vec<String> = Vec::new();
-    for (body, outwards) in [(0, -1.0), (assembly.bodies.len() - 1, 1.0)] {
-        let joint = &assembly.joints[if body == 0 { 0 } else { assembly.joints.len() - 1 }];
-        let off = joint.frame().0 * (0.3 * outwards);
-        let quad = [joint.ends[0], joint.ends[1], joint.ends[1] + off, joint.ends[0] + off];
-        blocks.push(format!("{{ name = \"ground{body}\", vertices = {}, fixed = true }}", vertices(&quad)));
-    }
-    for &k in order {
-        let body = &assembly.bodies[1 + k];
-        blocks.push(format!("{{ name = \"b{k}\", vertices = {} }}", vertices(&body.vertices)));
-    }
-    let load = case.stages[1].forces[0];
-    let (point, force) = (map(load.point), turn(load.force));
-    let gravity = turn(Vec2::new(0.0, -9.81));
-    format!(
-        r#"name = "blocks"
-[scene]
-scene = "blocks"
-width = {:?}
-material = "stone"
-joint = "dry"
-blocks = [
-{}
-]
-[materials.stone]
-law = "rigid"
-density = {:?}
-[joints.dry]
-{}
-[solver]
-solver = "{}"
-[[stages]]
-name = "dead"
-gravity = [{:?}, {:?}]
-[[stages]]
-name = "live"
-until = "collapse"
-loads = [{{ kind = "point", block = "b{}", point = [{:?}, {:?}], force = [{:?}, {:?}] }}]
-"#,
-        arch.width,
-        blocks.join(",\n"),
-        arch.density,
-        arch.joint,
-        arch.solver,
-        gravity.x,
-        gravity.y,
-        load.body - 1,
-        point.x,
-        point.y,
-        force.x,
-        force.y
-    )
+/// A joint law with compliance \[Pa/m\].
+pub fn compliant(joint: &str, normal_stiffness: f64, shear_stiffness: f64) -> String {
+    format!("{joint}\nnormal_stiffness = {normal_stiffness:?}\nshear_stiffness = {shear_stiffness:?}")
 }

@@ -94,9 +94,13 @@ impl RandomScene {
 
     /// The study of limit analysis, slip associated.
     pub fn associated(&self) -> String {
-        let text = self.study("limit_conic", None).replace("law = \"coulomb\"", "law = \"coulomb_associated\"");
-        let lines: Vec<&str> = text.lines().filter(|l| !l.starts_with("dilatancy_angle")).collect();
-        lines.join("\n")
+        let joint: Vec<String> = self
+            .joint
+            .lines()
+            .filter(|line| !line.starts_with("dilatancy_angle"))
+            .map(|line| if line == "law = \"coulomb\"" { "law = \"coulomb_associated\"".into() } else { line.into() })
+            .collect();
+        RandomScene { joint: joint.join("\n"), ..self.clone() }.study("limit_conic", None)
     }
 }
 

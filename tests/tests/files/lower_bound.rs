@@ -1,13 +1,21 @@
 //! The lower end of a bracket is recomputed: multipliers of products prove it, and no other number passes.
 
 use serde_json::{Value, json};
+use voussoir_tests::Wall;
 use voussoir_tests::written::{findings, results};
 
 /// A wall whose least load is below the associated one.
-fn wall(solver: &str, joint: &str) -> String {
-    format!(
-        "name = \"wall\"\n[scene]\nscene = \"wall\"\nwidth = 1.0\nbrick = [0.4, 0.2]\nrows = [[1.0, 1.0], [0.5, 1.0, 0.5], [1.0, 1.0]]\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{joint}\n[solver]\nsolver = \"limit_least\"\n{solver}\n[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = [10.0, 0.0] }}]\n"
-    )
+fn wall(limits: &str, joint: &str) -> String {
+    let rows: [&[f64]; 3] = [&[1.0, 1.0], &[0.5, 1.0, 0.5], &[1.0, 1.0]];
+    Wall {
+        brick: [0.4, 0.2],
+        gravity: 10.0,
+        push: [10.0, 0.0],
+        joint: joint.into(),
+        solver: format!("solver = \"limit_least\"\n{limits}"),
+        ..Wall::of_rows(&rows)
+    }
+    .study()
 }
 
 const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.9";

@@ -1,7 +1,8 @@
 //! Work done, as counts: a performance regression fails here without a clock.
 
 use voussoir::results::CaseResult;
-use voussoir_tests::{Arch, answered, friction};
+use voussoir_tests::known::peers_ring;
+use voussoir_tests::{Arch, answered, compliant, elastic, friction};
 
 fn pivots(voussoirs: usize) -> u64 {
     answered(&Arch { voussoirs, ends: "jointed", solver: "limit_chain", ..Arch::default() }.study()).counters["pivots"]
@@ -42,8 +43,8 @@ fn ten_thousand_voussoirs() {
 
 /// The benches' ring of rigid voussoirs on compliant joints, followed to its collapse.
 fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
-    let joint = format!("{}\nnormal_stiffness = 1e10\nshear_stiffness = 4e9", friction(0.6));
-    let result = answered(&Arch { voussoirs, ends: "jointed", width: 1.0, joint, solver, ..Arch::default() }.study());
+    let joint = compliant(&friction(0.6), 1e10, 4e9);
+    let result = answered(&Arch { joint, solver, ..peers_ring(voussoirs) }.study());
     assert!(result.certificate.passed, "{voussoirs}, {solver}: {:?}", result.certificate);
     result
 }
@@ -70,11 +71,9 @@ fn newton_steps_hardly_grow_with_the_ring() {
 #[test]
 fn an_event_costs_a_few_solutions() {
     for voussoirs in [13, 40] {
-        let study = Arch { voussoirs, ends: "jointed", width: 1.0, solver: "event_path", ..Arch::default() }.study();
-        let elastic = "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.3";
-        let mesh = "[scene.mesh]\nelements = [1, 4]\norder = 2\n[materials.stone]";
-        let study = study.replace("law = \"rigid\"", elastic).replace("[materials.stone]", mesh);
-        let counters = answered(&study).counters;
+        let mesh = "elements = [1, 4]\norder = 2".into();
+        let ring = Arch { material: elastic(5e9, 0.3), mesh, solver: "event_path", ..peers_ring(voussoirs) };
+        let counters = answered(&ring.study()).counters;
         let directions = counters["rate_problems"];
         assert_eq!(counters["rate_problems_by_redundants"], 0);
         assert!(2 * counters["solves"] <= 7 * directions, "{voussoirs}: {counters:?}");

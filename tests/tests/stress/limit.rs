@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use voussoir::core::limit::Status;
-use voussoir_tests::{Arch, answered, assert_close, crushing, friction};
+use voussoir_tests::{Arch, Wall, answered, assert_close, crushing, friction};
 
 /// Random walls, pushed in random directions, with windows, dry or mortared: every answer is certified.
 #[test]
@@ -25,21 +25,19 @@ fn random_walls_are_certified() {
         .run(&scenes, |(courses, bricks, mu, direction, window, mortar)| {
             let joint = match mortar {
                 Some((exponent, cohesion)) => {
-                    format!("{}\ncohesion = {cohesion:?}\ntensile_strength = {:?}", crushing(mu, 10f64.powf(exponent)), cohesion / 3.0)
+                    format!(
+                        "{}\ncohesion = {cohesion:?}\ntensile_strength = {:?}",
+                        crushing(mu, 10f64.powf(exponent)),
+                        cohesion / 3.0
+                    )
                 }
                 None => friction(mu),
             };
-            let window = if window && courses > 3 && bricks > 3 {
-                "openings = [{ from = [0.8, 0.4], to = [1.2, 0.6] }]"
-            } else {
-                ""
-            };
             let (sin, cos) = direction.to_radians().sin_cos();
-            let study = format!(
-                "name = \"wall\"\n[scene]\nscene = \"wall\"\nwidth = 0.3\nbrick = [0.4, 0.2]\ncourses = {courses}\nbricks = {bricks}\n{window}\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{joint}\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = [{:?}, {:?}] }}]\n",
-                9.81 * cos,
-                9.81 * sin
-            );
+            let (width, push) = (0.3, [9.81 * cos, 9.81 * sin]);
+            let wall = Wall { brick: [0.4, 0.2], width, joint, push, ..Wall::in_bond(courses, bricks) };
+            let has_window = window && courses > 3 && bricks > 3;
+            let study = if has_window { wall.with_opening([0.8, 0.4], [1.2, 0.6]) } else { wall }.study();
             let result = answered(&study);
             assert!(result.certificate.passed, "{:?} {:?}\n{study}", result.notes, result.certificate);
             collapses.set(collapses.get() + usize::from(result.status == Status::Collapse));

@@ -7,7 +7,7 @@
 use serde_json::Value;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
-use voussoir_tests::{answered, assert_close};
+use voussoir_tests::{Wall, answered, assert_close};
 
 const WALLS: &str = include_str!("../../fixtures/small_walls.jsonl");
 
@@ -28,12 +28,17 @@ fn answer(wall: &Value, law: &str, solver: &str) -> CaseResult {
 }
 
 fn answer_with(wall: &Value, law: &str, solver: &str) -> CaseResult {
-    answered(&format!(
-        "name = \"wall\"\n[scene]\nscene = \"wall\"\nwidth = 1.0\nbrick = [0.4, 0.2]\nrows = {}\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\nlaw = \"{law}\"\nfriction = {:?}\n[solver]\n{solver}\n[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = [10.0, {:?}] }}]\n",
-        wall["rows"],
-        number(wall, "friction"),
-        10.0 * number(wall, "lift")
-    ))
+    let rows: Vec<Vec<f64>> = serde_json::from_value(wall["rows"].clone()).expect("rows");
+    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+    let wall = Wall {
+        brick: [0.4, 0.2],
+        gravity: 10.0,
+        push: [10.0, 10.0 * number(wall, "lift")],
+        joint: format!("law = \"{law}\"\nfriction = {:?}", number(wall, "friction")),
+        solver: solver.into(),
+        ..Wall::of_rows(&rows)
+    };
+    answered(&wall.study())
 }
 
 /// Least load, proved bracket, and the order least ≤ sequential ≤ associated. No more than `most_open`

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
-use voussoir_tests::answered;
 use voussoir_tests::random::{History, Law, RandomScene, numbers, scene};
+use voussoir_tests::{answered, changed};
 
 /// What a solver did over all scenes.
 #[derive(Default)]
@@ -150,7 +150,7 @@ fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
     let fine = format!(
         "newton_path\"\ncontinuation = {{ strategy = \"arc_length\", first_step = 0.01, largest_step = {step:?} }}\n#\""
     );
-    let fine = answered(&scene.study("newton_path", Some(coarse)).replace("newton_path\"", &fine));
+    let fine = answered(&changed(&scene.study("newton_path", Some(coarse)), "newton_path\"", &fine));
     if std::env::var("SHOW").is_ok() {
         eprintln!("    fine steps: {} steps {:?}", shown(&fine), fine.counters.get("steps"));
     }

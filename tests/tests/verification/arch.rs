@@ -3,6 +3,9 @@
 
 use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
+use voussoir_tests::known::{
+    PEERS_RING, REFERENCE_ARCH, REFERENCE_ARCH_JOINTED, REFERENCE_ARCH_LOW_FRICTION, peers_ring,
+};
 use voussoir_tests::{Arch, answered, assert_close, collapse_factor, crushing, friction};
 
 const SOLVERS: [(&str, f64); 2] = [("limit_chain", 1e-12), ("limit_conic", 1e-11)];
@@ -12,7 +15,7 @@ const SOLVERS: [(&str, f64); 2] = [("limit_chain", 1e-12), ("limit_conic", 1e-11
 fn strathmashie_bonded() {
     for (solver, tolerance) in SOLVERS {
         let arch = Arch { solver, ..Arch::default() };
-        assert_close(collapse_factor(&arch.study()), 698.022_665_212_378_8, tolerance);
+        assert_close(collapse_factor(&arch.study()), REFERENCE_ARCH, tolerance);
         let mechanism = answered(&arch.study()).mechanism.expect("a mechanism");
         assert_eq!((mechanism.kind, mechanism.hinge_count), (MechanismKind::FourHinge, 4));
         assert_eq!(mechanism.unique, Some(true));
@@ -24,7 +27,7 @@ fn strathmashie_bonded() {
 fn strathmashie_jointed() {
     for (solver, tolerance) in SOLVERS {
         let arch = Arch { voussoirs: 13, ends: "jointed", solver, ..Arch::default() };
-        assert_close(collapse_factor(&arch.study()), 491.370_923_687_825_1, tolerance);
+        assert_close(collapse_factor(&arch.study()), REFERENCE_ARCH_JOINTED, tolerance);
     }
 }
 
@@ -33,7 +36,7 @@ fn strathmashie_jointed() {
 fn strathmashie_with_low_friction() {
     for (solver, tolerance) in SOLVERS {
         let arch = Arch { joint: friction(0.3), solver, ..Arch::default() };
-        assert_close(collapse_factor(&arch.study()), 517.901_443_003_289_2, tolerance);
+        assert_close(collapse_factor(&arch.study()), REFERENCE_ARCH_LOW_FRICTION, tolerance);
         assert_eq!(answered(&arch.study()).mechanism.expect("a mechanism").kind, MechanismKind::Mixed);
     }
 }
@@ -75,8 +78,8 @@ fn load_at_midspan() {
 #[test]
 fn the_peers_ring() {
     for (solver, _) in SOLVERS {
-        let arch = Arch { voussoirs: 13, ends: "jointed", width: 1.0, solver, ..Arch::default() };
-        assert_close(collapse_factor(&arch.study()), 84.573_308_72, 1e-9);
+        let arch = Arch { solver, ..peers_ring(13) };
+        assert_close(collapse_factor(&arch.study()), PEERS_RING, 1e-9);
     }
 }
 

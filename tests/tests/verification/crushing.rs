@@ -5,7 +5,7 @@ use voussoir::core::certificate::PathChecker;
 use voussoir::core::path::{PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Seen;
-use voussoir_tests::{assert_close, study};
+use voussoir_tests::{assert_close, changed, first_case};
 
 /// A row of the table in docs/crushing.md.
 #[derive(Debug)]
@@ -26,15 +26,11 @@ fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<
     let text = include_str!("../../../studies/cases/softening_arch.toml");
     let head = &text[..text.find("[[variants]]").expect("variants")];
     let softens = "crushing_fracture_energy = \"50 kJ/m2\"";
-    let case = study(
-        &head
-            .replace("elements = [8, 8]", &format!("elements = [{elements}, {elements}]"))
-            .replace("order = 1", &format!("order = {order}"))
-            .replace("\"10 MPa\"", &format!("{p_b:?}"))
-            .replace(softens, &energy.map_or(String::new(), |g| format!("crushing_fracture_energy = {g:?}"))),
-    )
-    .cases
-    .swap_remove(0);
+    let text = changed(head, "elements = [8, 8]", &format!("elements = [{elements}, {elements}]"));
+    let text = changed(&text, "order = 1", &format!("order = {order}"));
+    let text = changed(&text, "\"10 MPa\"", &format!("{p_b:?}"));
+    let energy = energy.map_or(String::new(), |g| format!("crushing_fracture_energy = {g:?}"));
+    let case = first_case(&changed(&text, softens, &energy));
     let problem = PathProblem::new(&case.assembly, &case.stages)?;
     let settings = PathSettings {
         finite: true,

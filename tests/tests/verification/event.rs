@@ -1,24 +1,24 @@
 //! `event_path` against limit analysis, closed forms and published numbers: small displacements.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use voussoir::core::certificate::PathChecker;
-use voussoir::core::law::Facet;
 use voussoir::core::limit::Status;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem, PathSolver,
-    PathState, PointLaw, Sliding,
+    Attachment, Contact, LoadStepEnd, PathAnswer, PathBody, PathObserver, PathProblem, PathSolver, PathState,
 };
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::by_hand::{self, contact, dry_friction, ground, load_step};
+use voussoir_tests::known::REFERENCE_ARCH;
 use voussoir_tests::seen::Record;
-use voussoir_tests::{Arch, answered, assert_close, first_case, friction, small_displacements};
+use voussoir_tests::{Arch, answered, assert_close, changed, elastic, first_case, friction, small_displacements};
 
-fn elastic(study: &str, mesh: &str) -> String {
-    study
-        .replace("law = \"rigid\"", "law = \"elastic\"\nyoung_modulus = \"5 GPa\"\npoisson_ratio = 0.3")
-        .replace("[materials.stone]", &format!("[scene.mesh]\n{mesh}\n[materials.stone]"))
+/// Friction that dilates by its angle, or not at all.
+const FRICTION_LAWS: [&str; 2] = ["coulomb", "coulomb_associated"];
+
+fn elastic_study(arch: &Arch, mesh: &str) -> String {
+    Arch { material: elastic(5e9, 0.3), mesh: mesh.into(), ..arch.clone() }.study()
 }
 
 /// The last factor is that of limit analysis to 1e-9 on any mesh of any order, also where slip does
@@ -32,11 +32,11 @@ fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
         "elements = [2, 3]\norder = 3",
         "elements = [4, 6]\norder = 2\ngrading = 5.0",
     ] {
-        for law in ["coulomb", "coulomb_associated"] {
-            let joint = friction(0.6).replace("coulomb_associated", law);
-            let result = answered(&elastic(&Arch { joint, ..Arch::default() }.study(), mesh));
+        for law in FRICTION_LAWS {
+            let joint = format!("law = {law:?}\nfriction = 0.6");
+            let result = answered(&elastic_study(&Arch { joint, ..Arch::default() }, mesh));
             assert!(result.certificate.passed && result.solver == "event_path", "{:?}", result.notes);
-            assert_close(result.load_factor.unwrap(), 698.0226652123788, 1e-9);
+            assert_close(result.load_factor.unwrap(), REFERENCE_ARCH, 1e-9);
             let hinges = |r: &voussoir::results::CaseResult| r.stages.last().unwrap().hinges.clone();
             assert_eq!(hinges(&result), hinges(&limit));
             let (own, other) = (result.mechanism.as_ref().unwrap(), limit.mechanism.as_ref().unwrap());
@@ -49,7 +49,7 @@ fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
 /// Also with little friction, jointed ends and other rises; a locked arch ends unbounded.
 #[test]
 fn other_arches_end_where_limit_analysis_does() {
-    for law in ["coulomb", "coulomb_associated"] {
+    for law in FRICTION_LAWS {
         for (rise, mu, ends, voussoirs) in [
             (2.99, 0.6, "jointed", 13),
             (2.99, 0.3, "bonded", 15),
@@ -63,8 +63,8 @@ fn other_arches_end_where_limit_analysis_does() {
             let joint = friction(mu);
             let arch = Arch { rise, voussoirs, ends, joint, ..Arch::default() };
             let limit = answered(&arch.study());
-            let own = Arch { joint: friction(mu).replace("coulomb_associated", law), ..arch };
-            let path = answered(&elastic(&own.study(), "elements = [4, 6]\norder = 2"));
+            let own = Arch { joint: format!("law = {law:?}\nfriction = {mu:?}"), ..arch };
+            let path = answered(&elastic_study(&own, "elements = [4, 6]\norder = 2"));
             assert!(path.certificate.passed, "{:?}", path.notes);
             assert_eq!(path.status, limit.status, "rise {rise} friction {mu} {law}");
             if let (Some(a), Some(b)) = (path.load_factor, limit.load_factor) {
@@ -78,7 +78,7 @@ fn other_arches_end_where_limit_analysis_does() {
 #[test]
 fn congruent_voussoirs_are_condensed_once() {
     let arch = Arch { voussoirs: 13, ends: "jointed", ..Arch::default() };
-    let result = answered(&elastic(&arch.study(), "elements = [4, 6]\norder = 2"));
+    let result = answered(&elastic_study(&arch, "elements = [4, 6]\norder = 2"));
     assert_eq!(result.counters["condensation_factorisations"], 1);
     let case = first_case(&arch.study());
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
@@ -90,48 +90,17 @@ fn congruent_voussoirs_are_condensed_once() {
 /// The two-degree-of-freedom example of Klarbring's kind: K = [[1, −1], [−1, 2]] in (t, n).
 fn two_degrees(friction: f64, forces: &[([f64; 2], LoadStepEnd)]) -> PathProblem {
     // C = K⁻¹ = [[2, 1], [1, 1]]; axes x = t, y = n. The plus body is held and deforms.
-    let flexibility = Arc::new(nalgebra::DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]));
-    let body = |flexible: bool| PathBody {
-        members: vec![usize::from(flexible)],
-        pole: Vec2::zeros(),
-        held: true,
-        mass: 0.0,
-        points: if flexible { vec![Vec2::zeros()] } else { Vec::new() },
-        flexibility: flexible.then(|| flexibility.clone()),
-        inelastic: None,
+    let elastic = PathBody {
+        points: vec![Vec2::zeros()],
+        flexibility: Some(Arc::new(nalgebra::DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]))),
+        ..ground(1, Vec2::zeros())
     };
-    let load_step = |(stage, (force, end)): (usize, &([f64; 2], LoadStepEnd))| LoadStep {
-        stage,
-        gravity: false,
-        loading: Loading {
-            forces: vec![(1, Some(0), Vec2::zeros(), Vec2::new(force[0], force[1]))],
-            ..Loading::default()
-        },
-        start: 0.0,
-        end: *end,
-    };
-    PathProblem {
-        bodies: vec![body(false), body(true)],
-        body_of: vec![0, 1],
-        contacts: vec![Contact {
-            joint: 0,
-            position: Vec2::zeros(),
-            normal: Vec2::new(0.0, 1.0),
-            tangent: Vec2::new(1.0, 0.0),
-            minus: Attachment { body: 0, slot: None },
-            plus: Attachment { body: 1, slot: Some(0) },
-            area: 1.0,
-            gap: 0.0,
-            law: PointLaw::Facets(
-                std::iter::once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect(),
-            ),
-            compliance: [0.0; 2],
-            sliding: Sliding::middle(0.0),
-        }],
-        load_steps: forces.iter().enumerate().map(load_step).collect(),
-        length: 1.0,
-        counters: BTreeMap::new(),
-    }
+    let point = contact(0, Vec2::zeros(), Vec2::new(0.0, 1.0), [0, 1], dry_friction(friction));
+    let point = Contact { tangent: Vec2::new(1.0, 0.0), plus: Attachment { body: 1, slot: Some(0) }, ..point };
+    let pushes = forces.iter().enumerate().map(|(stage, (force, end))| {
+        load_step(stage, by_hand::forces(vec![(1, Some(0), Vec2::zeros(), Vec2::new(force[0], force[1]))]), *end)
+    });
+    by_hand::problem(vec![ground(0, Vec2::zeros()), elastic], vec![point], pushes.collect(), 1.0)
 }
 
 fn trace(problem: &PathProblem) -> (PathAnswer, Vec<PathState>) {
@@ -237,7 +206,7 @@ fn a_spring_slider_keeps_its_history() {
     let slip = answer.state.motion[1][0];
     assert!(slip.abs() < 1e-12, "back where it began: {slip:e}");
     // 2.5 kN is more than friction carries: the block slides away at 2.
-    let sliding = text.replace("factor = 1.5\nloads", "until = \"collapse\"\nloads");
+    let sliding = changed(&text, "factor = 1.5\nloads", "until = \"collapse\"\nloads");
     let cut = sliding.find("[[stages]]\nname = \"back\"").unwrap();
     let result = answered(&sliding[..cut]);
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);

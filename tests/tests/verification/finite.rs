@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 use voussoir::core::certificate::MechanismKind;
-use voussoir::core::limit::{Counters, Status};
+use voussoir::core::limit::Status;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathProblem, PathSettings,
-    PathSolver, PathState, PointLaw, Sliding,
+    Contact, Continuation, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathSolver, PathState, PointLaw,
 };
 use voussoir::solvers::path::newton::NewtonPath;
+use voussoir_tests::by_hand::{self, body, contact, forces, ground, load_step};
+use voussoir_tests::known::REFERENCE_ARCH;
 use voussoir_tests::seen::Record;
 use voussoir_tests::{answered, assert_close, first_case};
 
@@ -39,51 +40,26 @@ fn two_bars(rise: f64) -> PathProblem {
     let along = Vec2::new(SPAN, rise).normalize();
     let mirrored = Vec2::new(along.x, -along.y);
     let crown = Vec2::new(0.0, rise);
-    let body = |x: f64, held: bool| PathBody {
-        members: vec![0],
-        pole: Vec2::new(x, rise / 2.0),
-        held,
-        mass: 0.0,
-        points: vec![],
-        flexibility: None,
-        inelastic: None,
-    };
-    let contact = |joint: usize, position: Vec2, normal: Vec2, compliance: [f64; 2]| Contact {
-        joint,
-        position,
-        normal,
-        tangent: Vec2::new(-normal.y, normal.x),
-        minus: Attachment { body: joint, slot: None },
-        plus: Attachment { body: (joint + 1) % 3, slot: None },
-        area: 1.0,
-        gap: 0.0,
-        law: PointLaw::Bonded,
+    let pin = |joint: usize, position: Vec2, normal: Vec2, compliance: [f64; 2]| Contact {
         compliance,
-        sliding: Sliding::middle(0.0),
+        ..contact(joint, position, normal, [joint, (joint + 1) % 3], PointLaw::Bonded)
     };
     let load = Vec2::new(0.0, -1.0e3);
-    let forces = vec![
+    let loading = forces(vec![
         (1, None, Vec2::new(LOADED - SPAN, rise * 0.6), load),
         (2, None, Vec2::new(SPAN - LOADED, rise * 0.6), load),
-    ];
-    PathProblem {
-        bodies: vec![body(0.0, true), body(-SPAN / 2.0, false), body(SPAN / 2.0, false)],
-        body_of: vec![0, 1, 2],
-        contacts: vec![
-            contact(0, Vec2::new(-SPAN, 0.0), along, PIN),
-            contact(1, crown, Vec2::new(1.0, 0.0), [CROWN, PIN[1]]),
-            contact(2, Vec2::new(SPAN, 0.0), mirrored, PIN),
+    ]);
+    let middle = |x: f64| Vec2::new(x, rise / 2.0);
+    by_hand::problem(
+        vec![ground(0, middle(0.0)), body(1, middle(-SPAN / 2.0)), body(2, middle(SPAN / 2.0))],
+        vec![
+            pin(0, Vec2::new(-SPAN, 0.0), along, PIN),
+            pin(1, crown, Vec2::new(1.0, 0.0), [CROWN, PIN[1]]),
+            pin(2, Vec2::new(SPAN, 0.0), mirrored, PIN),
         ],
-        load_steps: vec![LoadStep {
-            stage: 0,
-            gravity: false,
-            loading: Loading { forces, ..Loading::default() },
-            start: 0.0,
-            end: LoadStepEnd::Collapse(f64::INFINITY),
-        }],
-        length: 2.0 * SPAN,
-        counters: Counters::new(),
-    }
+        vec![load_step(0, loading, LoadStepEnd::Collapse(f64::INFINITY))],
+        2.0 * SPAN,
+    )
 }
 
 /// The left bar of a symmetric three-hinged arch, the right one being its mirror image.
@@ -348,7 +324,7 @@ curve = true
 }
 
 /// Rigid-block limit load of the reference bridge \[kN\].
-const RIGID: f64 = 698.022_665_212_378_8;
+const RIGID: f64 = REFERENCE_ARCH;
 
 /// Neither the step size, nor the strategy, nor the unit of length, nor which way round the bridge
 /// is looked at changes the peak.

@@ -6,57 +6,15 @@ use voussoir::results::{CaseResult, StudyResults};
 use voussoir::solve_case;
 use voussoir::study::load;
 use voussoir::verify::verify;
-use voussoir_tests::{Arch, answered, assert_close, study};
+use voussoir_tests::known::{PublishedWall, REFERENCE_ARCH, REFERENCE_ARCH_LOW_FRICTION, published_wall};
+use voussoir_tests::{Arch, Wall, answered, assert_close, study};
 
-/// A wall with friction 0.65 pushed by λ × its weight.
-fn wall(rows: &[&[f64]], joint: &str, solver: &str) -> String {
-    format!(
-        r#"name = "wall"
-[scene]
-scene = "wall"
-width = 1.0
-brick = [0.4, 0.175]
-rows = {rows:?}
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-{joint}
-[solver]
-{solver}
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "push"
-until = "collapse"
-loads = [{{ kind = "body", acceleration = [9.81, 0.0] }}]
-"#
-    )
+/// A wall with this joint and solver.
+fn wall(wall: Wall, joint: &str, solver: &str) -> String {
+    Wall { joint: joint.into(), solver: solver.into(), ..wall }.study()
 }
 
 const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.65";
-const FIVE: &[f64] = &[1.0; 5];
-const SIX: &[f64] = &[0.5, 1.0, 1.0, 1.0, 1.0, 0.5];
-
-/// Walls 1, 3 and 4 by their numbers.
-fn published(number: usize) -> Vec<&'static [f64]> {
-    match number {
-        1 => vec![SIX, FIVE, SIX, FIVE, SIX, FIVE],
-        3 => {
-            let (fe, fu): (&[f64], &[f64]) = (&[1.0; 4], &[0.5, 1.0, 1.0, 1.0, 0.5]);
-            let (we, wu): (&[f64], &[f64]) = (&[1.0, 0.5, -1.0, 0.5, 1.0], &[0.5, 1.0, -1.0, 1.0, 0.5]);
-            vec![fe, fu, fe, wu, we, wu, we, wu, fe, fu, fe]
-        }
-        _ => {
-            let (we, wu): (&[f64], &[f64]) =
-                (&[0.5, 0.5, -1.0, 0.5, 0.5, -1.0, 0.5, 0.5], &[1.0, -1.0, 1.0, -1.0, 1.0]);
-            vec![SIX, FIVE, SIX, wu, we, wu, we, wu, SIX, FIVE, SIX]
-        }
-    }
-}
 
 fn collapse(text: &str) -> (f64, CaseResult) {
     let result = answered(text);
@@ -67,10 +25,11 @@ fn collapse(text: &str) -> (f64, CaseResult) {
 
 /// The least load of wall `number` is `least`; bracket and time are printed. `LEAST_SEARCH` gives
 /// the search more work than the second that the test allows.
-fn least_of(number: usize, least: f64, associated: f64) {
+fn least_of(number: usize) {
+    let PublishedWall { wall: bricks, least, associated, .. } = published_wall(number);
     let limit = std::env::var("LEAST_SEARCH").unwrap_or("1.0".into());
     let solver = format!("solver = \"limit_least\"\nsearch_limit = {limit}");
-    let (found, result) = collapse(&wall(&published(number), COULOMB, &solver));
+    let (found, result) = collapse(&wall(bricks, COULOMB, &solver));
     assert_close(found, least, 2e-8);
     assert_close(result.non_associated.associated_load_factor.expect("an upper bound"), associated, 2e-8);
     let [low, high] = result.bounds.expect("a bracket");
@@ -83,19 +42,19 @@ fn least_of(number: usize, least: f64, associated: f64) {
 /// Least load .63898183 (independent program), below the published .640.
 #[test]
 fn least_of_wall_1() {
-    least_of(1, 0.638_981_83, 0.642_859_00);
+    least_of(1);
 }
 
 /// Least load .35581738, published .356.
 #[test]
 fn least_of_wall_3() {
-    least_of(3, 0.355_817_38, 0.403_694_10);
+    least_of(3);
 }
 
 /// Least load 24/91, published .264.
 #[test]
 fn least_of_wall_4() {
-    least_of(4, 24.0 / 91.0, 0.331_948_40);
+    least_of(4);
 }
 
 /// Gilbert, Casapulla & Ahmed (2006) print .640, .356, .264: walls 3 and 4 agree to their digits. On
@@ -103,8 +62,8 @@ fn least_of_wall_4() {
 /// about .6400 without settling): shown, and asserted to lie between the least and the associated load.
 #[test]
 fn sequential_programs_give_the_published_factors() {
-    for (number, printed, least) in [(1, 0.640, 0.638_981_83), (3, 0.356, 0.355_817_38), (4, 0.264, 24.0 / 91.0)] {
-        let result = answered(&wall(&published(number), COULOMB, "solver = \"limit_sequential\""));
+    for PublishedWall { number, wall: bricks, least, published: printed, .. } in [1, 3, 4].map(published_wall) {
+        let result = answered(&wall(bricks, COULOMB, "solver = \"limit_sequential\""));
         let Some(factor) = result.load_factor else {
             panic!("wall {number}: {:?} {:?}", result.notes, result.counters);
         };
@@ -123,8 +82,7 @@ fn sequential_programs_give_the_published_factors() {
 /// A wall of 20 courses by 20 bricks by sequential programs, in seconds.
 #[test]
 fn twenty_by_twenty_in_sequence() {
-    let text = wall(&[FIVE], COULOMB, "solver = \"limit_sequential\"")
-        .replace(&format!("rows = {:?}", [FIVE]), "courses = 20\nbricks = 20");
+    let text = wall(Wall::in_bond(20, 20), COULOMB, "solver = \"limit_sequential\"");
     let result = answered(&text);
     println!("{:?} {:?} {:.1} s {:?}", result.status, result.load_factor, result.seconds, result.counters);
     assert!(result.status == Status::Collapse || result.notes.iter().any(|note| note.contains("did not converge")));
@@ -135,7 +93,7 @@ fn twenty_by_twenty_in_sequence() {
 #[test]
 fn dilatancy_equal_to_friction_is_associated() {
     let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
-    let with = |joint: &str| collapse(&wall(&rows, joint, "solver = \"limit_least\"")).0;
+    let with = |joint: &str| collapse(&wall(Wall::of_rows(&rows), joint, "solver = \"limit_least\"")).0;
     let associated = with("law = \"coulomb_associated\"\nfriction_angle = 40.0");
     let equal = with("law = \"coulomb\"\nfriction_angle = 40.0\ndilatancy_angle = 40.0");
     assert_close(equal, associated, 1e-14);
@@ -151,7 +109,11 @@ fn no_friction_is_a_free_tangent() {
     let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5]];
     for joint in ["law = \"coulomb\"\nfriction = 0.0", "law = \"unilateral\"\ntangential = \"free\""] {
         for solver in ["limit_least", "limit_sequential", "limit_conic"] {
-            assert_eq!(collapse(&wall(&rows, joint, &format!("solver = \"{solver}\""))).0, 0.0, "{joint} {solver}");
+            assert_eq!(
+                collapse(&wall(Wall::of_rows(&rows), joint, &format!("solver = \"{solver}\""))).0,
+                0.0,
+                "{joint} {solver}"
+            );
         }
     }
     let arch = |joint: &str| {
@@ -199,7 +161,8 @@ fn two_rings_feel_the_flow_rule() {
 #[test]
 fn a_brick_held_by_wedging_alone_is_reported() {
     let rows: Vec<&[f64]> = vec![&[1.0, -1.0, 1.0], &[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
-    let (factor, result) = collapse(&wall(&rows, "law = \"coulomb\"\nfriction = 0.4", "solver = \"limit_least\""));
+    let (factor, result) =
+        collapse(&wall(Wall::of_rows(&rows), "law = \"coulomb\"\nfriction = 0.4", "solver = \"limit_least\""));
     // 25/164, by a linear program of another code.
     assert_close(factor, 0.152_439_024_390_243_9, 1e-9);
     assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
@@ -210,8 +173,8 @@ fn a_brick_held_by_wedging_alone_is_reported() {
 /// there also where the scene is too large for the simplex method.
 #[test]
 fn a_wall_that_slides_as_a_whole_ends_the_sequence() {
-    let text = wall(&[FIVE], "law = \"coulomb\"\nfriction = 0.3", "solver = \"limit_sequential\"")
-        .replace(&format!("rows = {:?}", [FIVE]), "courses = 12\nbricks = 12");
+    let joint = "law = \"coulomb\"\nfriction = 0.3";
+    let text = wall(Wall::in_bond(12, 12), joint, "solver = \"limit_sequential\"");
     assert_close(collapse(&text).0, 0.3, 1e-6);
 }
 
@@ -219,7 +182,7 @@ fn a_wall_that_slides_as_a_whole_ends_the_sequence() {
 /// the flow, so the least load is the associated one, and the search proves it.
 #[test]
 fn a_single_ring_hardly_feels_the_flow_rule() {
-    for (friction, expected) in [(0.6, 698.022_665_212_378_8), (0.3, 517.901_443_003_289_2)] {
+    for (friction, expected) in [(0.6, REFERENCE_ARCH), (0.3, REFERENCE_ARCH_LOW_FRICTION)] {
         let joint = format!("law = \"coulomb\"\nfriction = {friction:?}");
         let (least, result) = collapse(&Arch { joint, ..Arch::default() }.study());
         assert_eq!(result.solver, "limit_least");
@@ -235,7 +198,7 @@ fn a_single_ring_hardly_feels_the_flow_rule() {
 fn results_are_verified_and_changes_found() {
     let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
     for solver in ["limit_least", "limit_sequential"] {
-        let original = study(&wall(&rows, COULOMB, &format!("solver = \"{solver}\"")));
+        let original = study(&wall(Wall::of_rows(&rows), COULOMB, &format!("solver = \"{solver}\"")));
         let resolved = toml::to_string(&original.resolved).expect("a study can be written");
         let again = load(&resolved, "resolved.toml", &[]).expect("and read");
         let cases = original.cases.iter().map(solve_case).collect();

@@ -3,7 +3,10 @@
 use voussoir::core::limit::Status;
 use voussoir::core::path::{PathAnswer, PathProblem, PathSolver, Unobserved};
 use voussoir::solvers::path::newton::NewtonPath;
-use voussoir_tests::{Arch, answered, assert_close, first_case, friction, small_displacements};
+use voussoir_tests::known::{REFERENCE_ARCH, REFERENCE_ARCH_JOINTED, REFERENCE_ARCH_LOW_FRICTION};
+use voussoir_tests::{
+    Arch, Wall, answered, assert_close, compliant, elastic, first_case, friction, small_displacements,
+};
 
 fn problem(text: &str) -> PathProblem {
     let case = first_case(text);
@@ -14,25 +17,22 @@ fn traced(text: &str) -> PathAnswer {
     NewtonPath {}.trace(&problem(text), &small_displacements(), &mut Unobserved)
 }
 
-fn compliant(law: String) -> String {
-    format!("{law}\nnormal_stiffness = 1e10\nshear_stiffness = 4e9")
+fn on_springs(law: String) -> String {
+    compliant(&law, 1e10, 4e9)
 }
 
 /// The arch scenes of limit analysis, joints compliant: the path ends at the rigid-block limit load.
 #[test]
 fn compliant_joints_end_at_the_limit_load() {
     let cases = [
-        (Arch { joint: compliant(friction(0.6)), ..Arch::default() }, 698.022_665_212_378_8),
-        (Arch { joint: compliant(friction(0.3)), ..Arch::default() }, 517.901_443_003_289_2),
+        (Arch { joint: on_springs(friction(0.6)), ..Arch::default() }, REFERENCE_ARCH),
+        (Arch { joint: on_springs(friction(0.3)), ..Arch::default() }, REFERENCE_ARCH_LOW_FRICTION),
         (
-            Arch { joint: compliant(friction(0.6)), voussoirs: 13, ends: "jointed", ..Arch::default() },
-            491.370_923_687_825_1,
+            Arch { joint: on_springs(friction(0.6)), voussoirs: 13, ends: "jointed", ..Arch::default() },
+            REFERENCE_ARCH_JOINTED,
         ),
-        (Arch { joint: compliant("law = \"unilateral\"".into()), ..Arch::default() }, 698.022_665_212_378_8),
-        (
-            Arch { joint: compliant("law = \"coulomb\"\nfriction = 0.6".into()), ..Arch::default() },
-            698.022_665_212_378_8,
-        ),
+        (Arch { joint: on_springs("law = \"unilateral\"".into()), ..Arch::default() }, REFERENCE_ARCH),
+        (Arch { joint: on_springs("law = \"coulomb\"\nfriction = 0.6".into()), ..Arch::default() }, REFERENCE_ARCH),
     ];
     for (arch, limit) in cases {
         let answer = traced(&arch.study());
@@ -43,46 +43,16 @@ fn compliant_joints_end_at_the_limit_load() {
 
 #[test]
 fn a_locked_arch_is_unbounded() {
-    let arch = Arch { rise: 0.59, joint: compliant(friction(0.6)), ..Arch::default() };
+    let arch = Arch { rise: 0.59, joint: on_springs(friction(0.6)), ..Arch::default() };
     let answer = traced(&arch.study());
     assert_eq!(answer.status, Status::Unbounded, "{:?}", answer.notes);
 }
 
 #[test]
 fn elastic_voussoirs_end_at_the_limit_load() {
-    let arch = Arch { voussoirs: 15, ..Arch::default() };
-    let text = arch.study().replace("law = \"rigid\"", "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.3");
-    let answer = traced(&text);
+    let answer = traced(&Arch { material: elastic(5e9, 0.3), ..Arch::default() }.study());
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
-    assert_close(answer.factor.expect("a factor"), 698.022_665_212_378_8, 1e-8);
-}
-
-/// A wall of `courses` × `bricks` with compliant joints under gravity and a horizontal force λ × weight.
-fn wall(courses: usize, bricks: usize, law: &str) -> String {
-    format!(
-        r#"name = "wall"
-[scene]
-scene = "wall"
-width = 1.0
-brick = [0.4, 0.175]
-courses = {courses}
-bricks = {bricks}
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-{law}
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "push"
-until = "collapse"
-loads = [{{ kind = "body", acceleration = [9.81, 0.0] }}]
-"#
-    )
+    assert_close(answer.factor.expect("a factor"), REFERENCE_ARCH, 1e-8);
 }
 
 /// Random arches and walls, associated friction or none, stiffness ratios up to 1e4: the path's last
@@ -103,10 +73,10 @@ fn random_scenes_agree_with_limit_analysis() {
     for index in 0..scenes {
         let mu = 0.05 * 40f64.powf(random());
         let stiffness = [10f64.powf(8.0 + 3.0 * random()), 10f64.powf(7.0 + 4.0 * random())];
-        let law =
-            format!("{}\nnormal_stiffness = {:?}\nshear_stiffness = {:?}", friction(mu), stiffness[0], stiffness[1]);
+        let joint = compliant(&friction(mu), stiffness[0], stiffness[1]);
         let text = if index % 3 == 0 {
-            wall(2 + (4.0 * random()) as usize, 1 + (3.0 * random()) as usize, &law)
+            let wall = Wall::in_bond(2 + (4.0 * random()) as usize, 1 + (3.0 * random()) as usize);
+            Wall { joint, ..wall }.study()
         } else {
             Arch {
                 rise: 0.7 + 3.5 * random(),
@@ -114,7 +84,7 @@ fn random_scenes_agree_with_limit_analysis() {
                 voussoirs: 5 + (13.0 * random()) as usize,
                 ends: if random() < 0.5 { "bonded" } else { "jointed" },
                 span_fraction: 0.25 + 0.5 * random(),
-                joint: law,
+                joint,
                 ..Arch::default()
             }
             .study()

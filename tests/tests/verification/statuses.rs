@@ -2,7 +2,7 @@
 
 use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
-use voussoir_tests::{answered, assert_close};
+use voussoir_tests::{answered, assert_close, changed};
 
 /// A block of 1 m × 1 m × 1 m, density 1000, g 10 (weight 10 kN), on a rough ground.
 fn block(joint: &str, gravity: &str, stages: &str, solver: &str) -> String {
@@ -124,7 +124,7 @@ fn a_pressed_block_is_unbounded_and_stands_up_to_a_cap() {
 /// A stage with a factor stands if it gets there and collapses on the way if it does not.
 #[test]
 fn a_stage_with_a_factor_stands_or_collapses_on_the_way() {
-    let to = |factor: f64| push(1.0, "").replace("until = \"collapse\"", &format!("factor = {factor:?}"));
+    let to = |factor: f64| changed(&push(1.0, ""), "until = \"collapse\"", &format!("factor = {factor:?}"));
     for solver in SOLVERS {
         assert_eq!(answered(&block(ROUGH, "10.0", &to(4.9), solver)).status, Status::Stands);
         let short = answered(&block(ROUGH, "10.0", &to(5.1), solver));

@@ -3,72 +3,36 @@
 //! an independent program.
 
 use voussoir::core::limit::Status;
-use voussoir_tests::{answered, assert_close, collapse_factor};
+use voussoir_tests::known::{FIVE, SIX, published_wall};
+use voussoir_tests::{Wall, answered, assert_close, collapse_factor};
 
-fn wall(rows: &str) -> String {
-    format!(
-        r#"name = "wall"
-[scene]
-scene = "wall"
-width = 1.0
-brick = [0.4, 0.175]
-{rows}
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-law = "coulomb_associated"
-friction = 0.65
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "push"
-until = "collapse"
-loads = [{{ kind = "body", acceleration = [9.81, 0.0] }}]
-"#
-    )
+fn associated(number: usize) {
+    let known = published_wall(number);
+    assert_close(collapse_factor(&known.wall.study()), known.associated, 2e-8);
 }
-
-fn rows(sequence: &[&[f64]]) -> String {
-    format!("rows = {sequence:?}")
-}
-
-const FIVE: &[f64] = &[1.0; 5];
-const SIX: &[f64] = &[0.5, 1.0, 1.0, 1.0, 1.0, 0.5];
 
 /// Wall 1: 0.64285900.
 #[test]
 fn wall_1() {
-    assert_close(collapse_factor(&wall(&rows(&[SIX, FIVE, SIX, FIVE, SIX, FIVE]))), 0.642_859_00, 2e-8);
+    associated(1);
 }
 
 /// Wall 3, with a window: 0.40369410.
 #[test]
 fn wall_3() {
-    let (fe, fu): (&[f64], &[f64]) = (&[1.0; 4], &[0.5, 1.0, 1.0, 1.0, 0.5]);
-    let (we, wu): (&[f64], &[f64]) = (&[1.0, 0.5, -1.0, 0.5, 1.0], &[0.5, 1.0, -1.0, 1.0, 0.5]);
-    assert_close(collapse_factor(&wall(&rows(&[fe, fu, fe, wu, we, wu, we, wu, fe, fu, fe]))), 0.403_694_10, 2e-8);
+    associated(3);
 }
 
 /// Wall 4, with two windows: 0.33194840.
 #[test]
 fn wall_4() {
-    let wu: &[f64] = &[1.0, -1.0, 1.0, -1.0, 1.0];
-    let we: &[f64] = &[0.5, 0.5, -1.0, 0.5, 0.5, -1.0, 0.5, 0.5];
-    assert_close(
-        collapse_factor(&wall(&rows(&[SIX, FIVE, SIX, wu, we, wu, we, wu, SIX, FIVE, SIX]))),
-        0.331_948_40,
-        2e-8,
-    );
+    associated(4);
 }
 
 /// A wall of 20 courses by 20 bricks is answered and certified: relative gap at most 1e-9.
 #[test]
 fn twenty_by_twenty() {
-    let result = answered(&wall("courses = 20\nbricks = 20"));
+    let result = answered(&Wall::in_bond(20, 20).study());
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     let [low, high] = result.bounds.expect("bounds");
     assert!((high - low) / high <= 1e-9 && result.certificate.passed);
@@ -77,6 +41,6 @@ fn twenty_by_twenty() {
 /// Without weight a wall carries no push: the factor is 0, not "rounding".
 #[test]
 fn a_weightless_wall_carries_nothing() {
-    let result = answered(&wall(&rows(&[SIX, FIVE])).replace("gravity = 9.81", "gravity = 0.0"));
+    let result = answered(&Wall { gravity: 0.0, ..Wall::of_rows(&[SIX, FIVE]) }.study());
     assert_eq!((result.status, result.load_factor), (Status::Collapse, Some(0.0)));
 }
