@@ -1,5 +1,5 @@
 //! The path problem: bodies with their flexibility, contact points, loads in the order in which
-//! they come; and what a path solver is asked and answers.
+//! they come; the question to a path solver and its answer.
 //!
 //! One system for everything (small displacements; Gq exactly with finite ones):
 //!
@@ -10,7 +10,6 @@
 //! ```
 
 mod build;
-mod coarse_joints;
 mod continuation;
 mod point_law;
 mod problem;
@@ -18,7 +17,6 @@ mod sliding;
 mod solver;
 mod state;
 
-pub use self::coarse_joints::{SoftensOver, coarse_joints};
 pub use self::continuation::{Constraint, Continuation, Increment};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};

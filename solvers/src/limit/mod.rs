@@ -8,6 +8,7 @@ mod associated;
 pub mod chain;
 pub mod conic;
 mod engine;
+mod equilibrium;
 pub mod nonassociated;
 mod question;
 mod recovery;

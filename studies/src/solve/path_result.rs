@@ -1,6 +1,7 @@
 //! A path solver's answer in the form of a result, with its certificate.
 
 use super::case_input::CaseInput;
+use super::coarse_joints::coarse_joints;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
 use crate::results::path_state::{carried, mechanism_of, small};
@@ -13,7 +14,7 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, coarse_joints};
+use voussoir_core::path::{PathAnswer, PathEvent, PathProblem};
 
 /// The result of a path that `checker` has looked on.
 pub(super) fn path_result(

@@ -114,7 +114,8 @@ impl PathChecker {
             // Gaps of finite displacements are differences of positions.
             rounding: if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 },
         };
-        self.check_bodies(problem, state, &scale);
+        let displaced = Displaced::new(problem, state, self.finite);
+        self.check_bodies(problem, &displaced, state, &scale);
         self.check_blocks(problem, state);
         self.check_points(problem, state, &scale);
         // The history is that of the states seen, where all of them were.
@@ -124,16 +125,16 @@ impl PathChecker {
             self.note("path_law", worst);
             self.memory = Some(after);
         }
+        let stored = displaced.stored().unwrap_or(state.stored);
         let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());
-        self.note("path_energy", (state.work - state.stored - state.dissipated).abs() / energy.max(1e-300));
+        self.note("path_energy", (state.work - stored - state.dissipated).abs() / energy.max(1e-300));
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
         self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
         self.last = Some((state.load_step, state.dissipated));
     }
 
     /// Checks that bodies balance and that gaps are those of their motions.
-    fn check_bodies(&mut self, problem: &PathProblem, state: &PathState, scale: &Scale) {
-        let displaced = Displaced::new(problem, state, self.finite);
+    fn check_bodies(&mut self, problem: &PathProblem, displaced: &Displaced, state: &PathState, scale: &Scale) {
         let mut unbalanced = 0.0;
         for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
             worsen(&mut unbalanced, w[0].hypot(w[1]));

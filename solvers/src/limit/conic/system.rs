@@ -1,11 +1,9 @@
 //! The program of one optimisation in scaled, sparse form.
 
-use voussoir_core::law::{StressBlock, Tangential};
+use crate::limit::equilibrium::{ForceVariables, Row};
+use voussoir_core::law::StressBlock;
 use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
-
-/// A sparse row of coefficients.
-pub type Row = Vec<(usize, f64)>;
 
 /// A joint's stress block as a constraint φ = u²/F − w ≤ 0, u = N_0 + N_1 + F_t, w = 2 N_end + F_t.
 #[derive(Debug, Clone)]
@@ -56,8 +54,7 @@ pub struct System {
     pub cap: Option<usize>,
     /// Crushing.
     pub blocks: Vec<Block>,
-    /// First variable of each joint and whether it has T.
-    joints: Vec<(usize, bool)>,
+    forces: ForceVariables,
     force: f64,
     length: f64,
 }
@@ -115,13 +112,8 @@ fn strength_rows(
 impl System {
     /// Builds and scales.
     pub fn new(problem: &LimitProblem, loads: &Loads) -> Self {
-        let mut joints = Vec::with_capacity(problem.joints.len());
-        let mut variables = 0;
-        for joint in &problem.joints {
-            let shear = joint.strength.tangential() != Tangential::Free;
-            joints.push((variables, shear));
-            variables += if shear { 3 } else { 2 };
-        }
+        let forces = ForceVariables::new(problem);
+        let mut variables = forces.count;
         let free = loads.free.map(|f| {
             variables += 1;
             (variables - 1, f)
@@ -130,21 +122,10 @@ impl System {
         variables += 1;
         let (force, length) = (loads.force, problem.length);
         let scale = [1.0, 1.0, 1.0 / length];
-        let mut equations: Vec<Row> = vec![Row::new(); 3 * problem.groups];
+        let mut equations = forces.equilibrium(problem);
         let mut right = vec![0.0; 3 * problem.groups];
         let (mut rows, mut bounds, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
-        for (joint, &(first, shear)) in problem.joints.iter().zip(&joints) {
-            let wrenches = joint.wrenches(problem.pole);
-            for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
-                let Some(group) = group else { continue };
-                for (k, wrench) in wrenches.iter().enumerate().take(if shear { 3 } else { 2 }) {
-                    for i in 0..3 {
-                        if wrench[i] != 0.0 {
-                            equations[3 * group + i].push((first + k, sign * wrench[i] * scale[i]));
-                        }
-                    }
-                }
-            }
+        for (joint, &(first, shear)) in problem.joints.iter().zip(&forces.joints) {
             strength_rows(joint, first, shear, loads, (&mut rows, &mut bounds, &mut blocks));
         }
         for group in 0..problem.groups {
@@ -170,16 +151,12 @@ impl System {
             bounds.push(cap);
             rows.len() - 1
         });
-        System { variables, theta, equations, right, rows, bounds, cap, blocks, joints, force, length }
+        System { variables, theta, equations, right, rows, bounds, cap, blocks, forces, force, length }
     }
 
     /// Joint forces \[N\].
     pub fn forces(&self, x: &[f64]) -> Vec<JointForce> {
-        let force = |&(first, shear): &(usize, bool)| JointForce {
-            normal: [x[first] * self.force, x[first + 1] * self.force],
-            shear: if shear { x[first + 2] * self.force } else { 0.0 },
-        };
-        self.joints.iter().map(force).collect()
+        self.forces.joint_forces(x, self.force)
     }
 
     /// Velocities about the pole from the multipliers of equilibrium, up to a common factor.

@@ -81,8 +81,8 @@ impl Bound {
         let code = |i: usize| {
             let pair = &systems.pairs[i];
             let force = pair.normal[0].0;
-            let joint = systems.joints.partition_point(|&(first, _)| first <= force) - 1;
-            let first = systems.joints[joint].0;
+            let joint = systems.variables.joints.partition_point(|&(first, _)| first <= force) - 1;
+            let first = systems.variables.joints[joint].0;
             let shear = pair.normal.iter().find(|&&(j, _)| j == first + 2).map(|&(_, v)| v);
             let slot = match shear {
                 Some(v) if v > 0.0 => 2,
@@ -373,7 +373,7 @@ impl Program {
     /// The rows for θ ≤ t with products up to `reach`; `None` where they are more than `most`.
     fn new(systems: &Systems, problem: &LimitProblem, t: f64, reach: usize, most: usize) -> Option<Self> {
         let mut joint_of = vec![0; systems.forces];
-        for (k, &(first, shear)) in systems.joints.iter().enumerate() {
+        for (k, &(first, shear)) in systems.variables.joints.iter().enumerate() {
             (first..first + if shear { 3 } else { 2 }).for_each(|j| joint_of[j] = k);
         }
         let (theta, one) = (systems.forces, systems.forces + 1);

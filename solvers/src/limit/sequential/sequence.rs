@@ -218,7 +218,7 @@ fn field_yielding(
 ) -> Option<(Vec<JointForce>, f64)> {
     let mut yielding = problem.clone();
     let mut pair = 0;
-    for (joint, &(_, shear)) in yielding.joints.iter_mut().zip(&systems.joints) {
+    for (joint, &(_, shear)) in yielding.joints.iter_mut().zip(&systems.variables.joints) {
         let count = if shear { 3 } else { 2 };
         for index in 0..joint.strength.rows.len() {
             let mut row = joint.strength.rows[index];

@@ -1,8 +1,8 @@
 //! Joints whose contact points stand too far apart for the fracture energy of their law.
 
-use super::problem::PathProblem;
-use crate::law::{Deformability, Plane};
-use crate::model::Assembly;
+use voussoir_core::law::{Deformability, Plane};
+use voussoir_core::model::Assembly;
+use voussoir_core::path::PathProblem;
 
 /// Contact points over the length of a cohesive zone below which a joint counts as coarse (Turon,
 /// Dávila, Camanho & Costa 2007, Engng Fract. Mech. 74: three elements and more).
