@@ -1,6 +1,43 @@
 //! How the next point of a path is chosen.
 
-use std::fmt::Debug;
+use std::any::Any;
+use std::fmt::{self, Debug};
+
+/// Monitors that a strategy may have.
+pub const MOST_MONITORS: usize = 4;
+
+/// A quantity by name that a strategy sees besides the size of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Monitor {
+    /// Opening of a joint, its mean or at a share (0 to 1) of its length from its first end.
+    Opening {
+        /// Index of the joint.
+        joint: usize,
+        /// Share of its length.
+        at: Option<f64>,
+    },
+    /// Displacement of a point by the rigid motion of its block, along a unit vector.
+    Displacement {
+        /// Index of the block.
+        block: usize,
+        /// Where it is, undeformed \[m\].
+        point: [f64; 2],
+        /// Unit vector.
+        direction: [f64; 2],
+    },
+}
+
+impl fmt::Display for Monitor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Monitor::Opening { joint, at: None } => write!(f, "mean opening of joint {joint}"),
+            Monitor::Opening { joint, at: Some(at) } => write!(f, "opening of joint {joint} at {at} of its length"),
+            Monitor::Displacement { block, point: [x, y], .. } => {
+                write!(f, "displacement of block {block} at [{x}, {y}]")
+            }
+        }
+    }
+}
 
 /// The increment of a step as a continuation strategy sees it: all zero at the last converged state.
 /// Units: force F, the size of the loads; displacement U = F × mean compliance; factor Λ, with which
@@ -16,6 +53,8 @@ pub struct Increment {
     pub motion: f64,
     /// Increment of dissipated energy, in the unit of energy.
     pub dissipation: f64,
+    /// Increments of the strategy's monitors, in the unit of displacement.
+    pub monitored: [f64; MOST_MONITORS],
 }
 
 /// Value and derivatives of a constraint c(increment) = length.
@@ -30,7 +69,13 @@ pub struct Constraint {
 /// How the next point of a path is chosen, by `[solver] continuation = { strategy = … }`. Pure: the
 /// solver keeps the length of the step and lets it grow and shrink.
 #[typetag::serde(tag = "strategy")]
-pub trait Continuation: Debug + Send + Sync {
+pub trait Continuation: Any + Debug + Send + Sync {
+    /// What it watches besides the size of the step: at most [`MOST_MONITORS`], in the order of
+    /// [`Increment::monitored`]. A solver refuses what the problem does not have, by its name.
+    fn monitors(&self) -> Vec<Monitor> {
+        Vec::new()
+    }
+
     /// The constraint of a step. `previous` is the increment of the last converged step of this
     /// load step, `None` before the first: a strategy may change what it measures between two steps,
     /// never within one.
@@ -38,11 +83,6 @@ pub trait Continuation: Debug + Send + Sync {
 
     /// Whether λ may fall during a step.
     fn passes_limit_points(&self) -> bool;
-
-    /// Whether it steps at all, or goes exactly from event to event.
-    fn exact_events(&self) -> bool {
-        false
-    }
 
     /// Length of a load step's first step: the share of the unit load (of size F) that an elastic
     /// structure would take up during it.

@@ -17,7 +17,7 @@ mod sliding;
 mod solver;
 mod state;
 
-pub use self::continuation::{Constraint, Continuation, Increment};
+pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;

@@ -69,6 +69,10 @@ pub enum PluginKind {
     PathSolver,
     /// How a path goes on: `[solver] continuation = { strategy = … }`.
     Continuation,
+    /// A load of a stage: `loads = [{ kind = … }]`.
+    LoadKind,
+    /// How a live load spreads: `dispersion = { law = … }`.
+    Dispersion,
     /// What is done with the cases: `kind = …`.
     StudyKind,
     /// A kind of result file.
@@ -77,13 +81,15 @@ pub enum PluginKind {
 
 impl PluginKind {
     /// All kinds, in the order of `voussoir list`.
-    pub const ALL: [PluginKind; 8] = [
+    pub const ALL: [PluginKind; 10] = [
         PluginKind::InterfaceLaw,
         PluginKind::BulkMaterial,
         PluginKind::Scene,
         PluginKind::LimitSolver,
         PluginKind::PathSolver,
         PluginKind::Continuation,
+        PluginKind::LoadKind,
+        PluginKind::Dispersion,
         PluginKind::StudyKind,
         PluginKind::Writer,
     ];
@@ -91,11 +97,11 @@ impl PluginKind {
     /// The key whose value is the tag.
     pub fn tag_key(self) -> &'static str {
         match self {
-            PluginKind::InterfaceLaw | PluginKind::BulkMaterial => "law",
+            PluginKind::InterfaceLaw | PluginKind::BulkMaterial | PluginKind::Dispersion => "law",
             PluginKind::Scene => "scene",
             PluginKind::LimitSolver | PluginKind::PathSolver => "solver",
             PluginKind::Continuation => "strategy",
-            PluginKind::StudyKind => "kind",
+            PluginKind::StudyKind | PluginKind::LoadKind => "kind",
             PluginKind::Writer => "writer",
         }
     }
@@ -109,6 +115,8 @@ impl PluginKind {
             PluginKind::LimitSolver => "limit solver",
             PluginKind::PathSolver => "path solver",
             PluginKind::Continuation => "continuation strategy",
+            PluginKind::LoadKind => "load kind",
+            PluginKind::Dispersion => "dispersion",
             PluginKind::StudyKind => "study kind",
             PluginKind::Writer => "writer",
         }
@@ -123,6 +131,8 @@ impl PluginKind {
             PluginKind::LimitSolver => "solvers",
             PluginKind::PathSolver => "path_solvers",
             PluginKind::Continuation => "strategies",
+            PluginKind::LoadKind => "loads",
+            PluginKind::Dispersion => "dispersions",
             PluginKind::StudyKind => "kinds",
             PluginKind::Writer => "writers",
         }

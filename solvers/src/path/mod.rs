@@ -1,5 +1,9 @@
-//! Path solvers: elastic blocks under growing loads until they collapse, and post-peak.
+//! Path solvers: elastic blocks under growing loads until they collapse, and post-peak; and what both share.
 
 pub mod continuation;
+mod energy;
 pub mod event;
+mod events;
 pub mod newton;
+mod outcome;
+mod self_check;

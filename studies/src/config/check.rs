@@ -22,7 +22,7 @@ pub struct Unused {
 
 /// A value has mistakes, which are in the checker's list.
 #[derive(Debug, Clone, Copy)]
-pub struct Mistaken;
+pub struct Rejected;
 
 /// A check in progress.
 #[derive(Debug)]
@@ -290,7 +290,7 @@ impl<'a> Checker<'a> {
             match self.parameter(node, table, parameter, key) {
                 Ok(Some(value)) => _ = out.insert(parameter.name.into(), value),
                 Ok(None) => {}
-                Err(Mistaken) => sound = false,
+                Err(Rejected) => sound = false,
             }
         }
         sound.then_some(Json::Object(out))
@@ -303,21 +303,21 @@ impl<'a> Checker<'a> {
         table: &Table,
         parameter: &Parameter,
         key: &str,
-    ) -> Result<Option<Json>, Mistaken> {
+    ) -> Result<Option<Json>, Rejected> {
         let path = join(key, parameter.name);
         if let Some(value) = table.get(parameter.name) {
-            return self.check(value, &parameter.shape, &path).map(Some).ok_or(Mistaken);
+            return self.check(value, &parameter.shape, &path).map(Some).ok_or(Rejected);
         }
         match parameter.need {
             Need::Required => {
                 let help = format!("{}; give {}", parameter.doc, describe(&parameter.shape));
                 self.wrong_with_help(&node.origin, &path, "is missing".into(), help);
-                Err(Mistaken)
+                Err(Rejected)
             }
             Need::Optional(_) => Ok(None),
             Need::Default(text) => {
-                let value = parse_value(text, &node.origin).ok_or(Mistaken)?;
-                self.check(&value, &parameter.shape, &path).map(Some).ok_or(Mistaken)
+                let value = parse_value(text, &node.origin).ok_or(Rejected)?;
+                self.check(&value, &parameter.shape, &path).map(Some).ok_or(Rejected)
             }
         }
     }

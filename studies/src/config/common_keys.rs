@@ -7,13 +7,8 @@ const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) ->
 }
 
 static STOP: Shape = Shape::Table(&[
-    Parameter::number(
-        "displacement",
-        Quantity::Length,
-        Range::POSITIVE,
-        "displacement of the load point behind a peak",
-    )
-    .optional("not a limit"),
+    Parameter::number("displacement", Quantity::Length, Range::POSITIVE, "displacement of the load point after a peak")
+        .optional("not a limit"),
     Parameter::number("factor", Quantity::Ratio, Range::ANY, "load factor at which a path ends")
         .optional("not a limit"),
 ]);
@@ -34,7 +29,7 @@ pub static SOLVER: &[Parameter] = &[
         "relative tolerance of certificates",
     )
     .default("1e-9"),
-    key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go behind a peak"),
+    key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go after a peak"),
 ];
 
 /// Keys that every plug-in of a kind has besides those of its card.

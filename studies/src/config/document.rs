@@ -216,7 +216,7 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     if mistakes.is_empty() { Ok(node) } else { Err(mistakes) }
 }
 
-/// Reads one value, as it stands behind an `=`; everything in it gets the origin `origin`.
+/// Reads one value, as it stands after an `=`; everything in it gets the origin `origin`.
 /// `None` where the text is no TOML value.
 pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
     let Ok(Node { value: Value::Table(mut table), .. }) = parse(&format!("value = {text}"), "") else {

@@ -28,7 +28,7 @@ struct Variant {
 
 /// The cases of a study, made one at a time.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct Expansion {
     base: Node,
     variants: Vec<Variant>,
     scenes: Vec<Variant>,
@@ -54,7 +54,7 @@ pub fn rounded(x: f64) -> f64 {
     if x.is_finite() { format!("{x:.11e}").parse().unwrap_or(x) } else { x }
 }
 
-impl Plan {
+impl Expansion {
     /// Reads `sweep` and `variants` of a study file, and the `scenes` of its kind's table; all mistakes in
     /// them. `kind_tables` are the tables of study kinds, which are no part of a case.
     pub fn new(root: &Node, kind_tables: &[&str]) -> Result<Self, Vec<LocatedDiagnostic>> {
@@ -90,17 +90,19 @@ impl Plan {
         let base = table.entries.into_iter().filter(|entry| !apart(&entry.key));
         let base = Table { entries: base.collect() };
         let base = Node { value: Value::Table(base), origin: root.origin.clone() };
-        let plan = Plan { base, variants, scenes, axes };
-        let overridden = plan.variants.len().checked_mul(plan.scenes.len());
-        let count =
-            plan.axes.iter().try_fold(overridden.unwrap_or(usize::MAX), |n, axis| n.checked_mul(axis.values.len()));
+        let expansion = Expansion { base, variants, scenes, axes };
+        let overridden = expansion.variants.len().checked_mul(expansion.scenes.len());
+        let count = expansion
+            .axes
+            .iter()
+            .try_fold(overridden.unwrap_or(usize::MAX), |n, axis| n.checked_mul(axis.values.len()));
         if count.is_none_or(|count| count > MAX_CASES) {
             let count = count.map_or("far too many".into(), |count| count.to_string());
             let message = format!("makes {count} cases; a study holds at most {MAX_CASES}");
             mistakes
                 .push(LocatedDiagnostic::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
         }
-        if mistakes.is_empty() { Ok(plan) } else { Err(mistakes) }
+        if mistakes.is_empty() { Ok(expansion) } else { Err(mistakes) }
     }
 
     /// Keys that are swept.
@@ -360,46 +362,50 @@ mod tests {
     use super::*;
     use crate::config::document::parse;
 
-    fn plan(text: &str) -> Result<Plan, Vec<LocatedDiagnostic>> {
-        Plan::new(&parse(text, "a.toml").unwrap(), &[])
+    fn expansion(text: &str) -> Result<Expansion, Vec<LocatedDiagnostic>> {
+        Expansion::new(&parse(text, "a.toml").unwrap(), &[])
     }
 
-    fn column(plan: &Plan, key: &str) -> Vec<Json> {
-        (0..plan.count()).map(|id| plan.case(id).unwrap().parameters[key].clone()).collect()
+    fn column(expansion: &Expansion, key: &str) -> Vec<Json> {
+        (0..expansion.count()).map(|id| expansion.case(id).unwrap().parameters[key].clone()).collect()
     }
 
     #[test]
     fn the_value_used_is_the_rounded_one() {
-        let plan =
-            plan("[scene]\nrise = 1.0\n[sweep]\n\"scene.rise\" = { from = 5.69, to = 0.29, step = -0.30 }").unwrap();
-        let rises = column(&plan, "scene.rise");
+        let expansion =
+            expansion("[scene]\nrise = 1.0\n[sweep]\n\"scene.rise\" = { from = 5.69, to = 0.29, step = -0.30 }")
+                .unwrap();
+        let rises = column(&expansion, "scene.rise");
         assert_eq!(rises.len(), 19);
         assert_eq!(rises[9].as_f64(), Some(2.99));
         assert_eq!(rises[18].as_f64(), Some(0.29));
-        assert_eq!(plan.case(9).unwrap().root.to_json()["scene"]["rise"].as_f64(), Some(2.99));
+        assert_eq!(expansion.case(9).unwrap().root.to_json()["scene"]["rise"].as_f64(), Some(2.99));
     }
 
     #[test]
     fn variants_are_outermost_and_the_first_axis_is_slowest() {
         let text = "[sweep]\n\"a\" = { list = [1, 2] }\n\"b\" = { from = 0, to = 4, count = 3 }\n[[variants]]\nname = \"x\"\n[[variants]]\nname = \"y\"\nset = { c = true }";
-        let plan = plan(text).unwrap();
-        assert_eq!(plan.count(), 12);
-        assert_eq!(column(&plan, "a")[..6], [1, 1, 1, 2, 2, 2].map(Json::from));
-        assert_eq!(column(&plan, "b")[..4], [0, 2, 4, 0].map(Json::from));
-        assert_eq!(plan.case(5).unwrap().variant.as_deref(), Some("x"));
-        assert_eq!(plan.case(6).unwrap().root.to_json()["c"], true);
+        let expansion = expansion(text).unwrap();
+        assert_eq!(expansion.count(), 12);
+        assert_eq!(column(&expansion, "a")[..6], [1, 1, 1, 2, 2, 2].map(Json::from));
+        assert_eq!(column(&expansion, "b")[..4], [0, 2, 4, 0].map(Json::from));
+        assert_eq!(expansion.case(5).unwrap().variant.as_deref(), Some("x"));
+        assert_eq!(expansion.case(6).unwrap().root.to_json()["c"], true);
     }
 
     #[test]
     fn keys_under_zip_change_together() {
-        let plan = plan("[sweep.zip]\n\"a\" = { list = [1, 2] }\n\"b\" = { list = [3, 4] }").unwrap();
-        assert_eq!((column(&plan, "a"), column(&plan, "b")), (vec![1.into(), 2.into()], vec![3.into(), 4.into()]));
+        let expansion = expansion("[sweep.zip]\n\"a\" = { list = [1, 2] }\n\"b\" = { list = [3, 4] }").unwrap();
+        assert_eq!(
+            (column(&expansion, "a"), column(&expansion, "b")),
+            (vec![1.into(), 2.into()], vec![3.into(), 4.into()])
+        );
     }
 
     #[test]
     fn too_many_cases_are_a_mistake() {
         let axis = "{ from = 1, to = 2000, step = 1 }";
-        let mistakes = plan(&format!("[sweep]\n\"a\" = {axis}\n\"b\" = {axis}")).unwrap_err();
+        let mistakes = expansion(&format!("[sweep]\n\"a\" = {axis}\n\"b\" = {axis}")).unwrap_err();
         assert!(mistakes[0].message.contains("makes 4000000 cases"));
     }
 }

@@ -15,6 +15,7 @@ pub fn definitions() -> Map<String, Json> {
         PluginKind::Scene,
         PluginKind::LimitSolver,
         PluginKind::Continuation,
+        PluginKind::Dispersion,
     ] {
         let mut choices = Vec::new();
         for word in common_words(kind) {

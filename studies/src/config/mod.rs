@@ -7,6 +7,7 @@
 
 pub mod check;
 pub mod common_keys;
+pub mod default_table;
 pub mod diagnostic;
 pub mod document;
 pub mod dotted_key;

@@ -133,6 +133,80 @@ fn unbroken(series: &Series) -> Vec<Vec<(f64, f64)>> {
     parts
 }
 
+/// Least and greatest ordinate of the axis, and whether it does not begin at zero.
+fn vertical_range(series: &[Series]) -> (f64, f64, bool) {
+    let ordinates = series.iter().flat_map(|s| s.points.iter().map(|p| p.1));
+    let (low, high) = range(ordinates).unwrap_or((0.0, 1.0));
+    let open = series.iter().any(|s| !s.open_points.is_empty());
+    // Values that lie close together would be one line on an axis from zero.
+    if !open && low > 0.8 * high && high > low {
+        return (low - 0.2 * (high - low), high + 0.05 * (high - low), true);
+    }
+    let bottom = if low > -0.05 * high { 0.0 } else { low };
+    (bottom, high + if open { 0.12 * (high - low.min(0.0)) } else { 0.0 }, false)
+}
+
+/// The legend: lines, marks of unbounded cases, then kinds of spots, each with its place and row.
+struct Legend<'a> {
+    kinds: Vec<(&'a str, Marker)>,
+    /// Index of the series or kind, whether it is a mark of unbounded cases, words.
+    entries: Vec<(usize, bool, String)>,
+    /// How many entries are series.
+    lines_end: usize,
+    /// x and row of each entry.
+    places: Vec<(i32, i32)>,
+    /// The last row.
+    row: i32,
+}
+
+impl<'a> Legend<'a> {
+    fn new(series: &'a [Series]) -> Self {
+        let mut kinds: Vec<(&str, Marker)> = Vec::new();
+        for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
+            if !kinds.contains(&(spot.kind, spot.marker)) {
+                kinds.push((spot.kind, spot.marker));
+            }
+        }
+        kinds.sort_unstable_by_key(|(kind, _)| *kind);
+        let open = series.iter().enumerate().filter(|(_, s)| !s.open_points.is_empty()).map(|(i, s)| {
+            (i, true, if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
+        });
+        let mut entries: Vec<(usize, bool, String)> =
+            series.iter().enumerate().map(|(i, s)| (i, false, s.name.clone())).chain(open).collect();
+        let lines_end = entries.len();
+        entries.extend(kinds.iter().enumerate().map(|(kind, (words, _))| (kind, false, words.to_string())));
+        let (mut places, mut x, mut row) = (Vec::new(), 70, 0);
+        for (_, _, words) in &entries {
+            let width = 46 + text_width(words, 14.0) as i32 + 24;
+            if x > 70 && x + width > WIDTH as i32 - 20 {
+                (x, row) = (70, row + 1);
+            }
+            places.push((x, row));
+            x += width;
+        }
+        Legend { kinds, entries, lines_end, places, row }
+    }
+
+    fn draw(&self, root: &Canvas, series: &[Series], base: i32) -> Result<(), Box<dyn Error>> {
+        for (entry, ((i, is_open, words), (x, row))) in self.entries.iter().zip(&self.places).enumerate() {
+            let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
+            let line = || PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2));
+            if entry >= self.lines_end {
+                symbol(root, (x + 26, y), self.kinds[*i].1, INK)?;
+            } else if series[*i].spots.is_some() {
+                root.draw(&line())?;
+            } else if *is_open {
+                mark(root, (x + 16, y - 10), &ARROW, colour)?;
+            } else {
+                root.draw(&line())?;
+                mark(root, (x + 16, y), &corners(*i), colour)?;
+            }
+            write(root, (x + 42, y), words, 14, false)?;
+        }
+        Ok(())
+    }
+}
+
 fn draw(
     text: &mut String,
     title: &str,
@@ -141,55 +215,16 @@ fn draw(
     series: &[Series],
     notes: &[String],
 ) -> Result<(), Box<dyn Error>> {
-    let ordinates = series.iter().flat_map(|s| s.points.iter().map(|p| p.1));
     let abscissas = series.iter().flat_map(|s| s.points.iter().chain(&s.open_points).map(|p| p.0));
     let (x_low, x_high) = range(abscissas).ok_or("no finite point")?;
-    let (y_low, y_high) = range(ordinates).unwrap_or((0.0, 1.0));
-    let open = series.iter().any(|s| !s.open_points.is_empty());
-    // Values that lie close together would be one line on an axis from zero.
-    let close = !open && y_low > 0.8 * y_high && y_high > y_low;
-    let (bottom, top) = if close {
-        (y_low - 0.2 * (y_high - y_low), y_high + 0.05 * (y_high - y_low))
-    } else {
-        (
-            if y_low > -0.05 * y_high { 0.0 } else { y_low },
-            y_high + if open { 0.12 * (y_high - y_low.min(0.0)) } else { 0.0 },
-        )
-    };
-    let broken = close.then(|| "The vertical axis does not begin at zero.".to_string());
-
-    let mut kinds: Vec<(&str, Marker)> = Vec::new();
-    for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
-        if !kinds.contains(&(spot.kind, spot.marker)) {
-            kinds.push((spot.kind, spot.marker));
-        }
-    }
-    kinds.sort_unstable_by_key(|(kind, _)| *kind);
-    let mut entries: Vec<(usize, bool, String)> = series
-        .iter()
-        .enumerate()
-        .map(|(i, s)| (i, false, s.name.clone()))
-        .chain(series.iter().enumerate().filter(|(_, s)| !s.open_points.is_empty()).map(|(i, s)| {
-            (i, true, if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
-        }))
-        .collect();
-    let lines_end = entries.len();
-    entries.extend(kinds.iter().enumerate().map(|(kind, (words, _))| (kind, false, words.to_string())));
-    let mut places = Vec::new();
-    let (mut x, mut row) = (70, 0);
-    for (_, _, words) in &entries {
-        let width = 46 + text_width(words, 14.0) as i32 + 24;
-        if x > 70 && x + width > WIDTH as i32 - 20 {
-            (x, row) = (70, row + 1);
-        }
-        places.push((x, row));
-        x += width;
-    }
+    let (bottom, top, broken) = vertical_range(series);
+    let broken = broken.then(|| "The vertical axis does not begin at zero.".to_string());
+    let legend = Legend::new(series);
     let titles = wrapped(title, 18.0, f64::from(WIDTH) - 40.0);
     let lines: Vec<String> =
         notes.iter().chain(&broken).flat_map(|note| wrapped(note, 13.0, f64::from(WIDTH) - 100.0)).collect();
     let head = 16 + ROW * titles.len() as u32;
-    let height = head + PLOT + ROW * (row as u32 + 1) + 20 * lines.len() as u32 + 22;
+    let height = head + PLOT + ROW * (legend.row as u32 + 1) + 20 * lines.len() as u32 + 22;
 
     let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -220,6 +255,29 @@ fn draw(
         .x_desc(x_label)
         .y_desc(y_label)
         .draw()?;
+    for (i, s) in series.iter().enumerate() {
+        let colour = PALETTE[i % PALETTE.len()];
+        for part in unbroken(s) {
+            chart.draw_series(LineSeries::new(part.iter().copied(), colour.stroke_width(2)))?;
+        }
+    }
+    draw_marks(&root, series, top, &|point| chart.backend_coord(&point))?;
+    let base = (head + PLOT) as i32 + 14;
+    legend.draw(&root, series, base)?;
+    for (i, line) in lines.iter().enumerate() {
+        write(&root, (70, base + ROW as i32 * (legend.row + 1) + 20 * i as i32), line, 13, false)?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+/// What stands on the lines: spots with their labels, points, and arrows at the upper edge for unbounded cases.
+fn draw_marks(
+    root: &Canvas,
+    series: &[Series],
+    top: f64,
+    place: &dyn Fn((f64, f64)) -> (i32, i32),
+) -> Result<(), Box<dyn Error>> {
     // Arrows of several series at one abscissa stand side by side.
     let with_open: Vec<usize> = (0..series.len()).filter(|&i| !series[i].open_points.is_empty()).collect();
     let mut beside = vec![0; series.len()];
@@ -228,52 +286,22 @@ fn draw(
     }
     for (i, s) in series.iter().enumerate() {
         let colour = PALETTE[i % PALETTE.len()];
-        for part in unbroken(s) {
-            chart.draw_series(LineSeries::new(part.iter().copied(), colour.stroke_width(2)))?;
-        }
-    }
-    for (i, s) in series.iter().enumerate() {
-        let colour = PALETTE[i % PALETTE.len()];
         for spot in s.spots.iter().flatten().filter(|spot| spot.at.0.is_finite() && spot.at.1.is_finite()) {
-            let (x, y) = chart.backend_coord(&spot.at);
-            symbol(&root, (x, y), spot.marker, colour)?;
+            let (x, y) = place(spot.at);
+            symbol(root, (x, y), spot.marker, colour)?;
             let width = text_width(&spot.label, 13.0) as i32;
             let fits = x + 10 + width < WIDTH as i32 - 6;
-            write(
-                &root,
-                (if fits { x + 10 } else { x - 4 - width }, y + if fits { 9 } else { 16 }),
-                &spot.label,
-                13,
-                false,
-            )?;
+            let at = (if fits { x + 10 } else { x - 4 - width }, y + if fits { 9 } else { 16 });
+            write(root, at, &spot.label, 13, false)?;
         }
         let every = s.spots.is_none();
-        for &(x, y) in s.points.iter().filter(|(x, y)| every && x.is_finite() && y.is_finite()) {
-            mark(&root, chart.backend_coord(&(x, y)), &corners(i), colour)?;
+        for &point in s.points.iter().filter(|(x, y)| every && x.is_finite() && y.is_finite()) {
+            mark(root, place(point), &corners(i), colour)?;
         }
         for &(x, _) in s.open_points.iter().filter(|(x, _)| x.is_finite()) {
-            let (x, y) = chart.backend_coord(&(x, top));
-            mark(&root, (x + beside[i], y + 2), &ARROW, colour)?;
+            let (x, y) = place((x, top));
+            mark(root, (x + beside[i], y + 2), &ARROW, colour)?;
         }
     }
-    let base = (head + PLOT) as i32 + 14;
-    for (entry, ((i, is_open, words), (x, row))) in entries.iter().zip(&places).enumerate() {
-        let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
-        if entry >= lines_end {
-            symbol(&root, (x + 26, y), kinds[*i].1, INK)?;
-        } else if series[*i].spots.is_some() {
-            root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;
-        } else if *is_open {
-            mark(&root, (x + 16, y - 10), &ARROW, colour)?;
-        } else {
-            root.draw(&PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2)))?;
-            mark(&root, (x + 16, y), &corners(*i), colour)?;
-        }
-        write(&root, (x + 42, y), words, 14, false)?;
-    }
-    for (i, line) in lines.iter().enumerate() {
-        write(&root, (70, base + ROW as i32 * (row + 1) + 20 * i as i32), line, 13, false)?;
-    }
-    root.present()?;
     Ok(())
 }

@@ -42,6 +42,53 @@ pub fn remark(cell: &ComparisonCell) -> String {
     }
 }
 
+/// Where the rows of the figure stand.
+struct Rows<'a> {
+    axis: &'a Axis,
+    top: f64,
+    row_height: f64,
+    /// Left end of the plot.
+    left: f64,
+    /// Right end of the plot.
+    right_of: f64,
+    remark_width: f64,
+}
+
+impl Rows<'_> {
+    /// Row `i`: its name, the bracket and ratio of each variant, and its remarks.
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        i: usize,
+        (row, brackets): (&ComparisonRow, &[Option<[f64; 2]>]),
+        name: &[String],
+        remarks: &str,
+    ) {
+        let middle = self.top + self.row_height * i as f64 + self.row_height / 2.0;
+        for (line, words) in name.iter().enumerate() {
+            let shift = 16.0 * (line as f64 - (name.len() as f64 - 1.0) / 2.0);
+            canvas.text([self.left - 14.0, middle + shift + 4.5], words, 13.0, "end");
+        }
+        for (variant, (cell, bracket)) in row.cells.iter().zip(brackets).enumerate() {
+            let at = middle + 12.0 * (variant as f64 - (row.cells.len() as f64 - 1.0) / 2.0);
+            let colour = COLOURS[variant % COLOURS.len()];
+            if let Some([a, b]) = bracket.filter(|ends| ends.iter().all(|x| x.is_finite())) {
+                let (a, b) = (self.axis.at(a), self.axis.at(b));
+                canvas.line([a, at], [b, at], colour, 3.0);
+                canvas.line([a, at - 4.0], [a, at + 4.0], colour, 2.0);
+            }
+            if let Some(ratio) = cell.ratio {
+                canvas.mark(variant, [self.axis.at(ratio), at]);
+            }
+        }
+        let lines = wrapped(remarks, 12.0, self.remark_width);
+        for (line, words) in lines.iter().enumerate() {
+            let shift = 14.0 * (line as f64 - (lines.len() as f64 - 1.0) / 2.0);
+            canvas.text([self.right_of + 12.0, middle + shift + 4.0], words, 12.0, "start");
+        }
+    }
+}
+
 /// The figure; `None` where no variant has a ratio.
 pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     let base = |row: &ComparisonRow| {
@@ -64,12 +111,11 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     let names: Vec<Vec<String>> = comparison.rows.iter().map(|row| wrapped(&row_name(row), 13.0, 230.0)).collect();
     let widest = names.iter().flatten().map(|line| text_width(line, 13.0)).fold(80.0, f64::max);
     let (left, plot) = (widest + 34.0, 520.0);
-    let variants = comparison.variants.len();
     let remarks: Vec<String> = comparison.rows.iter().map(|row| row_remarks(comparison, row)).collect();
     let right = remarks.iter().map(|words| text_width(words, 12.0)).fold(30.0, f64::max).min(430.0) + 24.0;
     let width = left + plot + right;
     let axis = Axis { values: [low, high + margin], places: [left, left + plot] };
-    let row_height = (12.0 * variants as f64 + 12.0).max(34.0);
+    let row_height = (12.0 * comparison.variants.len() as f64 + 12.0).max(34.0);
     let titles =
         wrapped(&format!("{study}: load factor over that of \"{}\"", comparison.reference), 17.0, width - 40.0);
     let top = 22.0 + 24.0 * titles.len() as f64;
@@ -90,28 +136,10 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     canvas.line([left, bottom], [left + plot, bottom], "#222222", 1.0);
     let axis_name = format!("load factor / load factor of \"{}\" [-]", comparison.reference);
     canvas.text([left + plot / 2.0, bottom + 40.0], &axis_name, 14.0, "middle");
+    let layout = Rows { axis: &axis, top, row_height, left, right_of: left + plot, remark_width: right - 20.0 };
     for (i, row) in comparison.rows.iter().enumerate() {
-        let y = top + row_height * i as f64;
-        let middle = y + row_height / 2.0;
-        for (line, words) in names[i].iter().enumerate() {
-            let shift = 16.0 * (line as f64 - (names[i].len() as f64 - 1.0) / 2.0);
-            canvas.text([left - 14.0, middle + shift + 4.5], words, 13.0, "end");
-        }
-        for (variant, cell) in row.cells.iter().enumerate() {
-            let at = middle + 12.0 * (variant as f64 - (variants as f64 - 1.0) / 2.0);
-            if let Some([a, b]) = bracket(row, cell).filter(|ends| ends.iter().all(|x| x.is_finite())) {
-                canvas.line([axis.at(a), at], [axis.at(b), at], COLOURS[variant % COLOURS.len()], 3.0);
-                canvas.line([axis.at(a), at - 4.0], [axis.at(a), at + 4.0], COLOURS[variant % COLOURS.len()], 2.0);
-            }
-            if let Some(ratio) = cell.ratio {
-                canvas.mark(variant, [axis.at(ratio), at]);
-            }
-        }
-        let lines = wrapped(&remarks[i], 12.0, right - 20.0);
-        for (line, words) in lines.iter().enumerate() {
-            let shift = 14.0 * (line as f64 - (lines.len() as f64 - 1.0) / 2.0);
-            canvas.text([left + plot + 12.0, middle + shift + 4.0], words, 12.0, "start");
-        }
+        let brackets: Vec<_> = row.cells.iter().map(|cell| bracket(row, cell)).collect();
+        layout.draw(&mut canvas, i, (row, &brackets), &names[i], &remarks[i]);
     }
     let mut legend = bottom + 66.0;
     let mut x = 30.0;

@@ -78,8 +78,8 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
     }
     // Labels of events near each other would cover each other: the last names them all.
     for late in 1..spots.len() {
-        let (before, behind) = spots.split_at_mut(late);
-        let (own, other) = (&mut behind[0], &mut before[late - 1]);
+        let (before, after) = spots.split_at_mut(late);
+        let (own, other) = (&mut after[0], &mut before[late - 1]);
         if !own.label.is_empty() && !other.label.is_empty() && near(own.at, other.at) {
             own.label = format!("{}, {}", std::mem::take(&mut other.label), own.label.trim_start_matches("joint "));
         }

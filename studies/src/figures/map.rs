@@ -129,7 +129,24 @@ pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
     }
     contours(&mut canvas, map, &ratios, &x, &y);
     frame(&mut canvas, map, &x, &y, width);
-    let mut legend = bottom + 74.0;
+    let missing = ratios.iter().flatten().filter(|ratio| ratio.is_none()).count();
+    let base = variant(&comparison.reference)?;
+    let open = comparison.rows.iter().filter(|row| open_bracket(&row.cells[base]).is_some()).count();
+    let mut legend = legend(&mut canvas, &kinds, &counts, width, bottom + 74.0, missing);
+    if open > 0 {
+        legend += 22.0;
+        let words = format!(
+            "at {open} of {} points \"{}\" may be lower than the load found, and the ratio greater",
+            nx * ny,
+            comparison.reference
+        );
+        canvas.text([40.0, legend], &words, 13.0, "start");
+    }
+    Some(canvas.finish(width, legend + 18.0))
+}
+
+/// The kinds of mechanisms with the number of their points, from `legend` downwards; returns where it ends.
+fn legend(canvas: &mut Canvas, kinds: &[String], counts: &[usize], width: f64, mut legend: f64, missing: usize) -> f64 {
     let mut at = 40.0;
     for (k, kind) in kinds.iter().enumerate() {
         let words = format!("{kind} ({})", counts[k]);
@@ -142,24 +159,12 @@ pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
         at += wide;
     }
     legend += 22.0;
-    let missing = ratios.iter().flatten().filter(|ratio| ratio.is_none()).count();
-    let mut words = "numbers behind mechanisms: how many computed points, which are the grey dots".to_string();
+    let mut words = "numbers after mechanisms: how many computed points, which are the grey dots".to_string();
     if missing > 0 {
         words += &format!("; red dots: {missing} without a ratio");
     }
     canvas.text([40.0, legend], &words, 13.0, "start");
-    let base = variant(&comparison.reference)?;
-    let open = comparison.rows.iter().filter(|row| open_bracket(&row.cells[base]).is_some()).count();
-    if open > 0 {
-        legend += 22.0;
-        let words = format!(
-            "at {open} of {} points \"{}\" may be lower than the load found, and the ratio greater",
-            nx * ny,
-            comparison.reference
-        );
-        canvas.text([40.0, legend], &words, 13.0, "start");
-    }
-    Some(canvas.finish(width, legend + 18.0))
+    legend
 }
 
 fn contours(canvas: &mut Canvas, map: &MapAxes, ratios: &[Vec<Option<f64>>], x: &Axis, y: &Axis) {

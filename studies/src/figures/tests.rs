@@ -7,6 +7,7 @@ use super::*;
 use crate::results::{CaseResult, StudyResults};
 use crate::study::Output;
 use crate::writers::{SceneOutput, StudyOutput, writers};
+use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, PointForce, Stage};
@@ -270,7 +271,7 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
         let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
         assert_eq!(tags, ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "vtu"]);
         for entry in writers() {
-            for (name, bytes) in entry.writer.files(study) {
+            for (name, bytes) in entry.writer.files(study, &Json::Null) {
                 let text = String::from_utf8(bytes).expect("every file is text");
                 if name.ends_with("html") || name.ends_with("svg") {
                     assert_balanced(&text, &name);
@@ -281,14 +282,14 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
         let csv = crate::writers::csv::results_csv(study);
         assert_eq!(csv.lines().count(), 25);
         assert!(csv.starts_with("id,variant,scene.profile.rise"));
-        let report = crate::writers::report::report_html(study);
+        let report = crate::writers::report::report_html(study, 40);
         assert!(report.contains("rise &amp; &lt;fall&gt;") && report.matches("<details").count() == 24);
         let table = crate::writers::table::results_table(study);
         assert!(table.contains("[1] flow read as associated (cases 3, 15)") && table.contains("unbounded"));
     });
     with_output(false, |study| {
-        assert!(crate::writers::figures::Figures.files(study).is_empty());
-        assert!(!crate::writers::report::report_html(study).contains("<svg"));
+        assert!(crate::writers::figures::Figures.files(study, &Json::Null).is_empty());
+        assert!(!crate::writers::report::report_html(study, 40).contains("<svg"));
     });
 }
 
@@ -305,7 +306,7 @@ fn pictures() {
     }
     with_output(true, |study| {
         std::fs::write(folder.join("chart.svg"), study_chart(study).expect("a chart")).expect("a file");
-        std::fs::write(folder.join("report.html"), crate::writers::report::report_html(study)).expect("a file");
+        std::fs::write(folder.join("report.html"), crate::writers::report::report_html(study, 40)).expect("a file");
         std::fs::write(folder.join("table.txt"), crate::writers::table::results_table(study)).expect("a file");
         std::fs::write(folder.join("results.csv"), crate::writers::csv::results_csv(study)).expect("a file");
     });

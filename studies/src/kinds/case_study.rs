@@ -9,7 +9,7 @@ use crate::study::Study;
 use crate::verify::verify;
 use crate::writers::comparison::comparison_table;
 use crate::writers::table::results_table;
-use crate::writers::{StudyOutput, writers};
+use crate::writers::{StudyOutput, written};
 use std::collections::BTreeMap;
 use voussoir_core::limit::Status;
 
@@ -59,7 +59,7 @@ impl LoadedStudy for Study {
         }
         let results = self.results(&request.version, done.into_values().collect());
         let output = StudyOutput::new(self, &results);
-        let files = writers().into_iter().flat_map(|entry| entry.writer.files(&output)).collect();
+        let files = written(&output);
         let mut table = results_table(&output);
         if let Some(comparison) = &results.comparison {
             table += "\n";

@@ -1,5 +1,18 @@
-//! Loads of a stage: from what a study says to forces on blocks.
+//! Loads of a stage: from what a study says to forces on blocks. One file each; file = tag.
 
-mod place;
+pub mod axles;
+pub mod body;
+pub mod dispersion;
+mod extrados;
+mod keys;
+mod load_kind;
+pub mod point;
+pub mod pressure;
+mod site;
+pub mod strip;
+#[cfg(test)]
+mod tests;
 
-pub use place::{BlockName, LOAD, Load, Placed, place};
+pub use keys::load_shape;
+pub use load_kind::{LoadKind, Placed};
+pub use site::{BlockName, LoadSite};

@@ -4,8 +4,8 @@
 use crate::results::CaseResult;
 use crate::results::inelastic_state;
 use crate::verify::fields::{path_forces, path_motion};
-use voussoir_core::elastic::{Condenser, IsotropicElastic};
-use voussoir_core::law::Deformability;
+use voussoir_core::elastic::{Condenser, IsotropicElastic, Recovered};
+use voussoir_core::law::{Deformability, Plane};
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage};
@@ -67,36 +67,62 @@ pub fn displaced_blocks(
     }
     let problem = PathProblem::new(assembly, stages)?;
     let state = end_state(&problem, assembly, result, finite)?;
-    let forces = problem.forces_on_points(&state, finite);
     let applied = problem.applied(state.load_step, state.factor);
     let gravity: Vec2 =
         problem.load_steps.iter().zip(applied).map(|(load_step, factor)| load_step.loading.acceleration * factor).sum();
+    let forces = problem.forces_on_points(&state, finite);
+    let end = EndState { assembly, problem: &problem, state: &state, forces: &forces, gravity, finite };
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
-    let mut blocks = Vec::new();
-    for (block, shape) in assembly.bodies.iter().enumerate() {
-        if shape.vertices.len() < 3 {
-            continue;
+    let shaped = (0..assembly.bodies.len()).filter(|block| assembly.bodies[*block].vertices.len() >= 3);
+    shaped
+        .map(|block| match problem.bodies[problem.body_of[block]].flexibility {
+            None => Ok(end.rigid_block(block)),
+            Some(_) => end.deformable_block(block, &mut condenser),
+        })
+        .collect()
+}
+
+/// The state at which a path ends, with the forces on the points of its bodies.
+struct EndState<'a> {
+    assembly: &'a Assembly,
+    problem: &'a PathProblem,
+    state: &'a PathState,
+    forces: &'a [Vec<Vec2>],
+    gravity: Vec2,
+    finite: bool,
+}
+
+impl EndState<'_> {
+    /// A vector turned by an angle where displacements are finite.
+    fn turn(&self, angle: f64, v: Vec2) -> Vec2 {
+        if self.finite { v * angle.cos() + turned(v) * angle.sin() } else { v }
+    }
+
+    /// Displacement of a place that moves with a body of the path.
+    fn rigid(&self, body: usize, place: Vec2) -> Vec2 {
+        let [x, y, theta] = self.state.motion[body];
+        let arm = place - self.problem.bodies[body].pole;
+        let swing = if self.finite { self.turn(theta, arm) - arm } else { turned(arm) * theta };
+        Vec2::new(x, y) + swing
+    }
+
+    fn rigid_block(&self, block: usize) -> DisplacedBlock {
+        let (vertices, body) = (&self.assembly.bodies[block].vertices, self.problem.body_of[block]);
+        DisplacedBlock {
+            block,
+            displacement: vertices.iter().map(|v| self.rigid(body, *v)).collect(),
+            cells: vec![(0..vertices.len()).collect()],
+            nodes: vertices.clone(),
+            stress: Vec::new(),
+            cell_stress: Vec::new(),
+            plastic_strain: Vec::new(),
+            order: 0,
+            imbalance: 0.0,
         }
-        let body = problem.body_of[block];
-        let pole = problem.bodies[body].pole;
-        let [x, y, theta] = state.motion[body];
-        let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
-        let swing = |v: Vec2| if finite { turn(theta, v) - v } else { turned(v) * theta };
-        let rigid = |place: Vec2| Vec2::new(x, y) + swing(place - pole);
-        if problem.bodies[body].flexibility.is_none() {
-            blocks.push(DisplacedBlock {
-                block,
-                displacement: shape.vertices.iter().map(|v| rigid(*v)).collect(),
-                cells: vec![(0..shape.vertices.len()).collect()],
-                nodes: shape.vertices.clone(),
-                stress: Vec::new(),
-                cell_stress: Vec::new(),
-                plastic_strain: Vec::new(),
-                order: 0,
-                imbalance: 0.0,
-            });
-            continue;
-        }
+    }
+
+    fn deformable_block(&self, block: usize, condenser: &mut Condenser) -> Result<DisplacedBlock, String> {
+        let (assembly, shape, body) = (self.assembly, &self.assembly.bodies[block], self.problem.body_of[block]);
         let material = &assembly.catalogue.materials[shape.material].1;
         let (young_modulus, poisson_ratio) = match material.deformability() {
             Deformability::LinearElastic { young_modulus, poisson_ratio }
@@ -104,43 +130,39 @@ pub fn displaced_blocks(
             _ => return Err(format!("the material of \"{}\" does not deform", shape.name)),
         };
         let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
-        let (points, own) = (&problem.bodies[body].points, &forces[body]);
-        let weight = turn(-theta, gravity);
+        let (points, own) = (&self.problem.bodies[body].points, &self.forces[body]);
+        let theta = self.state.motion[body][2];
+        let weight = self.turn(-theta, self.gravity);
         let mut recovered = condenser.recover(&shape.vertices, elastic, &assembly.mesh, points, own, weight)?;
         let (mut plastic_strain, mut yielded_across) = (Vec::new(), None);
-        if let (Some(inelastic), Some(own)) = (&problem.bodies[body].inelastic, state.inelastic(body)) {
+        if let (Some(inelastic), Some(own)) = (&self.problem.bodies[body].inelastic, self.state.inelastic(body)) {
             let imbalance = recovered.imbalance;
             let (found, zz) = inelastic.recover(&own.displacement, &own.state)?;
-            recovered = voussoir_core::elastic::Recovered { imbalance, ..found };
+            recovered = Recovered { imbalance, ..found };
             yielded_across = Some(zz);
             plastic_strain = inelastic.by_element(&own.state.equivalent);
         }
         let across = match assembly.plane {
-            voussoir_core::law::Plane::Strain => poisson_ratio,
-            voussoir_core::law::Plane::Stress => 0.0,
+            Plane::Strain => poisson_ratio,
+            Plane::Stress => 0.0,
         };
         let full = |stress: &[[f64; 3]], own: Option<&Vec<f64>>| -> Vec<[f64; 4]> {
             let zz = |i: usize, [xx, yy, _]: [f64; 3]| own.map_or(across * (xx + yy), |own| own[i]);
             stress.iter().enumerate().map(|(i, s)| [s[0], s[1], zz(i, *s), s[2]]).collect()
         };
         let [fx, fy, moment] = recovered.imbalance;
-        let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * problem.bodies[body].mass;
-        blocks.push(DisplacedBlock {
+        let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * self.problem.bodies[body].mass;
+        let displaced = recovered.nodes.iter().zip(&recovered.displacement);
+        Ok(DisplacedBlock {
             block,
-            displacement: recovered
-                .nodes
-                .iter()
-                .zip(&recovered.displacement)
-                .map(|(node, u)| rigid(*node) + turn(theta, *u))
-                .collect(),
+            displacement: displaced.map(|(node, u)| self.rigid(body, *node) + self.turn(theta, *u)).collect(),
             stress: full(&recovered.stress, yielded_across.as_ref().map(|zz| &zz[0])),
             cell_stress: full(&recovered.element_stress, yielded_across.as_ref().map(|zz| &zz[1])),
             nodes: recovered.nodes,
             cells: recovered.elements,
             order: recovered.order,
             plastic_strain,
-            imbalance: fx.hypot(fy).max(moment.abs() / problem.length) / size.max(f64::MIN_POSITIVE),
-        });
+            imbalance: fx.hypot(fy).max(moment.abs() / self.problem.length) / size.max(f64::MIN_POSITIVE),
+        })
     }
-    Ok(blocks)
 }

@@ -48,7 +48,7 @@ pub struct ProofFields {
     pub thrust_line: Option<Vec<Option<[f64; 2]>>>,
 }
 
-/// What only a path leaves behind.
+/// What only a path leaves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathRecord {
     /// What happened at the contact points, in order.
@@ -118,7 +118,7 @@ pub struct CaseResult {
     pub seconds: f64,
     /// Each stage in turn.
     pub stages: Vec<StageResult>,
-    /// What a path leaves behind.
+    /// What a path leaves.
     #[serde(flatten)]
     pub path: PathRecord,
 }

@@ -1,7 +1,7 @@
 //! `arch`: a ring of voussoirs between two supports.
 #![doc = include_str!("arch.md")]
 
-use super::mesh::{MESH, Mesh, density, mistakes};
+use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
 use super::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,7 @@ impl Arch {
     pub fn ring(&self) -> Result<Ring, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
-        diagnostics.extend(mistakes(self.mesh.as_ref()));
+        diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         if self.voussoirs.is_some_and(|n| n > MAX_VOUSSOIRS) {
             diagnostics.push(Diagnostic::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));
             return Err(diagnostics);

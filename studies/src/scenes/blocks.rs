@@ -1,7 +1,7 @@
 //! `blocks`: a free assembly of polygonal blocks.
 #![doc = include_str!("blocks.md")]
 
-use super::mesh::{MESH, Mesh, density, mistakes};
+use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use super::{
     JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take, unknown,
 };
@@ -125,7 +125,7 @@ impl Blocks {
     fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Diagnostic>) {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
-        diagnostics.extend(mistakes(self.mesh.as_ref()));
+        diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         if self.blocks.is_empty() {
             diagnostics.push(Diagnostic::new("blocks", "there is no block"));
         } else if self.blocks.iter().all(|block| !block.fixed) {

@@ -64,7 +64,7 @@ pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
 }
 
 /// Mistakes in a scene's mesh, with paths from the scene's table.
-pub(super) fn mistakes(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
+pub(super) fn mesh_diagnostics(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
     let Some(mesh) = mesh else {
         return Vec::new();
     };

@@ -1,7 +1,7 @@
 //! `wall`: bricks in running bond on the ground.
 #![doc = include_str!("wall.md")]
 
-use super::mesh::{MESH, Mesh, density, mistakes};
+use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::{Vec2, bounding_box};
@@ -111,7 +111,7 @@ impl Wall {
     fn courses(&self) -> Result<Vec<Course>, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
-        diagnostics.extend(mistakes(self.mesh.as_ref()));
+        diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         for (i, &side) in self.brick.iter().enumerate() {
             diagnostics.extend(out_of_range(&format!("brick.{i}"), side, Range::POSITIVE));
         }

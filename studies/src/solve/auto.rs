@@ -1,54 +1,101 @@
 //! `solver = "auto"`: the cheapest solver that answers the question.
+//!
+//! Solvers are found by their cards: `cost` gives the order, `provides` what a question needs (finite
+//! displacements, settlements, flow that is not associated), `requires` what laws and materials must give. Of those
+//! that remain, the first that does not refuse the problem solves it.
 
 use super::case_input::CaseInput;
+use crate::config::default_table::default_table;
 use crate::study::SelectedSolver;
 use std::sync::Arc;
 use voussoir_core::limit::{LimitProblem, LimitSolver};
-use voussoir_core::path::PathSolver;
-use voussoir_solvers::limit::{chain::LimitChain, conic::LimitConic, nonassociated::LimitNonassociated};
-use voussoir_solvers::path::{event::EventPath, newton::NewtonPath};
+use voussoir_core::model::Assembly;
+use voussoir_core::path::{PathProblem, PathSettings, PathSolver};
+use voussoir_core::plugin::{Capability, Card, PluginKind, Requirement, card, cards_of};
 
-/// The path solver that answers, if it is not for limit analysis: the one named, or for `auto` on
-/// deformable scenes the exact one where it can.
-pub fn select_path_solver(input: &CaseInput) -> Option<(String, Arc<dyn PathSolver>)> {
+/// A limit solver with its tag.
+pub type TaggedLimitSolver = (String, Arc<dyn LimitSolver>);
+/// A path solver with its tag.
+pub type TaggedPathSolver = (String, Arc<dyn PathSolver>);
+
+/// Solvers of a kind that `auto` may take, the cheapest first.
+fn by_cost(kind: PluginKind) -> Vec<&'static Card> {
+    let mut all: Vec<_> = cards_of(kind).into_iter().filter(|card| card.cost.is_some()).collect();
+    all.sort_by_key(|card| card.cost);
+    all
+}
+
+/// Whether the laws of all joints and the materials of all free blocks meet a requirement.
+fn met(assembly: &Assembly, need: Requirement) -> bool {
+    let meets = |kind: PluginKind, tag: &str| card(kind, tag).is_some_and(|card| card.meets(need));
+    let laws = assembly.joints.iter().filter_map(|joint| assembly.law(joint));
+    let free = assembly.bodies.iter().filter(|body| !body.fixed);
+    laws.map(|law| law.typetag_name()).all(|tag| meets(PluginKind::InterfaceLaw, tag))
+        && free
+            .map(|body| assembly.catalogue.materials[body.material].1.typetag_name())
+            .all(|tag| meets(PluginKind::BulkMaterial, tag))
+}
+
+/// The path solvers to try, in order; none where limit analysis answers.
+pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
     match input.solver {
-        SelectedSolver::Limit(..) => None,
-        SelectedSolver::Path(tag, solver) => Some((tag.clone(), solver.clone())),
-        SelectedSolver::Auto => {
-            let assembly = input.assembly;
-            let settles = input.stages.iter().any(|stage| !stage.settlements.is_empty());
-            if !assembly.deforms() && !input.settings.finite && !settles {
-                return None;
-            }
-            let facets =
-                assembly.joints.iter().all(|j| assembly.law(j).is_none_or(|l| l.formulation().facets().is_some()));
-            let exact = input.settings.continuation.as_ref().is_none_or(|c| c.exact_events());
-            let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
-            if !input.settings.finite && facets && exact && linear {
-                Some(("event_path".into(), Arc::new(EventPath {})))
-            } else {
-                Some(("newton_path".into(), Arc::new(NewtonPath {})))
-            }
+        SelectedSolver::Limit(..) => return Vec::new(),
+        SelectedSolver::Path(tag, solver) => return vec![(tag.clone(), solver.clone())],
+        SelectedSolver::Auto => {}
+    }
+    let (assembly, finite) = (input.assembly, input.settings.finite);
+    let settles = input.stages.iter().any(|stage| !stage.settlements.is_empty());
+    if !assembly.deforms() && !finite && !settles {
+        return Vec::new();
+    }
+    let all = by_cost(PluginKind::PathSolver);
+    let fits = |card: &&&Card| {
+        (!finite || card.offers(Capability::FINITE_DISPLACEMENTS))
+            && (!settles || card.offers(Capability::SETTLEMENT))
+            && card.requires.iter().all(|need| met(assembly, need))
+    };
+    let mut chosen: Vec<&Card> = all.iter().filter(fits).copied().collect();
+    if chosen.is_empty() {
+        // The most general one says what it cannot do.
+        chosen.extend(all.last());
+    }
+    chosen
+        .into_iter()
+        .filter_map(|card| Some((card.tag.to_string(), Arc::from(built::<dyn PathSolver>(card)?))))
+        .collect()
+}
+
+/// The first path solver that takes the problem; else the tag of the last one and why it does not.
+pub fn willing<'a>(
+    solvers: &'a [TaggedPathSolver],
+    problem: &PathProblem,
+    settings: &PathSettings,
+) -> Result<&'a TaggedPathSolver, (String, String)> {
+    let mut refusal = (String::new(), "no path solver is registered".to_string());
+    for tagged in solvers {
+        match tagged.1.refuses(problem, settings) {
+            None => return Ok(tagged),
+            Some(why) => refusal = (tagged.0.clone(), why),
         }
     }
+    Err(refusal)
 }
 
 /// The limit solvers to try, in order.
-pub fn limit_solvers(selected: &SelectedSolver, problem: &LimitProblem) -> Vec<(String, Arc<dyn LimitSolver>)> {
-    match selected {
-        SelectedSolver::Limit(tag, solver) => vec![(tag.clone(), solver.clone())],
-        SelectedSolver::Auto | SelectedSolver::Path(..) => {
-            let chain: Arc<dyn LimitSolver> = Arc::new(LimitChain {});
-            let conic: Arc<dyn LimitSolver> = Arc::new(LimitConic {});
-            let general = ("limit_conic".to_string(), conic);
-            let mut all = vec![general];
-            if chain.refuses(problem).is_none() {
-                all.insert(0, ("limit_chain".to_string(), chain));
-            }
-            if problem.non_associated {
-                all.insert(0, ("limit_least".to_string(), Arc::new(LimitNonassociated::default())));
-            }
-            all
-        }
+pub fn limit_solvers(selected: &SelectedSolver, problem: &LimitProblem) -> Vec<TaggedLimitSolver> {
+    if let SelectedSolver::Limit(tag, solver) = selected {
+        return vec![(tag.clone(), solver.clone())];
     }
+    let fits = |card: &&Card| problem.non_associated || !card.offers(Capability::NON_ASSOCIATED);
+    let solvers = by_cost(PluginKind::LimitSolver).into_iter().filter(fits);
+    let built = solvers.filter_map(|card| Some((card.tag.to_string(), Arc::from(built::<dyn LimitSolver>(card)?))));
+    built.filter(|(_, solver): &TaggedLimitSolver| solver.refuses(problem).is_none()).collect()
+}
+
+/// A solver with the defaults of its keys.
+fn built<T: ?Sized>(card: &Card) -> Option<Box<T>>
+where
+    Box<T>: serde::de::DeserializeOwned,
+{
+    serde_json::from_value(default_table(card)).ok()
 }

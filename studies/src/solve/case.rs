@@ -1,6 +1,6 @@
 //! Solving cases: one, or several side by side.
 
-use super::auto::select_path_solver;
+use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::{limit, path};
@@ -12,9 +12,11 @@ use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
 
 /// Solves a case; an observer sees the states of a path. The label and `seconds` are left for the caller to fill.
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
-    match select_path_solver(input) {
-        Some((tag, solver)) => path::solve_by_path(input, &tag, &*solver, observer),
-        None => limit::solve_by_limit_analysis(input),
+    let solvers = path_solvers(input);
+    if solvers.is_empty() {
+        limit::solve_by_limit_analysis(input)
+    } else {
+        path::solve_by_path(input, &solvers, observer)
     }
 }
 

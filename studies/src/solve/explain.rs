@@ -1,6 +1,6 @@
 //! Explaining a study: what will be solved, after everything that the scene does not need is gone.
 
-use super::auto::{limit_solvers, select_path_solver};
+use super::auto::{TaggedPathSolver, limit_solvers, path_solvers, willing};
 use super::case_input::CaseInput;
 use crate::results::stage_start::search_start;
 use crate::study::{Case, Study};
@@ -30,8 +30,9 @@ fn explain_case(case: &Case, text: &mut String) {
         assembly.joints.len()
     );
     let input = CaseInput::of(case);
-    if let Some((tag, _)) = select_path_solver(&input) {
-        return explain_path(case, &tag, input.settings.finite, text);
+    let solvers = path_solvers(&input);
+    if !solvers.is_empty() {
+        return explain_path(case, &solvers, text);
     }
     for (stage, loads) in case.stages.iter().zip(stage_loads(assembly, &case.stages)) {
         let problem = match LimitProblem::new(assembly, &loads) {
@@ -53,7 +54,8 @@ fn explain_case(case: &Case, text: &mut String) {
             count(Tangential::Stuck),
             count(Tangential::Free),
         );
-        let tag = limit_solvers(input.solver, &problem).swap_remove(0).0;
+        let tag =
+            limit_solvers(input.solver, &problem).first().map_or("no solver".to_string(), |tagged| tagged.0.clone());
         let _ = match stage.target {
             Target::Collapse => {
                 writeln!(text, "  {tag}: stands at factor {}? then the greatest factor", search_start(stage))
@@ -72,10 +74,18 @@ fn explain_case(case: &Case, text: &mut String) {
     }
 }
 
-fn explain_path(case: &Case, tag: &str, finite: bool, text: &mut String) {
+fn explain_path(case: &Case, solvers: &[TaggedPathSolver], text: &mut String) {
+    let settings = &case.solver.settings;
     let problem = match PathProblem::new(&case.assembly, &case.stages) {
         Ok(problem) => problem,
         Err(why) => {
+            let _ = writeln!(text, "{}: {why}", solvers[0].0);
+            return;
+        }
+    };
+    let tag = match willing(solvers, &problem, settings) {
+        Ok((tag, _)) => tag,
+        Err((tag, why)) => {
             let _ = writeln!(text, "{tag}: {why}");
             return;
         }
@@ -99,7 +109,7 @@ fn explain_path(case: &Case, tag: &str, finite: bool, text: &mut String) {
         "{points} contact points: {bonded} bonded, {} with facets, {softening} with tractions from gaps",
         points - bonded - softening,
     );
-    let kinematics = if finite { "finite" } else { "small" };
+    let kinematics = if settings.finite { "finite" } else { "small" };
     for load_step in &problem.load_steps {
         let what = if load_step.gravity { "gravity" } else { "loads" };
         let end = match load_step.end {

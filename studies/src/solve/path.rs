@@ -1,10 +1,11 @@
 //! Solving a case along its path, while the certificate looks on.
 
+use super::auto::{TaggedPathSolver, willing};
 use super::case_input::CaseInput;
 use super::path_result::path_result;
 use crate::results::CaseResult;
 use voussoir_core::certificate::PathChecker;
-use voussoir_core::path::{PathObserver, PathProblem, PathSolver, PathState};
+use voussoir_core::path::{PathObserver, PathProblem, PathState};
 
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
@@ -18,22 +19,21 @@ impl PathObserver for Watched<'_> {
     }
 }
 
-/// Solves a case along its path; `observer` sees every state.
+/// Solves a case along its path by the first solver that takes it; `observer` sees every state.
 pub(super) fn solve_by_path(
     input: &CaseInput,
-    tag: &str,
-    solver: &dyn PathSolver,
+    solvers: &[TaggedPathSolver],
     observer: &mut dyn PathObserver,
 ) -> CaseResult {
-    let assembly = input.assembly;
-    let problem = match PathProblem::new(assembly, input.stages) {
+    let problem = match PathProblem::new(input.assembly, input.stages) {
         Ok(problem) => problem,
-        Err(why) => return failed(tag, why),
+        Err(why) => return failed(&solvers[0].0, why),
     };
-    if let Some(why) = solver.refuses(&problem, input.settings) {
-        return failed(tag, format!("{tag}: {why}"));
-    }
-    let checker = match PathChecker::certifying(assembly, input.stages, input.settings.finite) {
+    let (tag, solver) = match willing(solvers, &problem, input.settings) {
+        Ok(tagged) => tagged,
+        Err((tag, why)) => return failed(&tag, format!("{tag}: {why}")),
+    };
+    let checker = match PathChecker::certifying(input.assembly, input.stages, input.settings.finite) {
         Ok(checker) => checker,
         Err(why) => return failed(tag, why),
     };

@@ -1,9 +1,9 @@
 //! The keys of a study file.
 
 use crate::kinds::kinds;
-use crate::loads::LOAD;
+use crate::loads::load_shape;
 use std::sync::LazyLock;
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card, cards_of};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
     Parameter { name, doc, shape, need }
@@ -27,7 +27,8 @@ static SETTLEMENT: Shape = Shape::Table(&[
     .default("0.0"),
 ]);
 
-static STAGE: Shape = Shape::Table(&[
+/// Keys of a stage but for `loads`, which stand after the second.
+static STAGE: &[Parameter] = &[
     key("name", Shape::Text, Need::Required, "name of the stage, unique in the study"),
     key(
         "gravity",
@@ -37,12 +38,6 @@ static STAGE: Shape = Shape::Table(&[
         ]),
         Need::Optional("gravity stays as it was"),
         "gravity from this stage on: downwards, or a vector [gx, gy]",
-    ),
-    key(
-        "loads",
-        Shape::List { of: &LOAD, min: 0, max: usize::MAX },
-        Need::Default("[]"),
-        "loads, multiplied by the stage's factor",
     ),
     key(
         "until",
@@ -60,7 +55,7 @@ static STAGE: Shape = Shape::Table(&[
         Need::Default("[]"),
         "movements of supports",
     ),
-]);
+];
 
 static AXIS: Shape = Shape::Table(&[
     key(
@@ -82,12 +77,36 @@ pub static VARIANT: Shape = Shape::Table(&[
     key("set", Shape::Map(&FREE), Need::Default("{}"), "dotted keys in quotes, with the values they take"),
 ]);
 
-/// Keys of `[output]`.
-pub static OUTPUT: Shape = Shape::Table(&[
+/// Keys of `[output]` that studies of every kind have.
+static OUTPUT_KEYS: &[Parameter] = &[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
     key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
-]);
+];
+
+/// `[output]` of studies without writers.
+pub static OUTPUT: Shape = Shape::Table(OUTPUT_KEYS);
+
+/// `[output]` with the registered writers: which of them write, and a table of options for each that has keys.
+fn output() -> Shape {
+    let cards = cards_of(PluginKind::Writer);
+    // Made once, from a registry that lives as long as the program.
+    let tags: &'static [&'static str] = Vec::leak(cards.iter().map(|card| card.tag).collect());
+    let tag: &'static Shape = Box::leak(Box::new(Shape::Choice(tags)));
+    let with_keys = cards.into_iter().filter(|card| !card.parameters.is_empty());
+    let options: Vec<Parameter> =
+        with_keys.map(|card| key(card.tag, Shape::Table(card.parameters), Need::Default("{}"), card.summary)).collect();
+    let mut keys = OUTPUT_KEYS.to_vec();
+    let list = Shape::List { of: tag, min: 0, max: usize::MAX };
+    keys.push(key(
+        "writers",
+        list,
+        Need::Optional("all"),
+        "tags of the writers that write; results.json is always written",
+    ));
+    keys.push(key("options", Shape::Table(Vec::leak(options)), Need::Default("{}"), "options of writers, by tag"));
+    Shape::Table(Vec::leak(keys))
+}
 
 /// Cards of study kinds that read a table of their own, `[compare]` and the like, named as their tag.
 fn kinds_with_tables() -> impl Iterator<Item = &'static Card> {
@@ -108,25 +127,32 @@ pub fn study_keys() -> &'static [Parameter] {
     static KEYS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         let table =
             |card: &Card| key(card.tag, Shape::Table(card.parameters), Need::Optional("defaults"), card.summary);
-        let output = key("output", OUTPUT, Need::Default("{}"), "what is written besides the results");
-        COMMON.iter().copied().chain(kinds_with_tables().map(table)).chain([output]).collect()
+        let output = key("output", output(), Need::Default("{}"), "what is written besides the results");
+        let (before, after) = COMMON.split_at(5);
+        let common = before.iter().chain([&stages()]).chain(after).copied().collect::<Vec<_>>();
+        common.into_iter().chain(kinds_with_tables().map(table)).chain([output]).collect()
     });
     &KEYS
 }
 
-/// Keys that every study has.
+/// The key `stages`, with the registered load kinds.
+fn stages() -> Parameter {
+    let list = Shape::List { of: load_shape(), min: 0, max: usize::MAX };
+    let mut keys = STAGE.to_vec();
+    keys.insert(2, key("loads", list, Need::Default("[]"), "loads, multiplied by the stage's factor"));
+    // Made once, from a registry that lives as long as the program.
+    let stage: &'static Shape = Box::leak(Box::new(Shape::Table(Vec::leak(keys))));
+    let list = Shape::List { of: stage, min: 1, max: usize::MAX };
+    key("stages", list, Need::Required, "stages of loading, [[stages]], in order")
+}
+
+/// Keys that every study has, but for `stages`, which stand after the fifth.
 static COMMON: &[Parameter] = &[
     key("name", Shape::Text, Need::Required, "name of the study"),
     key("kind", Shape::Text, Need::Default("\"run\""), "what is done with the cases"),
     key("scene", Shape::Plugin(PluginKind::Scene), Need::Required, "the geometry"),
     key("materials", Shape::Map(&MATERIAL), Need::Required, "materials of blocks by name"),
     key("joints", Shape::Map(&LAW), Need::Default("{}"), "laws of joints by name"),
-    key(
-        "stages",
-        Shape::List { of: &STAGE, min: 1, max: usize::MAX },
-        Need::Required,
-        "stages of loading, [[stages]], in order",
-    ),
     key(
         "solver",
         Shape::Plugin(PluginKind::LimitSolver),

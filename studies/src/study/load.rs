@@ -9,7 +9,7 @@ use super::source::{StudySource, kind_of};
 use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
-use crate::config::expand::{Expanded, Plan};
+use crate::config::expand::{Expanded, Expansion};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use crate::kinds::kind;
@@ -43,40 +43,40 @@ impl Study {
         }
         check_variants(&root, &mut diagnostics);
         let table = kind_table(&root, &mut diagnostics);
-        let plan = match Plan::new(&root, &kind_tables()) {
-            Ok(plan) => plan,
+        let expansion = match Expansion::new(&root, &kind_tables()) {
+            Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
                 sort(&mut diagnostics);
                 return Err(diagnostics);
             }
         };
-        check_sets(&sets, &plan, &mut diagnostics);
-        let outline = Outline { variants: plan.variants(), scenes: plan.scenes(), axes: plan.axes(), table };
+        check_sets(&sets, &expansion, &mut diagnostics);
+        let outline =
+            Outline { variants: expansion.variants(), scenes: expansion.scenes(), axes: expansion.axes(), table };
         check_outline(&root, &outline, &mut diagnostics);
-        let cases = build_cases(&plan, &mut diagnostics);
+        let cases = build_cases(&expansion, &mut diagnostics);
         if !diagnostics.is_empty() {
             sort(&mut diagnostics);
             return Err(diagnostics);
         }
         let first = cases.first().map(|case| &case.resolved);
         let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
-        let flag = |name: &str| first.and_then(|case| case["output"][name].as_bool()).unwrap_or(false);
         Ok(Study {
             name: text_of("name"),
             kind: text_of("kind"),
             outline,
-            output: Output { curve: flag("curve"), figures: flag("figures"), vtu: flag("vtu") },
+            output: first.map(|case| output(&case["output"])).unwrap_or_default(),
             cases,
             resolved: root.to_toml(),
-            plan,
+            expansion,
         })
     }
 
     /// Case `id` with other values of some keys, as a study kind needs it that chooses values itself. Its `id`
     /// and `parameters` are those of the case, with the keys that are set.
     pub fn at(&self, id: usize, values: &[(&str, f64)]) -> Result<Case, Vec<LocatedDiagnostic>> {
-        let mut expanded = self.plan.case(id)?;
+        let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {
             let origin = Origin::Set((*key).into());
             let node = Node { value: crate::config::document::Value::Float(*value), origin: origin.clone() };
@@ -87,14 +87,27 @@ impl Study {
     }
 }
 
+/// What is written besides the results, from the checked table `[output]`.
+fn output(table: &Json) -> Output {
+    let flag = |name: &str| table[name].as_bool().unwrap_or(false);
+    let tags = |list: &Vec<Json>| list.iter().filter_map(|tag| tag.as_str().map(str::to_string)).collect();
+    Output {
+        curve: flag("curve"),
+        figures: flag("figures"),
+        vtu: flag("vtu"),
+        writers: table["writers"].as_array().map(tags),
+        options: table["options"].as_object().cloned().unwrap_or_default(),
+    }
+}
+
 /// All cases; a mistake that several cases have stands once, with the first of them where not all have it.
-fn build_cases(plan: &Plan, diagnostics: &mut Vec<LocatedDiagnostic>) -> Vec<Case> {
-    let count = plan.count();
+fn build_cases(expansion: &Expansion, diagnostics: &mut Vec<LocatedDiagnostic>) -> Vec<Case> {
+    let count = expansion.count();
     let mut times: HashMap<LocatedDiagnostic, usize> = HashMap::new();
     let mut order: Vec<(LocatedDiagnostic, String)> = Vec::new();
     let mut cases = Vec::new();
     for id in 0..count {
-        let (result, label) = match plan.case(id) {
+        let (result, label) = match expansion.case(id) {
             Ok(expanded) => {
                 let label = describe_case(&expanded);
                 (build_case(id, expanded), label)
@@ -136,8 +149,8 @@ fn check_variants(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) {
 }
 
 /// A swept key that is set on the command line besides.
-fn check_sets(sets: &[(String, String)], plan: &Plan, diagnostics: &mut Vec<LocatedDiagnostic>) {
-    for (path, _) in sets.iter().filter(|(path, _)| plan.swept().any(|swept| swept == path)) {
+fn check_sets(sets: &[(String, String)], expansion: &Expansion, diagnostics: &mut Vec<LocatedDiagnostic>) {
+    for (path, _) in sets.iter().filter(|(path, _)| expansion.swept().any(|swept| swept == path)) {
         let message = "is swept, so setting it has no effect";
         let help = format!("change the axis instead: --set 'sweep.\"{path}\".list=[…]'");
         diagnostics.push(LocatedDiagnostic::new(&Origin::Set(path.as_str().into()), path, message).help(help));

@@ -2,7 +2,7 @@
 //! stands in [`super::load`].
 
 use super::outline::Outline;
-use crate::config::expand::Plan;
+use crate::config::expand::Expansion;
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
 use voussoir_core::limit::LimitSolver;
@@ -63,6 +63,10 @@ pub struct Output {
     pub figures: bool,
     /// Files for ParaView.
     pub vtu: bool,
+    /// Tags of the writers that are wanted; all where there is no list.
+    pub writers: Option<Vec<String>>,
+    /// Options of writers by tag, defaults filled in.
+    pub options: Map<String, Json>,
 }
 
 /// A study file that holds no mistake.
@@ -83,5 +87,5 @@ pub struct Study {
     /// makes exactly the same cases.
     pub resolved: toml::Value,
     /// Its base, variants, scenes and axes, from which cases are made.
-    pub(crate) plan: Plan,
+    pub(crate) expansion: Expansion,
 }

@@ -84,25 +84,31 @@ fn build_settings(diagnostics: &mut DiagnosticList<'_>, solver: &Json, finite: b
     })
 }
 
-/// The plug-in that a table configures; else a diagnostic at the key that its reader names, with the nearest
-/// right name.
+/// The plug-in that a table configures; else a diagnostic at the key that its reader does not take, with the
+/// nearest right name.
 fn read_solver<T: serde::de::DeserializeOwned>(
     diagnostics: &mut DiagnosticList<'_>,
     at: &str,
     table: &Json,
     card: &Card,
 ) -> Option<T> {
-    let error = match serde_json::from_value(table.clone()) {
+    let read = |table: Json| serde_json::from_value::<T>(table).map_err(|error| error.to_string());
+    let error = match read(table.clone()) {
         Ok(plugin) => return Some(plugin),
-        Err(error) => error.to_string(),
+        Err(error) => error,
     };
-    let named = error.split('`').nth(1).filter(|name| table.get(*name).is_some());
+    // The key without which the reader says something else.
+    let culprit = table.as_object().into_iter().flatten().map(|(key, _)| key).find(|key| {
+        let mut rest = table.clone();
+        rest.as_object_mut().map(|rest| rest.remove(*key));
+        *key != card.kind.tag_key() && read(rest).err().as_ref() != Some(&error)
+    });
     let names: Vec<_> = card.parameters.iter().map(|parameter| parameter.name).collect();
-    let help = match named {
-        Some(name) if !names.contains(&name) => suggest(name, &names, &format!("keys of \"{}\"", card.tag)),
+    let help = match culprit {
+        Some(name) if !names.contains(&name.as_str()) => suggest(name, &names, &format!("keys of \"{}\"", card.tag)),
         _ => format!("correct it: `voussoir explain {}` lists the keys and their values", card.tag),
     };
-    let key = named.map_or(at.to_string(), |name| join(at, name));
+    let key = culprit.map_or(at.to_string(), |name| join(at, name));
     diagnostics.wrong(&key, format!("{} \"{}\" cannot be read: {error}", card.kind.describe(), card.tag), help);
     None
 }

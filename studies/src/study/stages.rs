@@ -3,7 +3,7 @@
 use super::diagnostics::DiagnosticList;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
-use crate::loads::{Load, place};
+use crate::loads::{LoadKind, LoadSite, Placed};
 use serde_json::Value as Json;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint, PointForce, Settlement, Stage, Target};
@@ -96,7 +96,7 @@ fn build_loads(
     let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
     for (number, table) in stage["loads"].as_array().into_iter().flatten().enumerate() {
         let path = format!("{at}.loads.{number}");
-        let load: Option<Load> = match serde_json::from_value(table.clone()) {
+        let load: Option<Box<dyn LoadKind>> = match serde_json::from_value(table.clone()) {
             Ok(load) => Some(load),
             Err(error) => {
                 diagnostics.wrong(&path, format!("cannot be read: {error}"), "correct this load");
@@ -104,8 +104,8 @@ fn build_loads(
             }
         };
         let (Some(load), Some(assembly)) = (load, assembly) else { continue };
-        match place(&load, assembly, &path) {
-            Ok((placed, accelerated)) => {
+        match load.place(&LoadSite::new(assembly, &path)) {
+            Ok(Placed { forces: placed, accelerations: accelerated }) => {
                 let (groups, _) = assembly.rigid_groups();
                 let held = placed.iter().find(|f| groups[f.body].is_none() && assembly.is_rigid(f.body));
                 if let Some(force) = held {

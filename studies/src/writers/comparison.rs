@@ -8,13 +8,14 @@ use crate::figures::format::{format_number, format_short, format_value, key_with
 use crate::figures::map::map_svg;
 use crate::results::{Comparison, ComparisonCell};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use serde_json::Value as Json;
 
 /// Writes `comparison.csv`, `figures/comparison.svg` and `figures/map.svg`.
 #[derive(Debug)]
 pub struct ComparisonFiles;
 
 impl Writer for ComparisonFiles {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
         let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison).into_bytes())];
         if study.output.figures {

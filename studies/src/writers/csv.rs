@@ -5,13 +5,14 @@ use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::format::{format_value, key_with_unit, kind_word, status_word};
 use crate::results::CaseResult;
+use serde_json::Value as Json;
 
 /// Writes `results.csv`.
 #[derive(Debug)]
 pub struct ResultsCsv;
 
 impl Writer for ResultsCsv {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         vec![("results.csv".into(), results_csv(study).into_bytes())]
     }
 }

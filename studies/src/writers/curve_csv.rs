@@ -4,13 +4,14 @@ use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::format::{format_value, key_with_unit};
+use serde_json::Value as Json;
 
 /// Writes `curve.csv`.
 #[derive(Debug)]
 pub struct CurveCsv;
 
 impl Writer for CurveCsv {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         let any = study.results.cases.iter().any(|case| case.path.curve.is_some());
         if any { vec![("curve.csv".into(), curve_csv(study).into_bytes())] } else { Vec::new() }
     }

@@ -5,13 +5,14 @@ use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
+use serde_json::Value as Json;
 
 /// Writes `figures/*.svg`.
 #[derive(Debug)]
 pub struct Figures;
 
 impl Writer for Figures {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         if !study.output.figures {
             return Vec::new();
         }

@@ -17,4 +17,4 @@ pub mod vtu;
 mod writer;
 
 pub use study_output::{SceneOutput, StudyOutput};
-pub use writer::{Writer, WriterEntry, writers};
+pub use writer::{Writer, WriterEntry, writers, written};

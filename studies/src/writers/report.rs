@@ -14,10 +14,12 @@ use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
+use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
+use voussoir_core::plugin::{Need, Parameter, Shape};
 
-/// More cases than this are not drawn.
+/// More cases than this are not drawn, unless the option `drawn` says so.
 const DRAWN: usize = 40;
 
 /// Writes `report.html`.
@@ -25,13 +27,16 @@ const DRAWN: usize = 40;
 pub struct Report;
 
 impl Writer for Report {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
-        vec![("report.html".into(), report_html(study).into_bytes())]
+    fn files(&self, study: &StudyOutput, options: &Json) -> Vec<(String, Vec<u8>)> {
+        vec![(
+            "report.html".into(),
+            report_html(study, options["drawn"].as_u64().map_or(DRAWN, |drawn| drawn as usize)).into_bytes(),
+        )]
     }
 }
 
-/// The whole page.
-pub fn report_html(study: &StudyOutput) -> String {
+/// The whole page; at most so many cases are drawn.
+pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
@@ -48,9 +53,9 @@ pub fn report_html(study: &StudyOutput) -> String {
     body += &case_table(study);
     body += &notes(cases);
     if study.output.figures {
-        body += &figures(study);
+        body += &figures(study, drawn);
     }
-    body += &paths(study);
+    body += &paths(study, drawn);
     body += &certificates(cases);
     body += &format!(
         "<footer>Written by Voussoir {}. SI units; forces in N, kN or MN as marked. The numbers to the last bit are in \
@@ -69,7 +74,7 @@ fn comparison(study: &StudyOutput) -> String {
     let Some(comparison) = &study.results.comparison else { return String::new() };
     let mut body = format!(
         "<h2>Comparison</h2>\n<p>Load factors, then their ratios to those of <em>{}</em>. Where a number follows \
-         behind ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
+         after ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
         escape(&comparison.reference)
     );
     if study.output.figures
@@ -184,15 +189,15 @@ fn notes(cases: &[CaseResult]) -> String {
     format!("<h2>Notes</h2>\n<ul>\n{}</ul>\n", items.collect::<String>())
 }
 
-fn figures(study: &StudyOutput) -> String {
+fn figures(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut text = format!("<h2>Figures</h2>\n{}", page::MEANING);
-    if cases.len() > DRAWN {
-        text += &format!("<p>{} cases: the first {DRAWN} are drawn here.</p>\n", cases.len());
+    if cases.len() > drawn {
+        text += &format!("<p>{} cases: the first {drawn} are drawn here.</p>\n", cases.len());
     }
-    for (place, case) in cases.iter().take(DRAWN).enumerate() {
+    for (place, case) in cases.iter().take(drawn).enumerate() {
         let Some((assembly, stages)) = study.scene(place) else { continue };
-        let open = if place == 0 && cases.len() <= DRAWN { " open" } else { "" };
+        let open = if place == 0 && cases.len() <= drawn { " open" } else { "" };
         let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
         let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.label.id));
@@ -236,7 +241,7 @@ fn what(assembly: &Assembly, event: &JointEvent) -> String {
 }
 
 /// Paths: what happened in which order, and the work done.
-fn paths(study: &StudyOutput) -> String {
+fn paths(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let followed: Vec<usize> = (0..cases.len()).filter(|&i| cases[i].path.displacements.is_some()).collect();
     if followed.is_empty() {
@@ -251,7 +256,7 @@ fn paths(study: &StudyOutput) -> String {
             text += &format!("<figure>{chart}<figcaption>{CURVE}</figcaption></figure>\n");
         }
     }
-    for (place, &index) in followed.iter().take(DRAWN).enumerate() {
+    for (place, &index) in followed.iter().take(drawn).enumerate() {
         let (case, Some((assembly, _))) = (&cases[index], study.scene(index)) else { continue };
         let events = joint_events(assembly, case);
         let open = if place == 0 { " open" } else { "" };
@@ -275,8 +280,8 @@ fn paths(study: &StudyOutput) -> String {
             escape(&counts.collect::<Vec<_>>().join(", "))
         );
     }
-    if followed.len() > DRAWN {
-        text += &format!("<p>{} paths: the first {DRAWN} are listed here.</p>\n", followed.len());
+    if followed.len() > drawn {
+        text += &format!("<p>{} paths: the first {drawn} are listed here.</p>\n", followed.len());
     }
     text
 }
@@ -312,5 +317,11 @@ register!(
     "report",
     Report,
     "report.html: one self-contained page with tables, figures and certificates",
-    "# `report`\n\nWrites `report.html`, one page without external resources. At most 40 cases are drawn in it.\n"
+    &[Parameter {
+        name: "drawn",
+        doc: "at most so many cases are drawn",
+        shape: Shape::Integer { min: 0, max: 100_000 },
+        need: Need::Default("40"),
+    }],
+    "# `report`\n\nWrites `report.html`, one page without external resources. At most `drawn` cases are drawn in it: \n\n```toml\n[output.options.report]\ndrawn = 10\n```\n"
 );

@@ -3,13 +3,14 @@
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
+use serde_json::Value as Json;
 
 /// Writes `results.json`.
 #[derive(Debug)]
 pub struct ResultsJson;
 
 impl Writer for ResultsJson {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         let text = serde_json::to_string_pretty(study.results).expect("results hold no map with other keys than text");
         vec![("results.json".into(), (text + "\n").into_bytes())]
     }

@@ -79,13 +79,13 @@ fn hinges(case: &CaseResult) -> String {
     if joints.len() > 8 { format!("{} joints", joints.len()) } else { joints.join(" ") }
 }
 
-/// Numbers padded behind so that their points stand under each other when aligned right.
+/// Numbers padded at the end so that their points stand under each other when aligned right.
 fn aligned(cells: &[String]) -> Vec<String> {
-    let behind = |cell: &str| cell.find('.').map_or(0, |dot| cell.len() - dot);
+    let decimals = |cell: &str| cell.find('.').map_or(0, |dot| cell.len() - dot);
     let is_number = |cell: &str| cell.parse::<f64>().is_ok();
-    let longest = cells.iter().filter(|cell| is_number(cell)).map(|cell| behind(cell)).max().unwrap_or(0);
+    let longest = cells.iter().filter(|cell| is_number(cell)).map(|cell| decimals(cell)).max().unwrap_or(0);
     let pad = |cell: &String| {
-        if is_number(cell) { format!("{cell}{}", " ".repeat(longest - behind(cell))) } else { cell.clone() }
+        if is_number(cell) { format!("{cell}{}", " ".repeat(longest - decimals(cell))) } else { cell.clone() }
     };
     cells.iter().map(pad).collect()
 }

@@ -5,6 +5,7 @@ use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::format::{case_title, escape};
 use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
+use serde_json::Value as Json;
 use std::fmt::Write;
 
 /// Writes `vtu/`.
@@ -12,7 +13,7 @@ use std::fmt::Write;
 pub struct Vtu;
 
 impl Writer for Vtu {
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         if !study.output.vtu {
             return Vec::new();
         }

@@ -1,11 +1,16 @@
 //! What a writer is.
 
 use super::study_output::StudyOutput;
+use crate::config::default_table::default_table;
+use serde_json::Value as Json;
+use voussoir_core::plugin::{PluginKind, card};
 
-/// Turns results into the bytes of files.
+/// Turns results into the bytes of files. Its card's parameters are its options, under `[output.options]` in a
+/// table that is called like the writer.
 pub trait Writer: Send + Sync {
-    /// (file name relative to the result folder, bytes), in a fixed order.
-    fn files(&self, study: &StudyOutput) -> Vec<(String, Vec<u8>)>;
+    /// (file name relative to the result folder, bytes), in a fixed order. `options` has every option of the card,
+    /// from the study or by default.
+    fn files(&self, study: &StudyOutput, options: &Json) -> Vec<(String, Vec<u8>)>;
 }
 
 /// A writer with the tag of its card.
@@ -23,4 +28,19 @@ pub fn writers() -> Vec<&'static WriterEntry> {
     let mut all: Vec<_> = voussoir_core::inventory::iter::<WriterEntry>.into_iter().collect();
     all.sort_by_key(|entry| entry.tag);
     all
+}
+
+/// Writes what the study's `[output]` asks for: all writers, or those that it lists and results.json, from which
+/// results are verified.
+pub fn written(study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
+    let wanted = |tag: &str| match &study.output.writers {
+        Some(tags) => tag == "results_json" || tags.iter().any(|wanted| wanted == tag),
+        None => true,
+    };
+    let options = |tag: &str| match study.output.options.get(tag) {
+        Some(options) => options.clone(),
+        None => card(PluginKind::Writer, tag).map(default_table).unwrap_or_default(),
+    };
+    let chosen = writers().into_iter().filter(|entry| wanted(entry.tag));
+    chosen.flat_map(|entry| entry.writer.files(study, &options(entry.tag))).collect()
 }

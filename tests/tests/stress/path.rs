@@ -167,7 +167,7 @@ fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
 /// The 24 scenes of the default (35 s on two busy cores): every path is solved and all loads agree.
 /// SCENES=220 (13 minutes on two busy cores): 108 walls, 129 with sliding, 32 with a history, 100 not associated, median 108
 /// events. All 220 are solved by both paths. Associated and stuck flow: all 120 loads agree. Not associated: the exact path
-/// ends in 11 limit points, two of which leave it undecided how the path goes on behind them (scenes 86 and 91), Newton's in 9.
+/// ends in 11 limit points, two of which leave it undecided how the path goes on after them (scenes 86 and 91), Newton's in 9.
 /// No load above the associated one, 13 pairs on different branches that their notes name, none apart without a reason.
 /// The scenes at whose corners paths once stopped are tests of their own (regression_corners).
 #[test]

@@ -5,8 +5,8 @@ use voussoir::core::certificate::{PathChecker, TOLERANCES, Tolerance};
 use voussoir::core::limit::Status;
 use voussoir::core::path::{Continuation, PathAnswer, PathProblem, PathSettings, PathSolver, PathState};
 use voussoir::solvers::path::continuation::{
-    arc_length::ArcLength, displacement_control::DisplacementControl, dissipation::Dissipation,
-    load_control::LoadControl,
+    arc_length::ArcLength, crack_opening::CrackOpening, displacement_control::DisplacementControl,
+    dissipation::Dissipation, load_control::LoadControl,
 };
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::known::REFERENCE_ARCH;
@@ -101,18 +101,21 @@ loads = [{{ kind = "pressure", block = "b", edge = 1, value = -1e3 }}]
 const GLUE: &str = "[joints.glue]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\ncohesion = 1e9\ntensile_strength = 1e9\n";
 
 /// σ = λ kPa over u = ¾ σ L/E + g (mean displacement of the second block), σ(g) the bilinear law. For
-/// L = 8 m both fall behind the peak: 2 E G_I / (f_t² L) = 0.625. Every state lies on the curve, the peak is f_t
+/// L = 8 m both fall beyond the peak: 2 E G_I / (f_t² L) = 0.625. Every state lies on the curve, the peak is f_t
 /// and what is dissipated in the end is G_I A.
 #[test]
 fn a_bar_in_tension_is_its_closed_form() {
     let area = 0.02;
     let modulus = 5e9;
-    let strategies: [(f64, PathSettings); 5] = [
+    let strategies: [(f64, PathSettings); 8] = [
         (1.0, settings(ArcLength::default())),
         (1.0, settings(Dissipation::default())),
         (1.0, settings(DisplacementControl::default())),
         (8.0, settings(ArcLength::default())),
         (8.0, settings(Dissipation::default())),
+        (1.0, settings(CrackOpening::of(1))),
+        (8.0, settings(CrackOpening::of(1))),
+        (8.0, settings(CrackOpening { at: Some(0.25), ..CrackOpening::of(1) })),
     ];
     for (length, settings) in strategies {
         let (problem, answer, states) = traced(&bar(length, modulus), &settings);
@@ -154,10 +157,11 @@ fn a_bar_in_tension_is_its_closed_form() {
 fn snap_back_is_traced_without_loss_or_refused() {
     let (length, modulus, area) = (8.0, 5e9, 0.02);
     let largest_step = Some(2e-6);
-    let passing: [PathSettings; 3] = [
+    let passing: [PathSettings; 4] = [
         settings(ArcLength { largest_step, ..ArcLength::default() }),
         settings(Dissipation { largest_step, ..Dissipation::default() }),
         settings(DisplacementControl { largest_step, ..DisplacementControl::default() }),
+        settings(CrackOpening { largest_step, ..CrackOpening::of(1) }),
     ];
     for settings in passing {
         let (problem, answer, states) = traced(&bar(length, modulus), &settings);
@@ -185,6 +189,27 @@ fn snap_back_is_traced_without_loss_or_refused() {
     assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
     assert_close(answer.factor.expect("a factor"), STRENGTH / 1e3, 1e-6);
     assert!(answer.notes.iter().any(|note| note.contains("does not grow")), "{:?}", answer.notes);
+}
+
+/// A study that names the strategy reaches the peak and the falling branch of arc length; a joint that does not exist is
+/// named in the answer.
+#[test]
+fn a_study_controls_the_opening_of_a_joint() {
+    let with = |strategy: &str| {
+        let keys = format!("solver = \"newton_path\"\ncontinuation = {{ {strategy} }}\nstop = {{ factor = -1.0 }}\n");
+        let text = bar(8.0, 5e9);
+        assert!(text.contains("solver = \"newton_path\"\n"));
+        answered(&text.replace("solver = \"newton_path\"\n", &keys))
+    };
+    let (arc, crack) = (with("strategy = \"arc_length\""), with("strategy = \"crack_opening\", joint = 1"));
+    for result in [&arc, &crack] {
+        assert_eq!(result.status, Status::LimitPoint, "{:?}", result.notes);
+        assert!(result.certificate.passed, "{:?}", result.certificate);
+    }
+    assert_close(crack.load_factor.expect("a peak"), arc.load_factor.expect("a peak"), 1e-10);
+    let absent = with("strategy = \"crack_opening\", joint = 7");
+    assert_eq!(absent.status, Status::Stalled);
+    assert!(absent.notes.iter().any(|note| note.contains("joint 7")), "{:?}", absent.notes);
 }
 
 /// Steps of each strategy along both bars (printed: the table of docs/softening.md), none more than 40.

@@ -241,7 +241,7 @@ fn the_stick_zone_is_that_of_cattaneo_and_mindlin() {
 }
 
 /// A rigid body on frictional feet at these x (together μ N and tangential stiffness k) beside a spring
-/// k_s, all at its pole's height, under its weight N at x = 0 and then horizontal forces Q to and fro.
+/// k_s, all at its pole's height, under its weight N at x = 0 and then horizontal forces Q back and forth.
 fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], history: &[f64]) -> PathProblem {
     let point = |x: f64, law, compliance| Contact {
         compliance,

@@ -18,7 +18,7 @@ struct Row {
     crushed: f64,
 }
 
-/// Displacement of the load at which energies are read \[m\], behind all peaks of the finer meshes.
+/// Displacement of the load at which energies are read \[m\], beyond all peaks of the finer meshes.
 const AT: f64 = 0.09;
 
 /// `studies/cases/softening_arch.toml` with p_b \[Pa\], elements a side, their order, and G_c \[J/m²\] where it softens.

@@ -178,7 +178,7 @@ fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
 }
 
 /// Slip is irreversible: a rigid block on a compliant joint pushed to the verge of sliding, back, and
-/// to and fro follows the closed form of a spring with a Coulomb slider, and what it dissipates is
+/// back and forth follows the closed form of a spring with a Coulomb slider, and what it dissipates is
 /// what the loads lose.
 #[test]
 fn a_spring_slider_keeps_its_history() {

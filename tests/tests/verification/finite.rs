@@ -377,7 +377,7 @@ fn the_rigid_limit_is_approached_as_the_root_of_the_modulus() {
 }
 
 /// The converged peak of the reference bridge, 620.6 kN, within its error estimate on an affordable
-/// mesh, and the branch behind it: the load falls all the way.
+/// mesh, and the post-peak branch: the load falls all the way.
 #[test]
 fn the_peak_of_the_reference_bridge_and_the_branch_behind_it() {
     let bridge = Bridge { mesh: "elements = [8, 12]\ngrading = 10.0", stop: 0.01, ..Bridge::default() };
@@ -388,12 +388,12 @@ fn the_peak_of_the_reference_bridge_and_the_branch_behind_it() {
     let curve = result.path.curve.expect("a curve");
     let top = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
     assert!(top <= peak * (1.0 + 1e-9));
-    let behind: Vec<&[f64; 2]> = curve.iter().skip_while(|p| p[1] < top).skip(1).collect();
-    assert!(behind.len() > 3);
-    for pair in behind.windows(2) {
+    let post_peak: Vec<&[f64; 2]> = curve.iter().skip_while(|p| p[1] < top).skip(1).collect();
+    assert!(post_peak.len() > 3);
+    for pair in post_peak.windows(2) {
         assert!(pair[1][0] > pair[0][0] && pair[1][1] < pair[0][1], "{pair:?}");
     }
-    assert!(behind[behind.len() - 1][1] < 0.98 * peak);
+    assert!(post_peak[post_peak.len() - 1][1] < 0.98 * peak);
     let mechanism = result.mechanism.expect("a mechanism");
     assert_eq!(mechanism.kind, MechanismKind::FourHinge);
     assert_eq!(mechanism.hinges.iter().map(|hinge| hinge.joint).collect::<Vec<_>>(), [1, 5, 10, 14]);

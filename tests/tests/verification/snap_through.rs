@@ -138,7 +138,7 @@ curve = true
 
 /// The factor of snap-through that the notes name.
 fn trough(notes: &[String]) -> f64 {
-    let start = "behind the peak the load falls to the factor ";
+    let start = "after the peak the load falls to the factor ";
     let note = notes.iter().find_map(|note| note.strip_prefix(start)).unwrap_or_else(|| panic!("{notes:?}"));
     note.split(' ').next().and_then(|number| number.parse().ok()).expect("a number")
 }
@@ -161,7 +161,7 @@ fn two_thick_blocks_snap_through_at_the_extremes_of_their_energy() {
         assert_eq!(answer.status, Status::Collapse, "{law} {stiffness}: {:?}", answer.notes);
         assert_close(answer.factor.expect("a peak"), peak, 1e-9);
         assert_close(trough(&answer.notes), low, 1e-9);
-        assert!(states.last().expect("states").factor > 0.8 * low, "the branch behind rises");
+        assert!(states.last().expect("states").factor > 0.8 * low, "the post-peak branch rises");
         for state in &states {
             assert!((state.motion[1][2] + state.motion[2][2]).abs() < 1e-9, "the arch stays symmetric");
         }
@@ -188,8 +188,8 @@ fn shallow_arches_peak_where_their_energy_does() {
     }
 }
 
-/// Shallow and steeper arches with friction 0.6, stopped far behind the peak: each path ends with a peak
-/// and a certified branch behind it, as far as it was asked for or for a reason that it names. With friction a
+/// Shallow and steeper arches with friction 0.6, stopped far beyond the peak: each path ends with a peak
+/// and a certified post-peak branch, as far as `stop` says or for a reason that it names. With friction a
 /// peak has an error that falls with the step.
 #[test]
 fn paths_of_shallow_arches_end_for_a_reason() {
@@ -328,7 +328,7 @@ fn a_block_that_slides_over_an_edge_tips_where_the_resultant_reaches_it() {
         for state in states.iter().filter(|s| s.load_step == 1 && s.displacement > 0.05) {
             let slip = -state.gap[0][1];
             let [pressed, rubbed] = [0, 1].map(|i| state.force.iter().map(|r| r[i].abs()).sum::<f64>());
-            // Where it tips it sticks, and far behind it slides back.
+            // Where it tips it sticks, and far beyond it slides back.
             if rubbed > (0.5 - 1e-9) * pressed && state.factor > 25.0 {
                 let exact = 60.0 * (0.5f64.atan() + state.motion[1][2]).tan();
                 assert_close(state.factor, exact, 1e-8);

@@ -2,6 +2,7 @@
 #![doc = include_str!("exact_events.md")]
 
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use voussoir_core::path::{Constraint, Continuation, Increment};
 use voussoir_core::plugin::{Card, PluginKind};
 
@@ -9,6 +10,14 @@ use voussoir_core::plugin::{Card, PluginKind};
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExactEvents {}
+
+impl ExactEvents {
+    /// Whether a strategy is this one.
+    pub fn is(strategy: &dyn Continuation) -> bool {
+        let strategy: &dyn Any = strategy;
+        strategy.is::<ExactEvents>()
+    }
+}
 
 #[typetag::serde(name = "exact_events")]
 impl Continuation for ExactEvents {
@@ -18,10 +27,6 @@ impl Continuation for ExactEvents {
     }
 
     fn passes_limit_points(&self) -> bool {
-        true
-    }
-
-    fn exact_events(&self) -> bool {
         true
     }
 }

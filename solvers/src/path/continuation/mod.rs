@@ -5,6 +5,7 @@
 //! keeps the length of the step.
 
 pub mod arc_length;
+pub mod crack_opening;
 pub mod displacement_control;
 pub mod dissipation;
 pub mod exact_events;

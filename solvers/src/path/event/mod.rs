@@ -18,6 +18,7 @@ mod system;
 mod trace;
 mod unique;
 
+use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
@@ -37,7 +38,7 @@ impl PathSolver for EventPath {
         if settings.finite {
             return Some("it follows small displacements only; newton_path follows finite ones".into());
         }
-        if settings.continuation.as_ref().is_some_and(|c| !c.exact_events()) {
+        if settings.continuation.as_ref().is_some_and(|c| !ExactEvents::is(&**c)) {
             return Some("it goes from event to event and knows no other continuation than exact_events".into());
         }
         if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {

@@ -1,4 +1,4 @@
-//! One factorisation for many pivots: contact points whose regime has changed since enter by their
+//! One factorisation for many pivots: contact points whose mode has changed since enter by their
 //! two rows (Sherman, Morrison & Woodbury), and where many have, or where that leaves residuals, the
 //! matrix is factorised anew.
 //!
@@ -6,16 +6,16 @@
 //! B x_0 = f     B Y = [e_i]     (1 + D Y) w = D x_0     x = x_0 − Y w
 //! ```
 //!
-//! B: rows of the regimes that were factorised, D: what the rows i of changed points are more than
+//! B: rows of the modes that were factorised, D: what the rows i of changed points are more than
 //! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::linear::condensed)
 //! takes out, and x_0 follows every change of f by Y: a pivot solves for two columns at most, all else
-//! are products. CsrMatrix that have not changed hold as exactly as B is solved; those that have are checked.
+//! are products. Rows that have not changed hold as exactly as B is solved; those that have are checked.
 //!
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
-//! that no combination of regimes is without a direction.
+//! that no combination of modes is without a direction.
 
 use super::equations::Equations;
-use super::model::Model;
+use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
 use crate::linear::condensed::Condensed;
@@ -26,6 +26,7 @@ use voussoir_core::linear::Analysis;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
+
 /// Relative residual above which it is.
 const RESIDUAL: f64 = 1e-9;
 
@@ -54,7 +55,7 @@ pub(super) struct Frame {
     points: usize,
     equations: Rc<Equations>,
     control: Vec<f64>,
-    regimes: Vec<ContactMode>,
+    modes: Vec<ContactMode>,
     right: Vec<f64>,
     base: Option<Base>,
     analysis: Analysis,
@@ -81,8 +82,8 @@ impl Frame {
     /// Equations with a control, all points stuck, nothing on the right-hand side.
     pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> Frame {
         let right = vec![0.0; control.len()];
-        let regimes = vec![ContactMode::Stick; points];
-        Frame { points, equations, control, regimes, right, base: None, analysis: Analysis::default() }
+        let modes = vec![ContactMode::Stick; points];
+        Frame { points, equations, control, modes, right, base: None, analysis: Analysis::default() }
     }
 
     /// Right-hand sides of the rows that belong to no contact point.
@@ -91,10 +92,10 @@ impl Frame {
         self.base = None;
     }
 
-    /// A contact point's regime and the right-hand sides of its rows.
-    pub fn set(&mut self, model: &Model, contact: usize, regime: ContactMode, right: [f64; 2]) {
-        let old = self.regimes[contact];
-        self.regimes[contact] = regime;
+    /// A contact point's mode and the right-hand sides of its rows.
+    pub fn set(&mut self, system: &StepSystem, contact: usize, mode: ContactMode, right: [f64; 2]) {
+        let old = self.modes[contact];
+        self.modes[contact] = mode;
         let before = [0, 1].map(|k| std::mem::replace(&mut self.right[2 * contact + k], right[k]));
         let Some(mut base) = self.base.take() else { return };
         if !base.changes.iter().any(|change| change.contact == contact) {
@@ -102,7 +103,7 @@ impl Frame {
                 return;
             }
             let Some(columns) = base.factors.units(contact) else { return };
-            let rows = self.rows_of(model, contact, old);
+            let rows = self.rows_of(system, contact, old);
             base.changes.push(Change { contact, columns, rows: [rows.clone(), rows] });
         }
         for change in base.changes.iter_mut().filter(|change| change.contact == contact) {
@@ -110,31 +111,31 @@ impl Frame {
                 let by = right[k] - before[k];
                 base.from.iter_mut().zip(column).for_each(|(x, y)| *x += by * y);
             }
-            change.rows[0] = self.rows_of(model, contact, regime);
+            change.rows[0] = self.rows_of(system, contact, mode);
         }
         self.base = Some(base);
     }
 
-    /// The two rows of a contact point in a regime.
-    fn rows_of(&self, model: &Model, c: usize, regime: ContactMode) -> [Row; 2] {
+    /// The two rows of a contact point in a mode.
+    fn rows_of(&self, system: &StepSystem, c: usize, mode: ContactMode) -> [Row; 2] {
         [0, 1].map(|k| {
             let (mut row, mut shift) = (Row::new(), Row::new());
-            self.equations.point(model.law(c), (c, k), regime, true, &mut row, &mut shift);
+            self.equations.point(system.law(c), (c, k), mode, true, &mut row, &mut shift);
             row.append(&mut shift);
             row
         })
     }
 
     /// All unknowns; how many factorisations that took. `None` where the equations are singular.
-    pub fn solve(&mut self, model: &Model) -> Option<(Vec<f64>, u64)> {
+    pub fn solve(&mut self, system: &StepSystem) -> Option<(Vec<f64>, u64)> {
         if let Some(x) = self.updated() {
             return Some((x, 0));
         }
         let (mut rows, mut shifts) = (CsrMatrix::with_capacity(0), CsrMatrix::with_capacity(0));
         for c in 0..self.points {
             for k in 0..2 {
-                let law = model.law(c);
-                self.equations.point(law, (c, k), self.regimes[c], true, rows.open_row(), shifts.open_row());
+                let law = system.law(c);
+                self.equations.point(law, (c, k), self.modes[c], true, rows.open_row(), shifts.open_row());
                 rows.end_row();
                 shifts.end_row();
             }
@@ -191,7 +192,7 @@ impl Frame {
         ((0..n).all(holds) && norm(&y).is_finite()).then(|| equations.expand(&right, &y))
     }
 
-    /// Rate of a contact point's gap in a solution, in units.
+    /// Tangent of a contact point's gap in a solution, in units.
     pub fn gap(&self, contact: usize, x: &[f64]) -> [f64; 2] {
         [0, 1].map(|k| self.equations.gaps.row_dot(2 * contact + k, x))
     }

@@ -1,6 +1,6 @@
 //! Line search: how much of an iteration of Newton's method is taken.
 //!
-//! The equations of a step are one semismooth system F(x) = 0 in x = (r, q, λ), whatever the regimes,
+//! The equations of a step are one semismooth system F(x) = 0 in x = (r, q, λ), whatever the modes,
 //!
 //! ```text
 //! facets     F_c = r − P(z),   z = r − ρ Δg,   P the return to the polygon along ρ d (see `law`)
@@ -9,8 +9,8 @@
 //! ```
 //!
 //! in the units of the unknowns (Alart & Curnier 1991; the natural map of the complementarity conditions: Facchinei &
-//! Pang 2003, section 1.5). F is linear in every combination of regimes, up to large rotations, and the equations of
-//! the regimes of z are those of F + F'Δx = 0 row by row recombined: with all regimes those of z the step Δx of `iterate`
+//! Pang 2003, section 1.5). F is linear in every combination of modes, up to large rotations, and the equations of
+//! the modes of z are those of F + F'Δx = 0 row by row recombined: with all modes those of z the step Δx of `iterate`
 //! is Newton's for F, and the merit Ψ = ½‖F‖² has the slope Ψ' = −‖F‖² along it. Where the whole step
 //! does not lower Ψ it is halved until
 //!
@@ -22,107 +22,102 @@
 //! Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173). A line search finds local minima of Ψ: what it ends in
 //! counts only if F = 0 there, by the test of `iterate`.
 
-use super::kinematics::Slopes;
-use super::model::{Control, Model, Refusal, State};
+use super::control::Control;
+use super::control_row::control_value;
+use super::derivatives::Gradient;
+use super::inelastic::{block_error, update_blocks};
+use super::linearised::residual_of;
+use super::response::update_tractions;
+use super::state::State;
+use super::system::{StepFailure, StepSystem};
+use super::tangent::apply_step;
 use crate::optimise::line_search::LineSearch;
 
 /// Merits below which whole steps are taken: what they leave is the linear equations' own accuracy.
-const NOTHING: f64 = 1e-9;
+pub(super) const NOTHING: f64 = 1e-9;
 
 /// For laws of tractions from gaps: between the pieces of such a law whole iterations may cycle.
 pub(super) fn of_tractions() -> LineSearch {
     LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing: NOTHING, merits: Vec::new() }
 }
 
-impl Model<'_> {
-    /// Newton's method with all regimes changed at once and a line search.
-    pub fn line_searched(&mut self, start: &State, guess: State, control: &Control) -> Result<(State, u64), Refusal> {
-        let found = self.iterate(
-            start,
-            guess,
-            control,
-            u32::MAX,
-            Some(LineSearch { nothing: NOTHING, ..LineSearch::of_pieces() }),
-        );
-        self.count("line_searched_steps", u64::from(found.is_ok()));
-        found
-    }
-
-    /// ‖F‖ of a state in the units of the unknowns.
-    fn merit(&mut self, start: &State, state: &State, slopes: &Slopes, control: &Control) -> f64 {
-        let u = self.units;
-        let mut rows = self.residual(start, state, slopes);
-        let last = rows.len() - 1;
-        rows[last] = self.constraint(start, state, control).0;
-        self.count("law_evaluations", state.gap.len() as u64);
-        for c in (0..state.gap.len()).filter(|c| !self.responses.is(*c)) {
-            let (rho, gap) = (self.stiffness(c), self.step_gap(start, state, c));
-            let pulled = [0, 1].map(|k| rho[k] * gap[k]);
-            let left = match self.law(c) {
-                Some(law) => {
-                    let r = state.force[c];
-                    let z = [r[0] - pulled[0], r[1] - pulled[1]];
-                    let (_, back) = law.return_map(z, rho, self.problem.contacts[c].area);
-                    [r[0] - back[0], r[1] - back[1]]
-                }
-                None => pulled,
-            };
-            (0..2).for_each(|k| rows[2 * c + k] = left[k] / u.force);
-        }
-        let inner = self.inner_error(state);
-        rows.iter().map(|f| f * f).sum::<f64>().sqrt().hypot(inner)
-    }
-
-    /// The state a share of a step on, with blocks, gaps and tractions there.
-    pub(super) fn advanced(
-        &mut self,
-        start: &State,
-        state: &State,
-        step: &[f64],
-        share: f64,
-    ) -> Result<(State, Slopes), Refusal> {
-        let mut next = state.clone();
-        self.apply(&mut next, step, share);
-        self.deform(&mut next)?;
-        let slopes = self.slopes(&next);
-        next.gap = slopes.gap.clone();
-        self.respond(start, &mut next).map_err(|why| Refusal { why, restless: Vec::new() })?;
-        Ok((next, slopes))
-    }
-
-    /// The state on a step at which the merit is low enough, else that of the least merit, and whether the step
-    /// is whole. Of the step no more than `most`.
-    pub(super) fn searched(
-        &mut self,
-        start: &State,
-        (state, slopes): (&State, &Slopes),
-        control: &Control,
-        (step, most): (&[f64], f64),
-        search: &mut LineSearch,
-    ) -> Result<(State, Slopes, bool), Refusal> {
-        if search.merits.is_empty() {
-            search.merits.push(self.merit(start, state, slopes, control));
-        }
-        let at = |halvings: i32, share: f64| {
-            match halvings {
-                0 => {}
-                1 => ["line_searches", "halvings"].into_iter().for_each(|what| self.count(what, 1)),
-                _ => self.count("halvings", 1),
+/// ‖F‖ of a state in the units of the unknowns.
+fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {
+    let u = system.units();
+    let mut rows = residual_of(system, start, state, gradient);
+    let last = rows.len() - 1;
+    rows[last] = control_value(system, start, state, control).0;
+    system.count("law_evaluations", state.gap.len() as u64);
+    for c in (0..state.gap.len()).filter(|c| !system.laws.responses.is(*c)) {
+        let (rho, gap) = (system.stiffness(c), system.step_gap(start, state, c));
+        let pulled = [0, 1].map(|k| rho[k] * gap[k]);
+        let left = match system.law(c) {
+            Some(law) => {
+                let r = state.force[c];
+                let z = [r[0] - pulled[0], r[1] - pulled[1]];
+                let (_, back) = law.return_map(z, rho, system.problem.contacts[c].area);
+                [r[0] - back[0], r[1] - back[1]]
             }
-            let (next, slopes) = self.advanced(start, state, step, share)?;
-            let merit = self.merit(start, &next, &slopes, control);
-            Ok((merit, (next, slopes)))
+            None => pulled,
         };
-        let unknown = || Refusal { why: "an iteration left the numbers".into(), restless: Vec::new() };
-        let ((next, slopes), whole) =
-            search.search(most, at).map_err(|refusal: Option<Refusal>| refusal.unwrap_or_else(unknown))?;
-        Ok((next, slopes, whole))
+        (0..2).for_each(|k| rows[2 * c + k] = left[k] / u.force);
     }
+    let inner = block_error(system, state);
+    rows.iter().map(|f| f * f).sum::<f64>().sqrt().hypot(inner)
+}
+
+/// The state a share of a step on, with blocks, gaps and tractions there.
+pub(super) fn advanced(
+    system: &mut StepSystem,
+    start: &State,
+    state: &State,
+    step: &[f64],
+    share: f64,
+) -> Result<(State, Gradient), StepFailure> {
+    let mut next = state.clone();
+    apply_step(system, &mut next, step, share);
+    update_blocks(system, &mut next)?;
+    let gradient = system.gradient(&next);
+    next.gap = gradient.gap.clone();
+    update_tractions(system, start, &mut next).map_err(|why| StepFailure::new(why))?;
+    Ok((next, gradient))
+}
+
+/// The state on a step at which the merit is low enough, else that of the least merit, and whether the step
+/// is whole. Of the step no more than `most`.
+pub(super) fn searched(
+    system: &mut StepSystem,
+    start: &State,
+    (state, gradient): (&State, &Gradient),
+    control: &Control,
+    (step, most): (&[f64], f64),
+    search: &mut LineSearch,
+) -> Result<(State, Gradient, bool), StepFailure> {
+    if search.merits.is_empty() {
+        search.merits.push(merit(system, start, state, gradient, control));
+    }
+    let at = |halvings: i32, share: f64| {
+        match halvings {
+            0 => {}
+            1 => ["line_searches", "halvings"].into_iter().for_each(|what| system.count(what, 1)),
+            _ => system.count("halvings", 1),
+        }
+        let (next, gradient) = advanced(system, start, state, step, share)?;
+        let merit = merit(system, start, &next, &gradient, control);
+        Ok((merit, (next, gradient)))
+    };
+    let unknown = || StepFailure::new("an iteration left the numbers");
+    let ((next, gradient), whole) =
+        search.search(most, at).map_err(|failure: Option<StepFailure>| failure.unwrap_or_else(unknown))?;
+    Ok((next, gradient, whole))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::Loaded;
+    use super::super::control_row::control_row;
+    use super::super::linearised::solve_linear;
+    use super::super::loads::StagedLoads;
+    use super::super::tangent::wanted_modes;
     use super::*;
     use crate::contact::mode::ContactMode;
     use crate::optimise::lcg::Lcg;
@@ -169,15 +164,15 @@ mod tests {
         }
     }
 
-    /// From any state the step of the regimes of z lowers the merit by its whole per whole step.
+    /// From any state the step of the modes of z lowers the merit by its whole per whole step.
     #[test]
     fn the_merit_falls_along_the_step() {
         let problem = pushed();
         let control = Control::Factor(1.0);
         for finite in [false, true] {
-            let mut model = Model::new(&problem, finite).expect("a model");
-            model.load(Loaded { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 });
-            let (start, u) = (model.undeformed(), model.units);
+            let mut system = StepSystem::new(&problem, finite).expect("a system");
+            system.load(StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 });
+            let (start, u) = (system.undeformed(), system.units());
             let (mut random, mut compared) = (Lcg::new(5), [0; 3]);
             for _ in 0..600 {
                 let mut state = start.clone();
@@ -185,30 +180,30 @@ mod tests {
                 state.force.iter_mut().for_each(|r| *r = [u.force * (random.next() + 0.3), u.force * random.next()]);
                 let unit = [u.displacement, u.displacement, u.displacement / u.length];
                 state.motion[1] = unit.map(|unit| unit * random.next());
-                let slopes = model.slopes(&state);
-                state.gap = slopes.gap.clone();
-                state.regime = model.wanted(&start, &state).0;
-                let mut rows = model.residual(&start, &state, &slopes);
-                let (left, constraint) = model.constraint(&start, &state, &control);
+                let gradient = system.gradient(&state);
+                state.gap = gradient.gap.clone();
+                state.mode = wanted_modes(&mut system, &start, &state).0;
+                let mut rows = residual_of(&system, &start, &state, &gradient);
+                let (left, constraint) = control_value(&system, &start, &state, &control);
                 let last = rows.len() - 1;
                 rows[last] = left;
-                let curvature = model.curvature(&state, &slopes);
-                let row = model.control_row(&start, &state, &control, &constraint, &curvature);
+                let hessian = system.hessian(&state, &gradient);
+                let row = control_row(&system, &start, &state, &control, &constraint, &hessian);
                 let right: Vec<f64> = rows.iter().map(|x| -x).collect();
-                let Some((step, true)) = model.solve(&state, &curvature, &row, &right) else { continue };
-                // Where all points slide to the same side the regimes hold the block by nothing.
+                let Some((step, true)) = solve_linear(&mut system, &state, &hessian, &row, &right) else { continue };
+                // Where all points slide to the same side the modes hold the block by nothing.
                 if step.iter().any(|x| x.abs() > 1e3) {
                     continue;
                 }
                 let mut at = |share: f64| {
-                    let (state, slopes) = model.advanced(&start, &state, &step, share).expect("a state");
-                    model.merit(&start, &state, &slopes, &control)
+                    let (state, gradient) = advanced(&mut system, &start, &state, &step, share).expect("a state");
+                    merit(&mut system, &start, &state, &gradient, &control)
                 };
                 let (here, small) = (at(0.0), 1e-7);
                 let slope = (at(small) - here) / small;
-                assert!((slope + here).abs() <= 1e-4 * here, "{finite} {:?}: {slope:e} {here:e}", state.regime);
-                for regime in &state.regime {
-                    compared[match regime {
+                assert!((slope + here).abs() <= 1e-4 * here, "{finite} {:?}: {slope:e} {here:e}", state.mode);
+                for mode in &state.mode {
+                    compared[match mode {
                         ContactMode::Stick => 0,
                         ContactMode::Facet(_) => 1,
                         ContactMode::Corner(..) | ContactMode::Open => 2,

@@ -1,34 +1,56 @@
-//! `newton_path`: semismooth Newton on the regimes of contact points, small and finite displacements.
+//! `newton_path`: semismooth Newton on the modes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
-mod claims;
-mod corners;
+mod blocks;
+mod branch_switching;
+mod control;
+mod control_row;
+mod creeping;
+mod cycle_detector;
 mod deformation;
-mod ends;
+mod derivatives;
 mod equations;
+mod events;
+mod factors;
+mod failed_step;
 mod flow;
-mod flowing;
-mod folds;
 mod follow;
+mod following;
 mod frame;
+mod geometry;
 mod inelastic;
+mod iteration;
 mod kinematics;
-mod ledger;
+mod limit_point;
 mod line_search;
+mod linearised;
+mod load_steps;
+mod load_to_factor;
+mod loads;
 mod measure;
 mod mechanism;
-mod model;
+mod monitors;
+mod peak;
 mod pivot;
-mod reach;
+mod plastic_plateau;
+mod recorded;
 mod response;
 mod rising;
 mod softening;
+mod state;
 mod step;
 mod system;
-mod trace;
-mod wandering;
+mod tangent;
+mod termination;
+mod tracer;
+mod tractions;
+mod trial;
+mod unknowns;
 
+use self::monitors::resolve;
 use super::continuation::arc_length::ArcLength;
+use super::outcome::stalled;
+use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
@@ -43,24 +65,26 @@ pub struct NewtonPath {}
 impl PathSolver for NewtonPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
         if let Some(why) = self.refuses(problem, settings) {
-            return trace::stalled(why);
+            return stalled(problem, why);
         }
         let strategy = settings.continuation.clone();
         let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
-        claims::confirmed(problem, settings.finite, trace::trace(problem, settings, strategy, observer))
+        load_steps::trace(problem, settings, strategy, observer)
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
-        if settings.continuation.as_ref().is_some_and(|c| c.exact_events()) {
+        if settings.continuation.as_ref().is_some_and(|c| ExactEvents::is(&**c)) {
             return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
         }
         if problem.load_steps.is_empty() {
             return Some("nothing is loaded".into());
         }
-        (!problem.deforms()).then(|| {
-            "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them"
-                .into()
-        })
+        if !problem.deforms() {
+            let why =
+                "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them";
+            return Some(why.into());
+        }
+        settings.continuation.as_ref().and_then(|strategy| resolve(problem, &strategy.monitors()).err())
     }
 }
 

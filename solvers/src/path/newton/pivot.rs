@@ -1,4 +1,4 @@
-//! A step by pivoting, where Newton's method does not find its regimes (small displacements).
+//! A step by pivoting, where Newton's method does not find its modes (small displacements).
 //!
 //! The step is piecewise linear: every contact point has a *cell* (stuck, on one facet, on two), and in
 //! each combination of cells the equations are linear. From any guess y_0 the residual F(y_0) is taken
@@ -17,8 +17,14 @@
 //! and Dirkse & Ferris (1995, Optim. Methods Software 5) on this path as a globally convergent Newton
 //! method for complementarity problems.
 
+use super::control::Control;
+use super::control_row::{control_row, control_value};
 use super::frame::Frame;
-use super::model::{Control, Model, Rate, Refusal, State};
+use super::iteration::iterate;
+use super::linearised::residual_of;
+use super::state::{State, Tangent};
+use super::system::{StepFailure, StepSystem};
+use super::tangent::tangent_without_gaps;
 use crate::contact::mode::ContactMode;
 use crate::contact::piecewise_path::{PathEnd, PiecewiseLinear, PointInCell, follow};
 use crate::optimise::lcg::Lcg;
@@ -37,10 +43,10 @@ struct Place {
 
 /// The path of a step: where it is and where it goes.
 struct StepPath<'m, 'a> {
-    model: &'m mut Model<'a>,
+    system: &'m mut StepSystem<'a>,
     frame: Frame,
     place: Place,
-    rate: Rate,
+    rate: Tangent,
     /// Rates of Δg \[m\].
     gap_rate: Vec<[f64; 2]>,
 }
@@ -49,9 +55,9 @@ impl StepPath<'_, '_> {
     /// Puts a contact point's equations in its present mode into the frame. On the right-hand side stands what is
     /// left of its residual of the gaps.
     fn set_equations(&mut self, c: usize) {
-        let e = self.place.offset[c].map(|e| e / self.model.units.displacement);
-        let mode = self.place.state.regime[c];
-        let right = match (mode, self.model.law(c)) {
+        let e = self.place.offset[c].map(|e| e / self.system.units().displacement);
+        let mode = self.place.state.mode[c];
+        let right = match (mode, self.system.law(c)) {
             (ContactMode::Facet(i), Some(law)) => {
                 let d = law.facets[i as usize].flow;
                 [0.0, -(e[0] * d[1] - e[1] * d[0])]
@@ -59,12 +65,12 @@ impl StepPath<'_, '_> {
             (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => [0.0; 2],
             _ => [-e[0], -e[1]],
         };
-        self.frame.set(self.model, c, mode, right);
+        self.frame.set(self.system, c, mode, right);
     }
 
     /// The mode of a contact point's cell.
     fn mode(&self, c: usize) -> ContactMode {
-        let cell = self.place.cells[c].zip(self.model.law(c));
+        let cell = self.place.cells[c].zip(self.system.law(c));
         cell.map_or(ContactMode::Stick, |(cell, law)| law.mode_of(cell))
     }
 }
@@ -75,33 +81,33 @@ impl PiecewiseLinear for StepPath<'_, '_> {
     }
 
     fn point(&self, c: usize) -> Option<PointInCell<'_>> {
-        let (cell, law) = self.place.cells[c].zip(self.model.law(c))?;
+        let (cell, law) = self.place.cells[c].zip(self.system.law(c))?;
         Some(PointInCell {
             boundaries: &law.fan.cells[cell].1,
             force: self.place.state.force[c],
             gap: self.place.step_gap[c],
-            area: self.model.problem.contacts[c].area,
+            area: self.system.problem.contacts[c].area,
             force_rate: self.rate.force[c],
             gap_rate: self.gap_rate[c],
         })
     }
 
     fn solve_rates(&mut self) -> Result<(), String> {
-        self.model.count("pivots", 1);
-        let solved = self.frame.solve(self.model);
+        self.system.count("pivots", 1);
+        let solved = self.frame.solve(self.system);
         let (x, factorisations) = solved.ok_or("a combination of cells has no direction")?;
-        self.model.count("factorisations", factorisations);
+        self.system.count("factorisations", factorisations);
         if x.iter().any(|x| !x.is_finite()) {
             return Err("a combination of cells has no finite direction".into());
         }
-        self.rate = self.model.moving(&x);
+        self.rate = tangent_without_gaps(self.system, &x);
         for (c, rate) in self.gap_rate.iter_mut().enumerate().filter(|(c, _)| self.place.cells[*c].is_some()) {
             // That of a stuck point is nothing.
-            *rate = match self.place.state.regime[c] {
+            *rate = match self.place.state.mode[c] {
                 ContactMode::Stick => [0.0; 2],
                 _ => {
                     let (own, offset) = (self.frame.gap(c, &x), self.place.offset[c]);
-                    [0, 1].map(|k| own[k] * self.model.units.displacement + offset[k])
+                    [0, 1].map(|k| own[k] * self.system.units().displacement + offset[k])
                 }
             };
         }
@@ -121,108 +127,116 @@ impl PiecewiseLinear for StepPath<'_, '_> {
     }
 
     fn cross(&mut self, c: usize, boundary: usize) -> (usize, bool) {
-        let Some((cell, law)) = self.place.cells[c].zip(self.model.law(c)) else { return (boundary, false) };
+        let Some((cell, law)) = self.place.cells[c].zip(self.system.law(c)) else { return (boundary, false) };
         let (to, entered) = law.fan.cells[cell].1[boundary].neighbour;
         self.place.cells[c] = Some(to);
         let mode = self.mode(c);
-        let changed = mode != self.place.state.regime[c];
+        let changed = mode != self.place.state.mode[c];
         if changed {
-            self.place.state.regime[c] = mode;
+            self.place.state.mode[c] = mode;
             self.set_equations(c);
         }
         (entered, changed)
     }
 }
 
-impl Model<'_> {
-    /// A step by pivoting from a guess. The control must be linear.
-    pub fn pivoted(&mut self, start: &State, guess: &State, control: &Control) -> Result<(State, u64), Refusal> {
-        let mut refusal = Refusal { why: "pivoting does not apply".into(), restless: Vec::new() };
-        if !self.piecewise_linear() {
-            return Err(refusal);
-        }
-        for (attempt, shift) in SHIFTS.into_iter().enumerate() {
-            match self.followed(start, guess, control, shift, attempt as u64) {
-                Ok(state) => match self.polished(start, state, control) {
-                    Ok(found) => return Ok(found),
-                    Err(why) => refusal = why,
-                },
-                Err(why) => refusal.why = why,
-            }
-        }
-        Err(refusal)
+/// A step by pivoting from a guess. The control must be linear.
+pub(super) fn by_homotopy(
+    system: &mut StepSystem,
+    start: &State,
+    guess: &State,
+    control: &Control,
+) -> Result<(State, u64), StepFailure> {
+    let mut failure = StepFailure::new("pivoting does not apply");
+    if !system.piecewise_linear() {
+        return Err(failure);
     }
+    for (attempt, shift) in SHIFTS.into_iter().enumerate() {
+        match followed_from(system, start, guess, control, shift, attempt as u64) {
+            Ok(state) => match polished(system, start, state, control) {
+                Ok(found) => return Ok(found),
+                Err(why) => failure = why,
+            },
+            Err(why) => failure.why = why,
+        }
+    }
+    Err(failure)
+}
 
-    /// Held bodies where their settlements put them.
-    fn settle_in(&self, state: &mut State) {
-        let mut motion = std::mem::take(&mut state.motion);
-        self.settle(&mut motion, state.factor);
-        state.motion = motion;
-    }
+/// Held bodies where their settlements put them.
+fn settle_in(system: &StepSystem, state: &mut State) {
+    let mut motion = std::mem::take(&mut state.motion);
+    system.settle(&mut motion, state.factor);
+    state.motion = motion;
+}
 
-    /// The guess with every point in a cell, shifted.
-    fn placed(&mut self, start: &State, guess: &State, shift: f64, seed: u64) -> Place {
-        let points = guess.gap.len();
-        let mut state = guess.clone();
-        self.settle_in(&mut state);
-        let gap = self.slopes(&state).gap;
-        let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-        let mean = self.units.displacement / self.units.force;
-        let typical = largest.max(1e-3 * self.units.force) / (points as f64).sqrt();
-        let mut random = Lcg::new(0x9E37_79B9 + 77 * seed);
-        let (mut cells, mut step_gap) = (vec![None; points], vec![[0.0; 2]; points]);
-        for c in 0..points {
-            let noise = [random.next(), random.next()];
-            let Some(law) = self.law(c) else { continue };
-            let rho = self.compliance[c].map(|own| 1.0 / own.max(1e-6 * mean));
-            let r = state.force[c];
-            let scale = shift * (r[0].hypot(r[1]) + 0.1 * typical);
-            let z = [0, 1].map(|k| r[k] - rho[k] * (gap[c][k] - start.slip[c][k]) + scale * noise[k]);
-            let area = self.problem.contacts[c].area;
-            let (cell, r) = law.return_map(z, rho, area);
-            state.force[c] = r;
-            step_gap[c] = [0, 1].map(|k| (r[k] - z[k]) / rho[k]);
-            cells[c] = Some(cell);
-        }
-        state.gap = self.slopes(&state).gap;
-        let offset = (0..points).map(|c| [0, 1].map(|k| state.gap[c][k] - start.slip[c][k] - step_gap[c][k])).collect();
-        Place { state, step_gap, cells, offset }
+/// The guess with every point in a cell, shifted.
+fn placed(system: &mut StepSystem, start: &State, guess: &State, shift: f64, seed: u64) -> Place {
+    let points = guess.gap.len();
+    let mut state = guess.clone();
+    settle_in(system, &mut state);
+    let gap = system.gradient(&state).gap;
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let mean = system.units().displacement / system.units().force;
+    let typical = largest.max(1e-3 * system.units().force) / (points as f64).sqrt();
+    let mut random = Lcg::new(0x9E37_79B9 + 77 * seed);
+    let (mut cells, mut step_gap) = (vec![None; points], vec![[0.0; 2]; points]);
+    for c in 0..points {
+        let noise = [random.next(), random.next()];
+        let Some(law) = system.law(c) else { continue };
+        let rho = system.laws.compliance[c].map(|own| 1.0 / own.max(1e-6 * mean));
+        let r = state.force[c];
+        let scale = shift * (r[0].hypot(r[1]) + 0.1 * typical);
+        let z = [0, 1].map(|k| r[k] - rho[k] * (gap[c][k] - start.slip[c][k]) + scale * noise[k]);
+        let area = system.problem.contacts[c].area;
+        let (cell, r) = law.return_map(z, rho, area);
+        state.force[c] = r;
+        step_gap[c] = [0, 1].map(|k| (r[k] - z[k]) / rho[k]);
+        cells[c] = Some(cell);
     }
+    state.gap = system.gradient(&state).gap;
+    let offset = (0..points).map(|c| [0, 1].map(|k| state.gap[c][k] - start.slip[c][k] - step_gap[c][k])).collect();
+    Place { state, step_gap, cells, offset }
+}
 
-    /// Follows the path of a shift of the guess to its end.
-    fn followed(
-        &mut self,
-        start: &State,
-        guess: &State,
-        control: &Control,
-        shift: f64,
-        seed: u64,
-    ) -> Result<State, String> {
-        let place = self.placed(start, guess, shift, seed);
-        let points = place.cells.len();
-        let slopes = self.slopes(&place.state);
-        let residual = self.residual(start, &place.state, &slopes);
-        let (left, constraint) = self.constraint(start, &place.state, control);
-        let curvature = self.curvature(&place.state, &slopes);
-        let row = self.control_row(start, &place.state, control, &constraint, &curvature);
-        let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
-        right[row.len() - 1] = -left;
-        let mut frame = Frame::new(curvature.rows(self).clone(), points, row);
-        frame.load_rate(&right);
-        let rate = self.moving(&vec![0.0; right.len()]);
-        let mut path = StepPath { model: self, frame, place, rate, gap_rate: vec![[0.0; 2]; points] };
-        for c in 0..points {
-            path.place.state.regime[c] = path.mode(c);
-            path.set_equations(c);
-        }
-        match follow(&mut path, 400 + 20 * points)? {
-            PathEnd::Arrived => Ok(path.place.state),
-            PathEnd::Ray(_) => Err("the path of pivoting leaves along a ray".into()),
-        }
+/// Follows the path of a shift of the guess to its end.
+fn followed_from(
+    system: &mut StepSystem,
+    start: &State,
+    guess: &State,
+    control: &Control,
+    shift: f64,
+    seed: u64,
+) -> Result<State, String> {
+    let place = placed(system, start, guess, shift, seed);
+    let points = place.cells.len();
+    let gradient = system.gradient(&place.state);
+    let residual = residual_of(system, start, &place.state, &gradient);
+    let (left, constraint) = control_value(system, start, &place.state, control);
+    let hessian = system.hessian(&place.state, &gradient);
+    let row = control_row(system, start, &place.state, control, &constraint, &hessian);
+    let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
+    right[row.len() - 1] = -left;
+    let mut frame = Frame::new(hessian.rows(&system.unknowns).clone(), points, row);
+    frame.load_rate(&right);
+    let rate = tangent_without_gaps(system, &vec![0.0; right.len()]);
+    let mut path = StepPath { system, frame, place, rate, gap_rate: vec![[0.0; 2]; points] };
+    for c in 0..points {
+        path.place.state.mode[c] = path.mode(c);
+        path.set_equations(c);
     }
+    match follow(&mut path, 400 + 20 * points)? {
+        PathEnd::Arrived => Ok(path.place.state),
+        PathEnd::Ray(_) => Err("the path of pivoting leaves along a ray".into()),
+    }
+}
 
-    /// Newton's method from what pivoting found.
-    fn polished(&mut self, start: &State, state: State, control: &Control) -> Result<(State, u64), Refusal> {
-        self.iterate(start, state, control, 8, None)
-    }
+/// Newton's method from what pivoting found.
+fn polished(
+    system: &mut StepSystem,
+    start: &State,
+    state: State,
+    control: &Control,
+) -> Result<(State, u64), StepFailure> {
+    iterate(system, start, state, control, 8, None)
 }

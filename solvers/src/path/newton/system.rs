@@ -1,335 +1,292 @@
-//! The linear system of a step: residual by regimes, rows of constraints, the matrix and its solution.
-//!
-//! CsrMatrix by regime:
-//!
-//! ```text
-//! stuck     g − s = 0                     facet   a·r = b A,  Δg × d = 0
-//! corner    r = corner A                  body    ∂Π/∂q = 0          control  c(increment) = length
-//! response  r − A t(g) = 0 (see `response`)
-//! ```
-//!
-//! The matrix that is factorised is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄
-//! in every body and in every yielding contact. That makes it quasi-definite (Vanderbei 1995, SIAM J.
-//! Optim. 5) where regimes repeat a condition or leave a motion free; iterative refinement against
-//! the true matrix removes the shift from the answer. Where refinement does not converge, the
-//! regimes have no solution, and the step is refused. How it is factorised: see `border` and
-//! [`condensed`](crate::linear::condensed).
+//! The system of a step as data: units, laws, loads, geometry; and what the last evaluations leave to the next.
 
-use super::kinematics::{Curvature, Slopes};
-use super::model::{Control, Model, Rate, State, load_size};
-use crate::contact::mode::ContactMode as Regime;
-use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::csr::CsrMatrix;
+use super::blocks::{YieldingBlock, undeformed};
+use super::control::MonitorWeights;
+use super::derivatives::{Gradient, Hessian};
+use super::factors::Factorised;
+use super::geometry::Geometry;
+use super::kinematics::{gradient, hessian};
+use super::loads::StagedLoads;
+use super::state::State;
+use super::tractions::{Responses, TractionUpdates};
+use super::unknowns::{Units, Unknowns};
+use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
+use crate::path::energy::load_size;
 use std::rc::Rc;
-use voussoir_core::linear::Analysis;
-use voussoir_core::model::geometry::turned;
-use voussoir_core::path::{Constraint, Increment};
+use voussoir_core::limit::Counters;
+use voussoir_core::path::{Loading, PathProblem};
 
-/// Backward error of every row that is rounding.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
-/// The shift of the factorised matrix.
-pub(super) const SHIFT: f64 = 1e-9;
-
-/// Factors with what they are of.
-struct Kept {
-    regimes: Vec<Regime>,
-    /// Normals and flows of the laws' facets.
-    directions: Vec<[f64; 4]>,
-    held: Rc<BorderedFactors>,
+/// Laws of the contact points.
+pub(super) struct Laws {
+    /// Of facets, each once.
+    pub polygons: Vec<YieldPolygon>,
+    /// For each contact point the index of its polygon.
+    pub polygon_of: Vec<Option<usize>>,
+    /// Of tractions from gaps.
+    pub responses: Responses,
+    /// Own compliance of every contact point, normal and tangential \[m/N\].
+    pub compliance: Vec<[f64; 2]>,
 }
 
-/// What the last factorisation leaves to the next.
+/// What is computed once for many iterations.
 #[derive(Default)]
-pub(super) struct SparseLdlt {
-    /// The last ones, where nothing but regimes and laws makes the matrix.
-    last: Option<Kept>,
-    analysis: Analysis,
+pub(super) struct Cache {
+    /// Second derivatives with small displacements, of the present load step.
+    pub hessian: Option<Rc<Hessian>>,
+    pub factors: Factorised,
 }
 
-impl SparseLdlt {
-    /// Another load grows.
-    pub fn forget(&mut self) {
-        self.last = None;
+/// The system of a step.
+pub(super) struct StepSystem<'a> {
+    pub problem: &'a PathProblem,
+    pub geometry: Geometry<'a>,
+    pub laws: Laws,
+    pub unknowns: Unknowns,
+    pub loads: StagedLoads<'a>,
+    /// Undeformed bodies whose material yields.
+    blocks: Vec<Option<YieldingBlock>>,
+    pub cache: Cache,
+    /// What the strategy watches.
+    pub monitors: Vec<MonitorWeights>,
+    pub counters: Counters,
+    /// Greatest relative residual of each iteration of the last step that was tried.
+    pub residuals: Vec<f64>,
+    /// Whether Newton's method may resort to a line search.
+    pub line_search: bool,
+}
+
+/// Why a step was not found.
+#[derive(Debug, Clone)]
+pub(super) struct StepFailure {
+    pub why: String,
+    /// Contact points that kept changing.
+    pub cycling: Vec<usize>,
+}
+
+impl StepFailure {
+    /// With nothing to say of contact points.
+    pub fn new(why: impl Into<String>) -> Self {
+        let why = why.into();
+        StepFailure { cycling: Vec::new(), why }
     }
 }
 
-impl Model<'_> {
-    /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
-    pub(super) fn control_row(
-        &self,
-        start: &State,
-        state: &State,
-        control: &Control,
-        constraint: &Constraint,
-        curvature: &Curvature,
-    ) -> Vec<f64> {
-        let u = self.units;
-        let (points, size) = (state.gap.len(), self.size());
-        let last = size - 1;
-        let mut row = vec![0.0; size];
-        let by = constraint.derivative;
-        row[last] += by.factor;
-        let mut by_gap = vec![0.0; 2 * points];
-        if by.motion != 0.0 {
-            let value = self.increment(start, state).motion.max(1e-300);
-            for body in 0..self.free.len() {
-                let Some(free) = self.free[body] else { continue };
-                for k in 0..3 {
-                    let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-                    let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
-                    row[2 * points + 3 * free + k] += by.motion * delta / (value * self.bodies_free as f64);
-                }
-            }
-            for c in 0..points {
-                for k in 0..2 {
-                    let delta = (state.gap[c][k] - start.gap[c][k]) / u.displacement;
-                    by_gap[2 * c + k] += by.motion * delta / (value * points as f64 * u.displacement);
-                }
+/// Compliance of every contact point with all else held.
+fn own_compliance(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
+    let untouched = responses.update(&vec![[0.0; 2]; problem.contacts.len()], &problem.untouched())?;
+    let of_point = |(index, c): (usize, &voussoir_core::path::Contact)| {
+        let mut own = c.compliance;
+        for side in [c.minus, c.plus] {
+            if let (Some(slot), Some(flexibility)) = (side.slot, &problem.bodies[side.body].flexibility) {
+                let block = flexibility.fixed_view::<2, 2>(2 * slot, 2 * slot);
+                own[0] += (block * c.normal).dot(&c.normal);
+                own[1] += (block * c.tangent).dot(&c.tangent);
             }
         }
-        if by.dissipation != 0.0 {
-            let energy = u.force * u.displacement;
-            let slopes = self.dissipation_slopes(start, state);
-            by_gap.iter_mut().zip(slopes).for_each(|(w, slope)| *w += by.dissipation * slope / energy);
-            for c in 0..points {
-                let Some(law) = self.law(c) else { continue };
-                let (kept, _) = law.irreversible(state.regime[c], self.step_gap(start, state, c));
-                if kept != [0.0; 2] {
-                    for k in 0..2 {
-                        row[2 * c + k] -= by.dissipation * kept[k] * u.force / energy;
-                        by_gap[2 * c + k] -= by.dissipation * state.force[c][k] / energy;
-                    }
-                }
-            }
-            self.add_plastic_work(&mut row, state, by.dissipation / energy);
+        match untouched.points.get(index).filter(|_| responses.is(index)) {
+            Some(point) => [0, 1].map(|k| {
+                let stiffness = -point.tangent[k][k] * c.area;
+                own[k] + if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+            }),
+            None => own,
         }
-        if by.displacement != 0.0 {
-            let loading = self.loaded.growing;
-            let scale = by.displacement / load_size(self.problem, loading).max(1e-300);
-            let mut wrench = vec![[0.0; 3]; self.free.len()];
-            for (body, _, point, f) in &loading.forces {
-                let arm = point - self.problem.bodies[*body].pole;
-                let theta = if self.finite() { state.motion[*body][2] } else { 0.0 };
-                let arm = nalgebra::Rotation2::new(theta) * arm;
-                wrench[*body][0] += f.x;
-                wrench[*body][1] += f.y;
-                wrench[*body][2] += f.dot(&turned(arm));
-            }
-            for (body, b) in self.problem.bodies.iter().enumerate() {
-                let Some(free) = self.free[body] else { continue };
-                wrench[body][0] += b.mass * loading.acceleration.x;
-                wrench[body][1] += b.mass * loading.acceleration.y;
-                for k in 0..3 {
-                    let unit = if k == 2 { 1.0 / u.length } else { 1.0 };
-                    row[2 * points + 3 * free + k] += scale * wrench[body][k] * unit;
-                }
-            }
-        }
-        if let Control::Gaps { local, .. } = control {
-            by_gap.iter_mut().zip(&local.by_gap).for_each(|(w, local)| *w += local);
-        }
-        self.add_gaps(&mut row, &by_gap, curvature);
-        if matches!(control, Control::Spring { .. }) {
-            for (i, value) in self.works(curvature) {
-                if let Some((column, own)) = self.column(i) {
-                    row[column] += value * own;
-                }
-            }
-        }
-        row
-    }
+    };
+    Ok(problem.contacts.iter().enumerate().map(of_point).collect())
+}
 
-    /// Adds weighted gaps to a row over the scaled unknowns.
-    pub(super) fn add_gaps(&self, row: &mut [f64], by_gap: &[f64], curvature: &Curvature) {
-        if by_gap.iter().all(|w| *w == 0.0) {
-            return;
-        }
-        let rows = &curvature.rows(self).gaps;
-        for (i, weight) in by_gap.iter().enumerate().filter(|(_, w)| **w != 0.0) {
-            let by = weight * self.units.displacement;
-            rows.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
-        }
-    }
+/// Greatest displacement of a point by settlements.
+fn settlement_size<'l>(loadings: impl Iterator<Item = &'l Loading>, length: f64) -> f64 {
+    let size = |s: &(usize, [f64; 3])| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * length);
+    loadings.flat_map(|loading| &loading.settlements).map(size).fold(0.0, f64::max)
+}
 
-    pub(super) fn constraint(&self, start: &State, state: &State, control: &Control) -> (f64, Constraint) {
-        match control {
-            Control::Factor(target) => {
-                let derivative = Increment { factor: 1.0, ..Increment::default() };
-                ((state.factor - target) / self.units.factor, Constraint { value: 0.0, derivative })
-            }
-            Control::Strategy { strategy, previous, length } => {
-                let c = strategy.constraint(&self.increment(start, state), previous.as_ref());
-                (c.value - length, c)
-            }
-            Control::Gaps { local, length } => (local.value(start, state) - length, Constraint::default()),
-            Control::Spring { weight, length } => {
-                let derivative = Increment { factor: *weight, ..Increment::default() };
-                let value =
-                    weight * (state.factor - start.factor) / self.units.factor + self.work_between(start, state);
-                (value - length, Constraint { value, derivative })
-            }
+impl<'a> StepSystem<'a> {
+    pub fn new(problem: &'a PathProblem, finite: bool) -> Result<Self, String> {
+        let responses = Responses::new(problem);
+        let compliance = own_compliance(problem, &responses)?;
+        let (mut mean, mut count) = (0.0, 0);
+        for c in compliance.iter().flatten().filter(|c| **c > 0.0) {
+            mean += c;
+            count += 1;
         }
-    }
-
-    /// Derivatives of ∂Π/∂λ in units by force and motion, where they are not zero: global index and value.
-    fn works<'m>(&self, curvature: &'m Curvature) -> impl Iterator<Item = (usize, f64)> + use<'m> {
-        let unit = self.units.factor / (self.units.force * self.units.displacement);
-        curvature.factor.iter().enumerate().filter(|(_, v)| **v != 0.0).map(move |(i, value)| (i, unit * value))
-    }
-
-    /// ∂Π/∂λ of differences of forces and motions, in units: p·Δq + g_p·Δr (small displacements).
-    fn work_of(&self, force: impl Fn(usize, usize) -> f64, motion: impl Fn(usize, usize) -> f64) -> f64 {
-        let Some(curvature) = &self.constant else { return 0.0 };
-        let forces = 2 * self.problem.contacts.len();
-        let by = |i: usize| match i.checked_sub(forces) {
-            None => force(i / 2, i % 2),
-            Some(k) if self.free[k / 3].is_some() => motion(k / 3, k % 3),
-            Some(_) => 0.0,
+        if count == 0 {
+            return Err("nothing in the scene deforms: rigid blocks without joint compliance have no path before their collapse; limit analysis answers that".into());
+        }
+        mean /= f64::from(count);
+        let mut bodies = 0;
+        let number = |held: bool| {
+            bodies += usize::from(!held);
+            (!held).then(|| bodies - 1)
         };
-        self.works(curvature).map(|(i, value)| value * by(i)).sum()
+        let free = problem.bodies.iter().map(|body| body.held).map(number).collect();
+        let size = problem.load_steps.iter().map(|d| load_size(problem, &d.loading)).find(|s| *s > 0.0);
+        let settlement = settlement_size(problem.load_steps.iter().map(|d| &d.loading), problem.length);
+        let force = size.unwrap_or(settlement / mean);
+        let force = if force > 0.0 { force } else { 1.0 };
+        let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
+        let (facets, polygon_of) = problem.shared_facets();
+        let polygons = facets.into_iter().map(YieldPolygon::new).collect();
+        Ok(StepSystem {
+            geometry: Geometry::new(problem, finite),
+            problem,
+            laws: Laws { polygons, polygon_of, responses, compliance },
+            unknowns: Unknowns { units, contacts: problem.contacts.len(), free, bodies },
+            counters: Counters::new(),
+            loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
+            residuals: Vec::new(),
+            line_search: true,
+            blocks: undeformed(problem)?,
+            cache: Cache::default(),
+            monitors: Vec::new(),
+        })
     }
 
-    /// ∂Π/∂λ between two states, in units.
-    fn work_between(&self, start: &State, state: &State) -> f64 {
-        self.work_of(|c, k| state.force[c][k] - start.force[c][k], |b, k| state.motion[b][k] - start.motion[b][k])
+    /// Units of the unknowns.
+    pub fn units(&self) -> Units {
+        self.unknowns.units
     }
 
-    /// ∂Π/∂λ along a rate, in units.
-    pub(super) fn work_along(&self, rate: &Rate) -> f64 {
-        self.work_of(|c, k| rate.force[c][k], |b, k| rate.motion[b][k])
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.unknowns.size()
     }
 
-    /// Residual of the regimes' equations in units.
-    pub(super) fn residual(&self, start: &State, state: &State, slopes: &Slopes) -> Vec<f64> {
-        let u = self.units;
-        let points = state.gap.len();
-        let mut out = vec![0.0; self.size()];
-        for c in 0..points {
-            if self.responses.is(c) {
-                out[2 * c..2 * c + 2].copy_from_slice(&self.response_residual(state, c));
-                continue;
-            }
-            let gap = self.step_gap(start, state, c).map(|g| g / u.displacement);
-            let area = self.problem.contacts[c].area;
-            let r = state.force[c];
-            let rows = match (state.regime[c], self.law(c)) {
-                (Regime::Facet(i), Some(law)) => {
-                    let f = &law.facets[i as usize];
-                    let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
-                    [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
-                }
-                (regime @ (Regime::Corner(..) | Regime::Open), Some(law)) => {
-                    let corner = law.corner(regime).unwrap_or_default();
-                    [(r[0] - corner[0] * area) / u.force, (r[1] - corner[1] * area) / u.force]
-                }
-                _ => gap,
-            };
-            out[2 * c] = rows[0];
-            out[2 * c + 1] = rows[1];
-        }
-        for (body, balance) in slopes.balance.iter().enumerate() {
-            if let Some(free) = self.free[body] {
-                for k in 0..3 {
-                    let unit = if k == 2 { u.force * u.length } else { u.force };
-                    out[2 * points + 3 * free + k] = balance[k] / unit;
-                }
-            }
-        }
-        out
+    /// Column of an index over all bodies, and its unit; `None` for held bodies.
+    pub fn column(&self, index: usize) -> Option<(usize, f64)> {
+        self.unknowns.column(index)
     }
 
-    fn is_constant(&self, curvature: &Curvature) -> bool {
-        self.constant.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, curvature))
-    }
-
-    /// The regimes' linear equations, factorised: where nothing else than regimes makes them, those of
-    /// the same regimes are taken again.
-    fn factorised(&mut self, state: &State, curvature: &Curvature, row: &[f64]) -> Option<(Rc<BorderedFactors>, bool)> {
-        let again = self.responses.is_empty() && self.is_constant(curvature);
-        let directions: Vec<[f64; 4]> = self
-            .polygons
+    /// Begins a load step.
+    pub fn load(&mut self, loads: StagedLoads<'a>) {
+        let size = load_size(self.problem, loads.growing);
+        let settlement = loads
+            .growing
+            .settlements
             .iter()
-            .flat_map(|law| law.facets.iter().map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]))
-            .collect();
-        if let Some(kept) = self.factorised.last.as_ref().filter(|_| again)
-            && kept.regimes == state.regime
-            && kept.directions == directions
-            && kept.held.serves(row)
+            .map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * self.unknowns.units.length))
+            .fold(0.0, f64::max);
+        self.unknowns.units.factor = match (size, settlement) {
+            (s, _) if s > 0.0 => self.unknowns.units.force / s,
+            (_, s) if s > 0.0 => self.unknowns.units.displacement / s,
+            _ => 1.0,
+        };
+        self.loads = loads;
+        self.cache.hessian = None;
+        self.cache.factors.forget();
+    }
+
+    /// Adds to a counter of the work done.
+    pub fn count(&mut self, what: &str, by: u64) {
+        *self.counters.entry(what.into()).or_default() += by;
+    }
+
+    /// Whether equilibrium is that of displaced positions.
+    pub fn finite(&self) -> bool {
+        self.geometry.finite
+    }
+
+    /// Whether flow is associated everywhere: then every step is a monotone problem.
+    pub fn monotone(&self) -> bool {
+        self.piecewise_linear() && self.laws.polygons.iter().all(|law| !law.is_non_associated())
+    }
+
+    /// Whether with small displacements every law is one of facets.
+    pub fn piecewise_linear(&self) -> bool {
+        self.laws.responses.is_empty() && self.blocks.iter().all(Option::is_none)
+    }
+
+    /// Forces and a factor that are rounding of the loads become nothing (small displacements).
+    pub fn drop_rounding(&self, state: &mut State, start: f64) {
+        let u = self.unknowns.units;
+        let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+        if self.loads.earlier.is_empty()
+            && largest <= 1e-10 * u.force
+            && (state.factor - start).abs() <= 1e-10 * u.factor
         {
-            return Some((kept.held.clone(), true));
+            state.force.fill([0.0; 2]);
+            state.factor = start;
         }
-        let equations = curvature.rows(self);
-        let capacity = curvature.entries.len();
-        let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(capacity));
-        for (c, regime) in state.regime.iter().enumerate() {
-            let answer = self.responses.is(c).then(|| self.response_row(state, c));
-            for k in 0..2 {
-                let (equation, shift) = (rows.open_row(), shifts.open_row());
-                match &answer {
-                    Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
-                    None => equations.point(self.law(c), (c, k), *regime, false, equation, shift),
-                }
-                rows.end_row();
-                shifts.end_row();
+    }
+
+    /// The state before anything has moved.
+    pub fn undeformed(&self) -> State {
+        let points = self.problem.contacts.len();
+        let motion = vec![[0.0; 3]; self.problem.bodies.len()];
+        let mut state = State {
+            force: vec![[0.0; 2]; points],
+            gap: self.problem.contacts.iter().map(|c| [c.gap, 0.0]).collect(),
+            motion,
+            factor: 0.0,
+            mode: vec![ContactMode::Stick; points],
+            slip: vec![[0.0; 2]; points],
+            updates: TractionUpdates { memory: self.problem.untouched(), ..TractionUpdates::default() },
+            blocks: self.blocks.clone(),
+        };
+        // The update of untouched joints has succeeded in `new`.
+        if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory) {
+            state.updates = updates;
+        }
+        state
+    }
+
+    /// The facets of a contact point, where its law has that form.
+    pub fn law(&self, contact: usize) -> Option<&YieldPolygon> {
+        self.laws.polygon_of[contact].map(|law| &self.laws.polygons[law])
+    }
+
+    /// ρ of a contact point: the inverse of its own compliance \[N/m\].
+    pub fn stiffness(&self, contact: usize) -> [f64; 2] {
+        let mean = self.unknowns.units.displacement / self.unknowns.units.force;
+        self.laws.compliance[contact].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean })
+    }
+
+    /// Motions with the held bodies where their settlements put them.
+    pub fn settle(&self, motion: &mut [[f64; 3]], factor: f64) {
+        let settled = self.loads.at(factor).settled(motion.len());
+        for (body, motion) in motion.iter_mut().enumerate() {
+            if self.unknowns.free[body].is_none() {
+                *motion = settled[body];
             }
         }
-        equations.bodies(&mut rows, &mut shifts);
-        self.count("factorisations", 1);
-        let held = BorderedFactors::new(rows, shifts, state.regime.len(), row, &mut self.factorised.analysis)?;
-        let held = Rc::new(held);
-        self.factorised.last = again.then(|| Kept { regimes: state.regime.clone(), directions, held: held.clone() });
-        Some((held, false))
     }
 
-    /// Solves the regimes' linear equations for one right-hand side in units, and whether it is solved:
-    /// where the equations contradict each other, what comes back is the answer of the shifted ones.
-    pub(super) fn solve(
-        &mut self,
-        state: &State,
-        curvature: &Curvature,
-        row: &[f64],
-        right: &[f64],
-    ) -> Option<(Vec<f64>, bool)> {
-        let (held, again) = self.factorised(state, curvature, row)?;
-        let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
-        if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
-            return found;
-        }
-        // Another unknown held may serve this control better.
-        self.factorised.last = None;
-        let (held, _) = self.factorised(state, curvature, row)?;
-        refined(&BorderedSystem::new(held, row)?, right)
+    /// First derivatives of Π at a state.
+    pub fn gradient(&self, state: &State) -> Gradient {
+        let loads = self.loads.at(state.factor);
+        gradient(&self.geometry, &state.place(&loads))
     }
-}
 
-/// The solution of the equations without what was added, by refinement, and whether there is one.
-fn refined(bordered: &BorderedSystem, right: &[f64]) -> Option<(Vec<f64>, bool)> {
-    let mut x = vec![0.0; right.len()];
-    let mut rest = right.to_vec();
-    let mut before = f64::INFINITY;
-    let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
-    let aim = norm(right);
-    if aim == 0.0 {
-        return Some((x, true));
-    }
-    let mut best = x.clone();
-    for _ in 0..30 {
-        let step = bordered.apply(&rest)?;
-        x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-        let (left, error) = bordered.left(right, &x);
-        rest = left;
-        let now = norm(&rest);
-        if now < before {
-            best.copy_from_slice(&x);
+    /// Second derivatives of Π at a state.
+    pub fn hessian(&mut self, state: &State, gradient: &Gradient) -> Rc<Hessian> {
+        let yields = state.yields();
+        if let Some(constant) = self.cache.hessian.as_ref().filter(|_| !yields) {
+            return constant.clone();
         }
-        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim || error <= ROUNDING {
-            before = before.min(now);
-            break;
+        let loads = self.loads.at(state.factor);
+        let hessian = hessian(&self.geometry, &state.place(&loads), gradient);
+        let hessian = Rc::new(hessian);
+        if !self.finite() && !yields {
+            self.cache.hessian = Some(hessian.clone());
         }
-        before = now;
+        hessian
     }
-    // What is left over is rounding of the solution's own size, or the system has no solution.
-    let size = norm(&best).max(aim);
-    Some((best, before <= 1e-9 * size))
+
+    /// Δg of a step at a contact point.
+    pub fn step_gap(&self, start: &State, state: &State, contact: usize) -> [f64; 2] {
+        [state.gap[contact][0] - start.slip[contact][0], state.gap[contact][1] - start.slip[contact][1]]
+    }
+
+    /// The irreversible gaps and the plastic strains of a step become history.
+    pub fn keep(&self, start: &State, state: &mut State) {
+        state.blocks.iter_mut().flatten().for_each(|inner| inner.base = inner.linear.end.clone());
+        for c in 0..state.gap.len() {
+            let gap = self.step_gap(start, state, c);
+            state.slip[c] = start.slip[c];
+            if let Some(law) = self.law(c) {
+                let (kept, _) = law.irreversible(state.mode[c], gap);
+                (0..2).for_each(|k| state.slip[c][k] += kept[k]);
+            }
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::result::columns;
 use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort, suggest};
 use crate::config::dotted_key::join;
-use crate::config::expand::{Expanded, Plan};
+use crate::config::expand::{Expanded, Expansion};
 use crate::study::{DiagnosticList, OUTPUT, StudySource, read_plugin};
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
@@ -160,8 +160,8 @@ impl PointStudy {
     /// The study that a source describes.
     pub fn from_source(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
         let StudySource { root, mut diagnostics, .. } = source;
-        let plan = match Plan::new(&root, &[]) {
-            Ok(plan) => plan,
+        let expansion = match Expansion::new(&root, &[]) {
+            Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
                 sort(&mut diagnostics);
@@ -169,8 +169,8 @@ impl PointStudy {
             }
         };
         let (mut cases, mut figures) = (Vec::new(), true);
-        for id in 0..plan.count() {
-            match plan.case(id).and_then(|expanded| build(id, expanded)) {
+        for id in 0..expansion.count() {
+            match expansion.case(id).and_then(|expanded| build(id, expanded)) {
                 Ok((case, drawn)) => {
                     figures = drawn;
                     cases.push(case);

@@ -1,4 +1,4 @@
-//! How far a path has gone behind its peak, and whether it still leads on.
+//! How far a path has gone after its peak, and whether it still leads on.
 //!
 //! Behind a peak with finite displacements the path of an assembly with friction may fold where a sliding
 //! point lifts off: on both sides of that event equilibrium exists only on the side the path comes from
@@ -8,20 +8,25 @@
 
 /// Share of the range of displacements that a path must go back for a turn to count.
 const TURN: f64 = 0.02;
+
 /// Difference of two turns that are the same one, as a share of the ranges of displacement and factor.
 const SAME: f64 = 0.01;
+
 /// Difference of two folds that are the same one, as a share of the same ranges.
 const FOLD: f64 = 0.005;
+
 /// Turns in a row that repeat earlier ones.
 const REPEATED: u32 = 2;
-/// Way of the fastest body behind the peak, by the displacement that was asked for and a fiftieth of the
+
+/// Way of the fastest body after the peak, by the displacement that was asked for and a fiftieth of the
 /// scene.
 const LONGEST: f64 = 8.0;
+
 const SLACK: f64 = 0.02;
 
-/// The way of a path behind its peak.
+/// The way of a path after its peak.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Wandering {
+pub(super) struct CycleDetector {
     /// Ranges of displacement \[m\] and factor so far.
     ranges: Option<[[f64; 2]; 2]>,
     /// Translations of all bodies at the last state \[m\].
@@ -38,7 +43,7 @@ pub(super) struct Wandering {
     folds: Vec<[f64; 2]>,
 }
 
-impl Wandering {
+impl CycleDetector {
     /// Takes a place (displacement, factor) from which no rate goes on: whether the path has been there before.
     pub fn folds_again(&mut self, place: [f64; 2]) -> bool {
         let sizes = self.ranges.map_or([0.0; 2], |ranges| ranges.map(|r| r[1] - r[0]));
@@ -47,8 +52,8 @@ impl Wandering {
         again
     }
 
-    /// Takes a state behind the peak: displacement of the load and factor, and the motion of all bodies. Why the
-    /// path leads nowhere, if so; `asked`: displacement behind the peak that it should reach, `length` the scene's \[m\].
+    /// Takes a state after the peak: displacement of the load and factor, and the motion of all bodies. Why the
+    /// path leads nowhere, if so; `asked`: displacement after the peak that it should reach, `length` the scene's \[m\].
     pub fn leads_nowhere(&mut self, place: [f64; 2], motion: &[[f64; 3]], asked: f64, length: f64) -> Option<String> {
         let places: Vec<[f64; 2]> = motion.iter().map(|q| [q[0], q[1]]).collect();
         let moved = places.iter().zip(&self.places).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
@@ -81,13 +86,13 @@ impl Wandering {
             if self.repeated >= REPEATED {
                 let [a, b] = [before[1], turn.0[1]];
                 return Some(format!(
-                    "behind the peak the path goes to and fro between the factors {a:.6} and {b:.6}, where it folds; other branches were not searched"
+                    "after the peak the path cycles between the factors {a:.6} and {b:.6}, where it folds; other branches were not searched"
                 ));
             }
         }
         (self.way > LONGEST * (asked + SLACK * length)).then(|| {
             format!(
-                "behind the peak blocks have moved {:.3} m along the path, to and fro, without bringing the load {asked:.3} m away from its place at the peak",
+                "after the peak blocks have moved {:.3} m along the path, back and forth, without bringing the load {asked:.3} m away from its place at the peak",
                 self.way
             )
         })
@@ -100,12 +105,12 @@ mod tests {
 
     /// Feeds a zigzag between displacements; the index of the state at which it ends.
     fn ended(corners: &[[f64; 2]], asked: f64) -> Option<(usize, String)> {
-        let mut wandering = Wandering::default();
+        let mut cycles = CycleDetector::default();
         let mut index = 0;
         for pair in corners.windows(2) {
             for step in 0..20 {
                 let place = [0, 1].map(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * f64::from(step) / 20.0);
-                if let Some(why) = wandering.leads_nowhere(place, &[[place[0], 0.0, 0.0]], asked, 1.0) {
+                if let Some(why) = cycles.leads_nowhere(place, &[[place[0], 0.0, 0.0]], asked, 1.0) {
                     return Some((index, why));
                 }
                 index += 1;
@@ -121,7 +126,7 @@ mod tests {
         assert_eq!(ended(&on, 3.0), None);
         let to_and_fro = [[1.0, 9.0], [2.0, 5.0], [1.2, 8.0], [2.0, 5.01], [1.2, 8.01], [2.0, 5.0], [1.2, 8.0]];
         let (index, why) = ended(&to_and_fro, 3.0).expect("an end");
-        assert!((60..90).contains(&index) && why.contains("to and fro between"), "{index} {why}");
+        assert!((60..90).contains(&index) && why.contains("cycles between"), "{index} {why}");
         // Ever new places, but far too long a way.
         let drifting: Vec<[f64; 2]> = (0..40).map(|i| [1.0 + f64::from(i % 2), 9.0 - 0.3 * f64::from(i)]).collect();
         let (_, why) = ended(&drifting, 1.5).expect("an end");

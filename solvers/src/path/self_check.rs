@@ -5,9 +5,10 @@
 //! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the
 //!   dead load is no proof: with friction that is not associated another path may carry it;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;
-//! - limit point: no regimes of the points at the verge of a change have a rate with growing λ
+//! - limit point: no modes of the active points have a rate with growing λ
 //!   (`rising`).
 
+use super::energy::load_size;
 use voussoir_core::certificate::{PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
@@ -46,7 +47,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let still = moves <= 1e-9 * force * blocks;
     let applied = problem.applied(answer.state.load_step, answer.state.factor);
     let parts = problem.load_steps.iter().zip(applied);
-    let load: f64 = parts.map(|(d, factor)| (factor * super::model::load_size(problem, &d.loading)).abs()).sum();
+    let load: f64 = parts.map(|(d, factor)| (factor * load_size(problem, &d.loading)).abs()).sum();
     for (name, value) in checker.worst {
         if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;

@@ -1,9 +1,11 @@
 //! What is proved of placed loads.
 
-use super::*;
+use super::{LoadKind, LoadSite, Placed};
 use crate::scenes::tests::catalogue;
 use serde_json::{Value, json};
-use voussoir_core::model::Scene;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Scene};
+use voussoir_core::plugin::Diagnostic;
 
 fn arch(span: f64, rise: f64, voussoirs: usize, ends: &str, material: &str) -> Assembly {
     let scene = json!({
@@ -14,7 +16,8 @@ fn arch(span: f64, rise: f64, voussoirs: usize, ends: &str, material: &str) -> A
 }
 
 fn placed(value: Value, assembly: &Assembly) -> Result<Placed, Vec<Diagnostic>> {
-    place(&serde_json::from_value(value).unwrap(), assembly, "stages.1.loads.0")
+    let load: Box<dyn LoadKind> = serde_json::from_value(value).unwrap();
+    load.place(&LoadSite::new(assembly, "stages.1.loads.0"))
 }
 
 fn path(value: Value, assembly: &Assembly) -> String {
@@ -25,7 +28,7 @@ fn path(value: Value, assembly: &Assembly) -> String {
 fn the_quarter_span_load_of_strathmashie_lies_on_the_chord_of_its_voussoir() {
     let arch = arch(9.42, 2.99, 15, "bonded", "stone");
     let load = json!({ "kind": "point", "span_fraction": 0.25, "force": [0.0, -1000.0] });
-    let (forces, _) = placed(load, &arch).unwrap();
+    let Placed { forces, .. } = placed(load, &arch).unwrap();
     let [force] = forces[..] else { panic!("one force") };
     assert_eq!(force.point.x, -4.71 + 0.25 * 9.42);
     assert_eq!(force.force, Vec2::new(0.0, -1000.0));
@@ -42,7 +45,7 @@ fn mirrored_loads_load_mirrored_voussoirs_on_boundaries_too() {
         for joint in &arch.joints[1..voussoirs] {
             let at = |x: f64| {
                 let load = json!({ "kind": "axles", "at": 0.5, "positions": [x], "forces": [1.0] });
-                placed(load, &arch).unwrap().0
+                placed(load, &arch).unwrap().forces
             };
             let (here, there) = (at(joint.ends[1].x), at(-joint.ends[1].x));
             assert_eq!(here.len(), if joint.ends[1].x == 0.0 { 2 } else { 1 });
@@ -58,7 +61,8 @@ fn mirrored_loads_load_mirrored_voussoirs_on_boundaries_too() {
 fn the_resultant_of_a_strip_is_pressure_times_length_times_width_at_its_middle() {
     for (rise, voussoirs, from, to) in [(1.0, 15, 0.1, 0.37), (2.0, 8, 0.0, 1.0), (3.5, 23, 0.02, 0.7)] {
         let arch = arch(4.0, rise, voussoirs, "jointed", "stone");
-        let (forces, _) = placed(json!({ "kind": "strip", "from": from, "to": to, "pressure": 3e3 }), &arch).unwrap();
+        let Placed { forces, .. } =
+            placed(json!({ "kind": "strip", "from": from, "to": to, "pressure": 3e3 }), &arch).unwrap();
         let total: f64 = forces.iter().map(|f| f.force.y).sum();
         let moment: f64 = forces.iter().map(|f| f.force.y * f.point.x).sum();
         let exact = -3e3 * (to - from) * 4.0 * 5.81;
@@ -77,7 +81,7 @@ fn the_resultant_of_a_strip_is_pressure_times_length_times_width_at_its_middle()
 fn where_a_vertical_meets_two_chords_the_upper_one_is_loaded() {
     let arch = arch(2.0, 3.0, 21, "jointed", "stone");
     let load = json!({ "kind": "point", "span_fraction": -0.2, "force": [0.0, -1.0] });
-    let (forces, _) = placed(load, &arch).unwrap();
+    let Placed { forces, .. } = placed(load, &arch).unwrap();
     assert!(forces[0].point.y > 5.0 / 3.0 - 0.3, "{:?}", forces[0].point);
 }
 
@@ -86,7 +90,7 @@ fn pressure_on_all_edges_of_a_block_is_in_equilibrium_and_pushes_inwards() {
     let arch = arch(4.0, 1.0, 5, "jointed", "stone");
     let mut wrench = [0.0; 3];
     for edge in 0..4 {
-        let (forces, _) =
+        let Placed { forces, .. } =
             placed(json!({ "kind": "pressure", "block": 2, "edge": edge, "value": 10.0 }), &arch).unwrap();
         voussoir_core::model::add_force(&mut wrench, forces[0].point, forces[0].force, 1.0);
         if edge == 2 {
@@ -99,12 +103,13 @@ fn pressure_on_all_edges_of_a_block_is_in_equilibrium_and_pushes_inwards() {
 #[test]
 fn accelerations_and_forces_on_named_blocks_are_passed_on() {
     let arch = arch(4.0, 1.0, 5, "jointed", "stone");
-    let (forces, accelerations) = placed(json!({ "kind": "body", "acceleration": [1.0, 0.0] }), &arch).unwrap();
+    let Placed { forces, accelerations } =
+        placed(json!({ "kind": "body", "acceleration": [1.0, 0.0] }), &arch).unwrap();
     assert!(forces.is_empty() && accelerations == [Vec2::new(1.0, 0.0)]);
     let vertex = arch.bodies[3].vertices[2];
     for block in [json!(2), json!("2")] {
         let load = json!({ "kind": "point", "block": block, "point": [vertex.x, vertex.y], "force": [1.0, 0.0] });
-        assert_eq!(placed(load, &arch).unwrap().0[0].body, 3);
+        assert_eq!(placed(load, &arch).unwrap().forces[0].body, 3);
     }
 }
 
@@ -143,5 +148,47 @@ fn a_load_on_a_rigid_voussoir_bonded_to_the_ground_is_refused_but_not_on_an_elas
 #[test]
 fn unknown_keys_of_a_load_are_refused() {
     let load = json!({ "kind": "strip", "from": 0.0, "to": 1.0, "pressure": 1.0, "angle": 3.0 });
-    assert!(serde_json::from_value::<Load>(load).is_err());
+    assert!(serde_json::from_value::<Box<dyn LoadKind>>(load).is_err());
+}
+
+#[test]
+fn without_dispersion_loads_stand_as_they_always_did() {
+    let arch = arch(4.0, 1.0, 15, "jointed", "stone");
+    for load in [
+        json!({ "kind": "point", "span_fraction": 0.3, "force": [100.0, -1000.0] }),
+        json!({ "kind": "strip", "from": 0.1, "to": 0.37, "pressure": 3e3 }),
+    ] {
+        let mut named = load.clone();
+        named["dispersion"] = json!({ "law": "none" });
+        assert_eq!(placed(load, &arch).unwrap(), placed(named, &arch).unwrap());
+    }
+}
+
+/// A point load that spreads by 45° through 0.5 m is a strip of 1 m with the same force; a strip grows by 0.5 m on both
+/// sides and keeps its force and its middle; what would reach beyond the extrados is refused.
+#[test]
+fn a_uniform_spread_keeps_the_resultant() {
+    let arch = arch(4.0, 1.0, 15, "jointed", "stone");
+    let spread = json!({ "law": "uniform", "angle": 45.0, "depth": 0.5 });
+    let sums = |load: Value| {
+        let Placed { forces, .. } = placed(load, &arch).unwrap();
+        let (first, last) = (&forces[0].point, &forces[forces.len() - 1].point);
+        let total: f64 = forces.iter().map(|f| f.force.y).sum();
+        let moment: f64 = forces.iter().map(|f| f.force.y * f.point.x).sum();
+        (total, moment / total, last.x - first.x)
+    };
+    let point = json!({ "kind": "point", "span_fraction": 0.3, "force": [0.0, -1000.0], "dispersion": spread });
+    let (total, middle, _) = sums(point);
+    assert!((total + 1000.0).abs() < 1e-9 && (middle - (-2.0 + 0.3 * 4.0)).abs() < 1e-12, "{total} {middle}");
+    let plain = json!({ "kind": "strip", "from": 0.4, "to": 0.5, "pressure": 1e3 });
+    let mut wide = plain.clone();
+    wide["dispersion"] = spread.clone();
+    let (plain, wide) = (sums(plain), sums(wide));
+    assert!(
+        (plain.0 - wide.0).abs() < 1e-9 * plain.0.abs() && (plain.1 - wide.1).abs() < 1e-12 && wide.2 > plain.2 + 0.5
+    );
+    let beyond = json!({ "kind": "point", "span_fraction": 0.0, "force": [0.0, -1.0], "dispersion": spread });
+    assert_eq!(path(beyond, &arch), "stages.1.loads.0.span_fraction");
+    let block = json!({ "kind": "point", "block": 3, "point": [0.0, 1.1], "force": [0.0, -1.0], "dispersion": spread });
+    assert_eq!(path(block, &arch), "stages.1.loads.0.dispersion");
 }

@@ -1,0 +1,71 @@
+//! Energy along a path: the work of loads and of settled supports by the trapezoidal rule, exact where everything
+//! changes linearly during a step, and what dissipates.
+
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::path::{Loading, PathProblem};
+
+/// Energies so far \[J\].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct EnergyBalance {
+    pub dissipated: f64,
+    pub work: f64,
+}
+
+/// What the work of a step needs of the state at one of its ends.
+#[derive(Debug, Clone)]
+pub(super) struct WorkState {
+    /// Factor of each loading.
+    pub factors: Vec<f64>,
+    /// Displacements of the points that each loading pushes \[m\].
+    pub displacements: Vec<Vec<Vec2>>,
+    /// Motion of every body about its pole.
+    pub motion: Vec<[f64; 3]>,
+    /// What loads and contact forces leave on every body about its pole \[N, N m\]; read where it is held.
+    pub unbalanced: Vec<[f64; 3]>,
+}
+
+impl EnergyBalance {
+    /// Adds the work of loads and of the reactions of settled supports between two states.
+    pub fn add_work(&mut self, problem: &PathProblem, loadings: &[&Loading], from: &WorkState, to: &WorkState) {
+        for (k, loading) in loadings.iter().enumerate() {
+            let mean = 0.5 * (from.factors[k] + to.factors[k]);
+            let points = from.displacements[k].iter().zip(&to.displacements[k]);
+            for ((_, _, _, force), (before, after)) in loading.forces.iter().zip(points) {
+                self.work += mean * force.dot(&(after - before));
+            }
+            for (body, (q, end)) in problem.bodies.iter().zip(from.motion.iter().zip(&to.motion)) {
+                self.work += mean * body.mass * loading.acceleration.dot(&Vec2::new(end[0] - q[0], end[1] - q[1]));
+            }
+        }
+        for (body, _) in problem.bodies.iter().enumerate().filter(|(_, b)| b.held) {
+            for k in 0..3 {
+                let reaction = -0.5 * (from.unbalanced[body][k] + to.unbalanced[body][k]);
+                self.work += reaction * (to.motion[body][k] - from.motion[body][k]);
+            }
+        }
+    }
+}
+
+/// Σ|F| of a loading, weights of accelerated free bodies included \[N\].
+pub(super) fn load_size(problem: &PathProblem, loading: &Loading) -> f64 {
+    let forces: f64 = loading.forces.iter().map(|f| f.3.norm()).sum();
+    let masses: f64 = problem.bodies.iter().filter(|b| !b.held).map(|b| b.mass).sum();
+    forces + masses * loading.acceleration.norm()
+}
+
+/// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point).
+pub(super) fn load_displacement(
+    problem: &PathProblem,
+    loading: &Loading,
+    motion: &[[f64; 3]],
+    rigid: impl Fn(usize, Vec2) -> Vec2,
+) -> f64 {
+    let size = load_size(problem, loading);
+    if size == 0.0 {
+        return 0.0;
+    }
+    let forces: f64 = loading.forces.iter().map(|(body, _, point, f)| f.dot(&rigid(*body, *point))).sum();
+    let free = problem.bodies.iter().zip(motion).filter(|(b, _)| !b.held);
+    let masses: f64 = free.map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1]))).sum();
+    (forces + masses) / size
+}

@@ -1,0 +1,99 @@
+//! Where a path of finite displacements leads from a state at which no step converges.
+//!
+//! There some contact points are active. The modes that the last rate asks for are one
+//! candidate; it is a solution of the rate problem only if it asks for the same modes itself (a point
+//! that slides goes on sliding in its sense, one that opens opens). Where it is not, the linear
+//! complementarity problem of the rates ([`rising`](super::rising)) is searched to its end for a rate on
+//! which λ goes on in its sense. If there is none the path folds: what is left is to unload, which friction
+//! always allows. Other points may then slide, and the path goes on at another place; if it comes back to
+//! the same fold it ends there.
+
+use super::control::Control;
+use super::inelastic::{plastic_power, update_blocks};
+use super::measure::motion_size;
+use super::rising::{Rising, limit_point_test};
+use super::state::Tangent;
+use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
+use super::tracer::{Tracer, moved_along};
+use crate::contact::mode::ContactMode;
+
+/// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
+pub(super) fn yielding_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
+    let ahead = moved_along(tracer, rate, 1e-3 * share);
+    let state = tracer.state.clone();
+    let modes = modes_ahead(&mut tracer.system, &state, &ahead);
+    if modes == state.mode {
+        return None;
+    }
+    tangent_of_yielding(&mut tracer.system, &state, &modes).map(|rate| (rate, modes))
+}
+
+/// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
+/// in which they dissipate. Their next predictor is that of the yielding tangent.
+pub(super) fn yielding_blocks_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<Tangent> {
+    let mut ahead = moved_along(tracer, rate, share);
+    update_blocks(&mut tracer.system, &mut ahead).ok()?;
+    let mut turning = tracer.state.clone();
+    turning.blocks = ahead.blocks;
+    if !turning.yields() {
+        return None;
+    }
+    let other = tangent_at(&mut tracer.system, &tracer.state, &turning, &Control::Factor(tracer.state.factor))?;
+    let power = plastic_power(&tracer.system, &turning, &other);
+    tracer.state.blocks = turning.blocks;
+    Some(other.scaled(if power < 0.0 { -1.0 } else { 1.0 }))
+}
+
+/// Whether the motions of two rates make an acute angle.
+fn forwards(rate: &Tangent, other: &Tangent) -> bool {
+    let pairs = rate.motion.iter().flatten().zip(other.motion.iter().flatten());
+    pairs.map(|(a, b)| a * b).sum::<f64>() > 0.0
+}
+
+/// The rate that leads on where `rate` does not, with its modes, if one was found; an error says why
+/// none does.
+pub(super) fn branch_beyond_fold(
+    tracer: &mut Tracer,
+    rate: &Tangent,
+    share: f64,
+) -> Result<Option<(Tangent, Vec<ContactMode>)>, String> {
+    let own = yielding_branch(tracer, rate, share);
+    if !tracer.system.finite() || !tracer.system.piecewise_linear() {
+        return Ok(own);
+    }
+    if let Some((other, modes)) = &own
+        && agrees(tracer, other, modes, share)
+    {
+        return Ok(own);
+    }
+    let state = tracer.state.clone();
+    match limit_point_test(&mut tracer.system, &state, rate.factor.signum()) {
+        // Where the load falls anyway, unloading is a rate of the same sense: one of several, and none that is wanted.
+        Rising::Tangent(other, modes)
+            if modes != state.mode && forwards(rate, &other) && agrees(tracer, &other, &modes, share) =>
+        {
+            tracer.system.count("branches", 1);
+            Ok(Some((other, modes)))
+        }
+        Rising::Tangent(..) | Rising::Unknown(_) => Ok(own),
+        Rising::None if !tracer.post_peak.cycles.folds_again([tracer.record.state.displacement, state.factor]) => {
+            Ok(own)
+        }
+        Rising::None => {
+            let sense = if rate.factor > 0.0 { "growing" } else { "falling" };
+            Err(format!(
+                "at factor {} no rate of equilibrium goes on with a {sense} factor: all modes of the active contact points are excluded; unloading from there has come back to this place",
+                state.factor
+            ))
+        }
+    }
+}
+
+/// Whether a rate asks for the modes that it was computed with.
+fn agrees(tracer: &mut Tracer, rate: &Tangent, modes: &[ContactMode], share: f64) -> bool {
+    let state = tracer.state.clone();
+    let size = motion_size(&tracer.system, rate).max(1e-300);
+    let mut ahead = moved_along(tracer, rate, 1e-3 * share / size);
+    ahead.mode = modes.to_vec();
+    modes_ahead(&mut tracer.system, &state, &ahead) == modes
+}

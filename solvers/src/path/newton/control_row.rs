@@ -1,0 +1,191 @@
+//! The last row of the linear equations of a step: the gradient of its control.
+
+use super::control::Control;
+use super::derivatives::Hessian;
+use super::inelastic::add_plastic_work;
+use super::measure::increment_between;
+use super::monitors::by_motion;
+use super::response::dissipation_gradient;
+use super::state::{State, Tangent};
+use super::system::StepSystem;
+use crate::path::energy::load_size;
+use voussoir_core::path::{Constraint, Increment};
+
+/// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
+pub(super) fn control_row(
+    system: &StepSystem,
+    start: &State,
+    state: &State,
+    control: &Control,
+    constraint: &Constraint,
+    hessian: &Hessian,
+) -> Vec<f64> {
+    let mut row = vec![0.0; system.size()];
+    let mut by_gap = vec![0.0; 2 * state.gap.len()];
+    let by = constraint.derivative;
+    row[system.size() - 1] += by.factor;
+    if by.motion != 0.0 {
+        add_size_of_motion(system, (start, state), by.motion, &mut row, &mut by_gap);
+    }
+    if by.dissipation != 0.0 {
+        add_dissipation(system, (start, state), by.dissipation, &mut row, &mut by_gap);
+    }
+    if by.displacement != 0.0 {
+        add_load_displacement(system, state, by.displacement, &mut row);
+    }
+    for (by, monitor) in by.monitored.iter().zip(&system.monitors).filter(|(by, _)| **by != 0.0) {
+        for &(c, weight) in &monitor.gaps {
+            by_gap[2 * c] += by * weight / system.units().displacement;
+        }
+        if let Some((body, point, direction)) = monitor.point {
+            add_by_motion(system, body, by_motion(system, state, body, point, direction), *by, &mut row);
+        }
+    }
+    if let Control::Gaps { local, .. } = control {
+        by_gap.iter_mut().zip(&local.by_gap).for_each(|(w, local)| *w += local);
+    }
+    add_weighted_gaps(system, &mut row, &by_gap, hessian);
+    if matches!(control, Control::Mixed { .. }) {
+        for (i, value) in load_work_gradient(system, hessian) {
+            if let Some((column, own)) = system.column(i) {
+                row[column] += value * own;
+            }
+        }
+    }
+    row
+}
+
+/// Adds the gradient of the root mean square of motions and gaps.
+fn add_size_of_motion(
+    system: &StepSystem,
+    (start, state): (&State, &State),
+    by: f64,
+    row: &mut [f64],
+    by_gap: &mut [f64],
+) {
+    let (u, points) = (system.units(), state.gap.len());
+    let value = increment_between(system, start, state).motion.max(1e-300);
+    for body in 0..system.unknowns.free.len() {
+        let Some(free) = system.unknowns.free[body] else { continue };
+        for (k, unit) in u.motion().into_iter().enumerate() {
+            let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
+            row[2 * points + 3 * free + k] += by * delta / (value * system.unknowns.bodies as f64);
+        }
+    }
+    for c in 0..points {
+        for k in 0..2 {
+            let delta = (state.gap[c][k] - start.gap[c][k]) / u.displacement;
+            by_gap[2 * c + k] += by * delta / (value * points as f64 * u.displacement);
+        }
+    }
+}
+
+/// Adds the gradient of the dissipated energy.
+fn add_dissipation(
+    system: &StepSystem,
+    (start, state): (&State, &State),
+    by: f64,
+    row: &mut [f64],
+    by_gap: &mut [f64],
+) {
+    let (u, energy) = (system.units(), system.units().energy());
+    let gradient = dissipation_gradient(system, start, state);
+    by_gap.iter_mut().zip(gradient).for_each(|(w, slope)| *w += by * slope / energy);
+    for c in 0..state.gap.len() {
+        let Some(law) = system.law(c) else { continue };
+        let (kept, _) = law.irreversible(state.mode[c], system.step_gap(start, state, c));
+        if kept != [0.0; 2] {
+            for k in 0..2 {
+                row[2 * c + k] -= by * kept[k] * u.force / energy;
+                by_gap[2 * c + k] -= by * state.force[c][k] / energy;
+            }
+        }
+    }
+    add_plastic_work(system, row, state, by / energy);
+}
+
+/// Adds the gradient of the work-conjugate displacement of the growing load.
+fn add_load_displacement(system: &StepSystem, state: &State, by: f64, row: &mut [f64]) {
+    let loading = system.loads.growing;
+    let scale = by / load_size(system.problem, loading).max(1e-300);
+    let mut wrench = vec![[0.0; 3]; system.unknowns.free.len()];
+    for &(body, _, point, force) in &loading.forces {
+        let own = by_motion(system, state, body, point, force);
+        wrench[body].iter_mut().zip(own).for_each(|(w, own)| *w += own);
+    }
+    for (body, b) in system.problem.bodies.iter().enumerate() {
+        wrench[body][0] += b.mass * loading.acceleration.x;
+        wrench[body][1] += b.mass * loading.acceleration.y;
+        add_by_motion(system, body, wrench[body], scale, row);
+    }
+}
+
+/// Adds weights of the motion of a body, in the unit of displacement.
+fn add_by_motion(system: &StepSystem, body: usize, weights: [f64; 3], scale: f64, row: &mut [f64]) {
+    let Some(free) = system.unknowns.free[body] else { return };
+    for (k, weight) in weights.into_iter().enumerate() {
+        let unit = if k == 2 { 1.0 / system.units().length } else { 1.0 };
+        row[2 * system.unknowns.contacts + 3 * free + k] += scale * weight * unit;
+    }
+}
+
+/// Adds weighted gaps to a row over the scaled unknowns.
+pub(super) fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], hessian: &Hessian) {
+    if by_gap.iter().all(|w| *w == 0.0) {
+        return;
+    }
+    let rows = &hessian.rows(&system.unknowns).gaps;
+    for (i, weight) in by_gap.iter().enumerate().filter(|(_, w)| **w != 0.0) {
+        let by = weight * system.units().displacement;
+        rows.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
+    }
+}
+
+/// How far a control is from its aim, and its constraint.
+pub(super) fn control_value(system: &StepSystem, start: &State, state: &State, control: &Control) -> (f64, Constraint) {
+    match control {
+        Control::Factor(target) => {
+            let derivative = Increment { factor: 1.0, ..Increment::default() };
+            ((state.factor - target) / system.units().factor, Constraint { value: 0.0, derivative })
+        }
+        Control::Strategy { strategy, previous, length } => {
+            let c = strategy.constraint(&increment_between(system, start, state), previous.as_ref());
+            (c.value - length, c)
+        }
+        Control::Gaps { local, length } => (local.value(start, state) - length, Constraint::default()),
+        Control::Mixed { weight, length } => {
+            let derivative = Increment { factor: *weight, ..Increment::default() };
+            let value =
+                weight * (state.factor - start.factor) / system.units().factor + work_between(system, start, state);
+            (value - length, Constraint { value, derivative })
+        }
+    }
+}
+
+/// Derivatives of ∂Π/∂λ in units by force and motion, where they are not zero: global index and value.
+fn load_work_gradient<'m>(system: &StepSystem, hessian: &'m Hessian) -> impl Iterator<Item = (usize, f64)> + use<'m> {
+    let unit = system.units().factor / system.units().energy();
+    hessian.factor.iter().enumerate().filter(|(_, v)| **v != 0.0).map(move |(i, value)| (i, unit * value))
+}
+
+/// ∂Π/∂λ of differences of forces and motions, in units: p·Δq + g_p·Δr (small displacements).
+fn load_work(system: &StepSystem, force: impl Fn(usize, usize) -> f64, motion: impl Fn(usize, usize) -> f64) -> f64 {
+    let Some(hessian) = &system.cache.hessian else { return 0.0 };
+    let forces = 2 * system.problem.contacts.len();
+    let by = |i: usize| match i.checked_sub(forces) {
+        None => force(i / 2, i % 2),
+        Some(k) if system.unknowns.free[k / 3].is_some() => motion(k / 3, k % 3),
+        Some(_) => 0.0,
+    };
+    load_work_gradient(system, hessian).map(|(i, value)| value * by(i)).sum()
+}
+
+/// ∂Π/∂λ between two states, in units.
+fn work_between(system: &StepSystem, start: &State, state: &State) -> f64 {
+    load_work(system, |c, k| state.force[c][k] - start.force[c][k], |b, k| state.motion[b][k] - start.motion[b][k])
+}
+
+/// ∂Π/∂λ along a rate, in units.
+pub(super) fn work_along(system: &StepSystem, rate: &Tangent) -> f64 {
+    load_work(system, |c, k| rate.force[c][k], |b, k| rate.motion[b][k])
+}

@@ -1,0 +1,40 @@
+//! First and second derivatives of the potential of [`kinematics`](super::kinematics).
+
+use super::equations::Equations;
+use super::unknowns::Unknowns;
+use std::cell::OnceCell;
+use std::rc::Rc;
+
+/// First derivatives of Π.
+#[derive(Debug, Clone)]
+pub(super) struct Gradient {
+    /// Gaps \[m\].
+    pub gap: Vec<[f64; 2]>,
+    /// Out-of-balance wrench on every body about its pole \[N, N m\].
+    pub balance: Vec<[f64; 3]>,
+    /// Elastic displacement of the points of every body in its frame \[m\].
+    pub deformation: Vec<Vec<f64>>,
+    /// Elastic energy \[J\].
+    pub stored: f64,
+}
+
+/// Second derivatives of Π over (r, q of all bodies): entry (i, j, value), both halves, and the
+/// derivative of the gradient by the factor that grows.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Hessian {
+    pub entries: Vec<(usize, usize, f64)>,
+    pub factor: Vec<f64>,
+    rows: OnceCell<Rc<Equations>>,
+}
+
+impl Hessian {
+    /// Without entries, for so many forces and motions.
+    pub fn zeros(size: usize) -> Self {
+        Hessian { factor: vec![0.0; size], ..Hessian::default() }
+    }
+
+    /// The same as rows in units, made when they are asked for first.
+    pub fn rows(&self, unknowns: &Unknowns) -> &Rc<Equations> {
+        self.rows.get_or_init(|| Rc::new(Equations::new(unknowns, &self.entries, &self.factor)))
+    }
+}

@@ -1,0 +1,129 @@
+//! What follows a step that did not converge: another branch, a shorter step, or the end of the path.
+
+use super::branch_switching::{branch_beyond_fold, yielding_blocks_branch};
+use super::following::{Branch, Following};
+use super::limit_point::{not_followed, rising_branch};
+use super::peak::note_peak;
+use super::state::Tangent;
+use super::system::StepFailure;
+use super::termination::no_step;
+use super::tracer::{LoadStepEnding, Tracer, end_path};
+use super::trial::{StepPlan, first_slip};
+use voussoir_core::limit::Status;
+
+/// Length, relative to the first step, down to which modes guessed at a corner are tried before rates are searched.
+const UNFOLLOWED: f64 = 1e-4;
+
+/// Length, relative to the first step, at which a corner of the path is looked for.
+const CORNER: f64 = 1e-7;
+
+/// Length, relative to the first step, below which there is no step.
+pub(super) const SHORTEST: f64 = 1e-10;
+
+/// What follows.
+pub(super) enum AfterFailure {
+    /// A step of this length.
+    CutBack(f64),
+    /// A corner of the path: another branch.
+    Corner(Branch),
+    /// Nothing.
+    Ended(LoadStepEnding),
+}
+
+/// Decides what follows a step that did not converge.
+pub(super) fn after_failure(
+    tracer: &mut Tracer,
+    following: &mut Following,
+    plan: &StepPlan,
+    failure: &StepFailure,
+) -> AfterFailure {
+    tracer.system.count("cutbacks", 1);
+    let slip = first_slip(tracer, &following.branch.tangent).unwrap_or(f64::INFINITY);
+    let steps = tracer.system.counters.get("steps").copied();
+    let first = following.limits.first;
+    let short = following.length <= CORNER * first;
+    let fresh = following.tried.branch != steps;
+    if short
+        && fresh
+        && let Some(other) = yielding_blocks_branch(tracer, &following.branch.tangent, 1e-5 * first / plan.per_tangent)
+    {
+        following.tried.branch = steps;
+        return blocks_yield(tracer, following, failure, other);
+    }
+    // With finite displacements points that open together turn the path as sharply as slip does.
+    let at_corner = tracer.system.finite() && short;
+    if (slip <= 1e-9 * plan.share.max(first / plan.per_tangent) || at_corner) && fresh {
+        following.tried.branch = steps;
+        if let Some(after) = corner(tracer, following, plan, failure) {
+            return after;
+        }
+    }
+    // Rounding must not leave the length as it is.
+    let (share, length) = (plan.share, following.length);
+    let shorter = if slip > 1e-9 * share && slip < 0.9 * share { slip * plan.per_tangent } else { 0.3 * length };
+    shortened(tracer, following, shorter, failure)
+}
+
+/// A block at its strength softens: the path turns where it begins to yield.
+fn blocks_yield(tracer: &mut Tracer, following: &Following, failure: &StepFailure, other: Tangent) -> AfterFailure {
+    if other.factor * following.direction <= 0.0 {
+        if !tracer.strategy.passes_limit_points() {
+            return AfterFailure::Ended(no_step(tracer, failure, &other, following.direction));
+        }
+        note_peak(tracer, &other);
+    }
+    AfterFailure::Corner(Branch { tangent: other, modes: None })
+}
+
+/// At the very event: another branch, on which the points at their limit yield.
+fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: &StepFailure) -> Option<AfterFailure> {
+    let (tangent, direction) = (&following.branch.tangent, following.direction);
+    let found = match branch_beyond_fold(tracer, tangent, following.limits.first / plan.per_tangent) {
+        Ok(found) => found,
+        Err(why) => {
+            note_peak(tracer, tangent);
+            return Some(AfterFailure::Ended(end_path(tracer, Status::Collapse, why)));
+        }
+    };
+    let (mut tangent, mut modes) = found?;
+    let mut falls = tangent.factor * direction <= 0.0;
+    let state = tracer.state.clone();
+    if falls && let Some(rising) = rising_branch(tracer, &state, direction) {
+        (tangent, modes) = rising;
+        falls = false;
+    }
+    if falls && !tracer.strategy.passes_limit_points() {
+        return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
+    }
+    if falls {
+        note_peak(tracer, &tangent);
+    }
+    Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))
+}
+
+/// A shorter step; where it is too short, or no step follows modes that were guessed at a corner, a rate with
+/// growing λ by a search, or the end.
+fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failure: &StepFailure) -> AfterFailure {
+    let steps = tracer.system.counters.get("steps").copied();
+    let (first, linear, no_peak) = (following.limits.first, following.limits.linear, tracer.limit.peak.is_none());
+    let guessed = linear && following.branch.modes.is_some() && no_peak && length < UNFOLLOWED * first;
+    let unsearched = guessed && following.tried.search != steps;
+    if length >= SHORTEST * first && !unsearched {
+        return AfterFailure::CutBack(length);
+    }
+    following.tried.search = steps;
+    let state = tracer.state.clone();
+    if no_peak && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
+        return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
+    }
+    if unsearched && tracer.limit.doubt.take().is_some() {
+        // Not decided: shorter steps may still find the way.
+        return AfterFailure::CutBack(length);
+    }
+    AfterFailure::Ended(if linear && tracer.limit.doubt.is_none() {
+        let why = not_followed(tracer, &failure.why);
+        end_path(tracer, Status::LimitPoint, why)
+    } else {
+        no_step(tracer, failure, &following.branch.tangent, following.direction)
+    })
+}

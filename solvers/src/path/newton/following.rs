@@ -1,0 +1,145 @@
+//! A load step that is followed by its strategy: predictor, length of the next step, and what has been tried.
+
+use super::control::Control;
+use super::control_row::work_along;
+use super::measure::{increment_along, tangent_size};
+use super::response::update_at_rest;
+use super::state::Tangent;
+use super::tangent::tangent_at;
+use super::tracer::{LoadStepEnding, Tracer, end_path};
+use crate::contact::mode::ContactMode;
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
+
+/// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
+/// scene's size.
+const LARGEST_FINITE_STEP: f64 = 0.002;
+
+/// Length of the first step on another branch, relative to that of the load step.
+const BRANCH: f64 = 0.1;
+
+/// What bounds and shapes the steps of a load step.
+pub(super) struct StepLimits {
+    /// Length of the first step.
+    pub first: f64,
+    /// Greatest motion of a step.
+    pub largest: f64,
+    /// Weight of the factor in a mixed control.
+    pub mixed_weight: f64,
+    /// Whether the path is piecewise linear.
+    pub linear: bool,
+}
+
+/// A branch of the path: its tangent, with the contact modes where they are not those of the state.
+pub(super) struct Branch {
+    pub tangent: Tangent,
+    pub modes: Option<Vec<ContactMode>>,
+}
+
+/// Numbers of steps at which something was tried last.
+#[derive(Default)]
+pub(super) struct Tried {
+    /// Another branch.
+    pub branch: Option<u64>,
+    /// A search for a rate with growing λ.
+    pub search: Option<u64>,
+}
+
+/// A load step that is followed.
+pub(super) struct Following<'d> {
+    pub load_step: &'d LoadStep,
+    pub target: f64,
+    /// Sense of λ.
+    pub direction: f64,
+    pub limits: StepLimits,
+    /// The tangent predictor.
+    pub branch: Branch,
+    /// Growth of the load along the last tangent.
+    pub slope: f64,
+    /// Increment of the last step.
+    pub previous: Option<Increment>,
+    /// Length of the next step.
+    pub length: f64,
+    /// Times that the step has been refined for its energy.
+    pub refinements: u32,
+    pub tried: Tried,
+}
+
+impl<'d> Following<'d> {
+    /// At the beginning of a load step, or how it ends there.
+    pub fn begin(tracer: &mut Tracer, load_step: &'d LoadStep, target: f64) -> Result<Self, LoadStepEnding> {
+        let direction = if target < load_step.start { -1.0 } else { 1.0 };
+        if target == tracer.state.factor {
+            return Err(LoadStepEnding::Reached);
+        }
+        tracer.limit.rose = None;
+        update_at_rest(&mut tracer.system, &mut tracer.state);
+        let Some(first) = tangent_at(&mut tracer.system, &tracer.state, &tracer.state, &Control::Factor(target)) else {
+            let factor = tracer.state.factor;
+            let why = format!("at factor {factor} there is no rate of equilibrium under the growing load");
+            return Err(end_path(tracer, Status::Stalled, why));
+        };
+        // The rate is per unit Λ of the factor.
+        let tangent = first.scaled(direction);
+        let mixed_weight = mixed_weight(tracer);
+        let one = per_tangent(tracer, &tangent, None);
+        if one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent) {
+            let why = "what the continuation strategy controls does not change under this load";
+            return Err(end_path(tracer, Status::Stalled, why.into()));
+        }
+        let units = tracer.system.units();
+        let mut length = tracer.strategy.first_step() * one;
+        if matches!(load_step.end, LoadStepEnd::Factor(_)) {
+            // A load history: never coarser than a sixteenth of it.
+            length = length.min(one * (target - tracer.state.factor).abs() / units.factor / 16.0);
+        }
+        let largest = match tracer.strategy.largest_step() {
+            step if step.is_finite() => step,
+            _ if tracer.system.finite() => LARGEST_FINITE_STEP,
+            step => step,
+        };
+        let limits = StepLimits {
+            first: length,
+            largest: largest * units.length / units.displacement,
+            mixed_weight,
+            linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
+        };
+        Ok(Following {
+            load_step,
+            target,
+            direction,
+            limits,
+            slope: tangent.factor * direction,
+            branch: Branch { tangent, modes: None },
+            previous: None,
+            length,
+            refinements: 0,
+            tried: Tried::default(),
+        })
+    }
+
+    /// Goes on along another branch, with short steps at first.
+    pub fn switch_to(&mut self, branch: Branch) {
+        self.slope = branch.tangent.factor * self.direction;
+        self.branch = branch;
+        self.previous = None;
+        self.length = BRANCH * self.limits.first;
+    }
+}
+
+/// What the strategy measures along a tangent.
+pub(super) fn per_tangent(tracer: &Tracer, tangent: &Tangent, previous: Option<&Increment>) -> f64 {
+    tracer.strategy.constraint(&increment_along(&tracer.system, &tracer.state, tangent), previous).value
+}
+
+/// Weight of the factor in a mixed control: with it every step of associated flow is a
+/// monotone problem. Between weight × λ + ∂Π/∂λ and λ there must be a growing relation even with
+/// all points stuck, where ∂Π/∂λ may fall (a settlement pulls at its reaction).
+pub(super) fn mixed_weight(tracer: &mut Tracer) -> f64 {
+    let mut stuck = tracer.state.clone();
+    stuck.mode.fill(ContactMode::Stick);
+    let factor = stuck.factor;
+    let rate = tangent_at(&mut tracer.system, &tracer.state, &stuck, &Control::Factor(factor));
+    let work = rate.map_or(0.0, |rate| work_along(&tracer.system, &rate) * tracer.system.units().factor / rate.factor);
+    (-2.0 * work).max(work).max(1e-3)
+}

@@ -1,0 +1,108 @@
+//! Rigid motions, frames of contact points and forces in the axes of a body.
+
+use super::blocks::YieldingBlock;
+use super::loads::Loads;
+use nalgebra::Matrix2;
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::path::PathProblem;
+
+/// A contact point on an elastic body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    pub contact: usize,
+    pub sign: f64,
+    pub slot: usize,
+}
+
+/// Where derivatives are taken: contact forces, motions, loads, and the bodies that yield.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub force: &'a [[f64; 2]],
+    pub motion: &'a [[f64; 3]],
+    pub loads: &'a Loads<'a>,
+    pub blocks: &'a [Option<YieldingBlock>],
+}
+
+/// Geometry of a problem as the path solver sees it.
+pub(super) struct Geometry<'a> {
+    pub problem: &'a PathProblem,
+    pub finite: bool,
+    /// Contact points of every body.
+    pub sides: Vec<Vec<Side>>,
+}
+
+fn rotation(angle: f64) -> Matrix2<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    Matrix2::new(cosine, -sine, sine, cosine)
+}
+
+impl<'a> Geometry<'a> {
+    pub fn new(problem: &'a PathProblem, finite: bool) -> Self {
+        let mut sides = vec![Vec::new(); problem.bodies.len()];
+        for (contact, c) in problem.contacts.iter().enumerate() {
+            for (attachment, sign) in [(c.minus, -1.0), (c.plus, 1.0)] {
+                if let Some(slot) = attachment.slot
+                    && problem.bodies[attachment.body].flexibility.is_some()
+                {
+                    sides[attachment.body].push(Side { contact, sign, slot });
+                }
+            }
+        }
+        Geometry { problem, finite, sides }
+    }
+
+    /// Rotation by an angle, none where displacements are small.
+    pub fn turn(&self, angle: f64) -> Matrix2<f64> {
+        if self.finite { rotation(angle) } else { Matrix2::identity() }
+    }
+
+    /// Displacement of a point of a body by its rigid motion.
+    pub fn rigid(&self, body: usize, point: Vec2, motion: &[[f64; 3]]) -> Vec2 {
+        let [x, y, theta] = motion[body];
+        let arm = point - self.problem.bodies[body].pole;
+        let swing = if self.finite { rotation(theta) * arm - arm } else { turned(arm) * theta };
+        Vec2::new(x, y) + swing
+    }
+
+    /// (R⁺ξ⁺, R⁻ξ⁻, x⁺ − x⁻ of the rigid motions, e_n and e_t) of a contact point.
+    pub fn frame(&self, contact: usize, motion: &[[f64; 3]]) -> (Vec2, Vec2, Vec2, [Vec2; 2]) {
+        let c = &self.problem.contacts[contact];
+        let (minus, plus) = (c.minus.body, c.plus.body);
+        let (low, high) = (motion[minus][2], motion[plus][2]);
+        let arm = |body: usize, theta: f64| self.turn(theta) * (c.position - self.problem.bodies[body].pole);
+        let turn = self.turn(low + c.sliding.share * (high - low));
+        let jump = self.rigid(plus, c.position, motion) - self.rigid(minus, c.position, motion);
+        (arm(plus, high), arm(minus, low), jump, [turn * c.normal, turn * c.tangent])
+    }
+
+    /// [n t] r in the undeformed axes, and R(−s φ/2).
+    pub fn carried(&self, side: &Side, force: &[[f64; 2]], motion: &[[f64; 3]]) -> (Vec2, Matrix2<f64>) {
+        let c = &self.problem.contacts[side.contact];
+        let phi = motion[c.plus.body][2] - motion[c.minus.body][2];
+        let [normal, tangent] = force[side.contact];
+        (c.normal * normal + c.tangent * tangent, self.turn(-side.sign * phi / 2.0))
+    }
+
+    /// Forces on the points of a body in its axes \[N\].
+    pub fn body_forces(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Vec<f64> {
+        let points = self.problem.bodies[body].flexibility.as_ref().map_or(0, |c| c.nrows());
+        let mut f = vec![0.0; points];
+        for side in &self.sides[body] {
+            let (r, turn) = self.carried(side, force, motion);
+            let on = turn * r * side.sign;
+            f[2 * side.slot] += on.x;
+            f[2 * side.slot + 1] += on.y;
+        }
+        let back = self.turn(-motion[body][2]);
+        for (factor, loading) in &loads.parts {
+            for (_, slot, _, load) in loading.forces.iter().filter(|l| l.0 == body) {
+                if let Some(slot) = slot {
+                    let on = back * *load * *factor;
+                    f[2 * slot] += on.x;
+                    f[2 * slot + 1] += on.y;
+                }
+            }
+        }
+        f
+    }
+}

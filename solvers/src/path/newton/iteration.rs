@@ -1,0 +1,253 @@
+//! Newton's method on the contact modes of a step.
+
+use super::control::Control;
+use super::control_row::{control_row, control_value};
+use super::derivatives::Gradient;
+use super::inelastic::{block_error, update_blocks};
+use super::line_search::{advanced, of_tractions, searched};
+use super::linearised::{residual_of, solve_linear};
+use super::response::{traction_error, traction_row, update_tractions};
+use super::state::State;
+use super::system::{StepFailure, StepSystem};
+use super::tangent::wanted_modes;
+use crate::contact::mode::ContactMode;
+use crate::optimise::line_search::LineSearch;
+
+/// Contact points that want to change above which, twice running where eight times fewer did before, an
+/// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
+/// come back.
+const ASTRAY: usize = 200;
+
+/// Points that still change, and iterations in which they do not become fewer, with which a step of finite
+/// displacements is given up: few points that cycle do so for ever.
+const FEW: usize = 4;
+
+const WITHOUT_GAIN: u32 = 24;
+/// Iterations of small displacements whose equations have no solution.
+const UNSOLVED: u32 = 10;
+/// Greatest rotation of an iteration with finite displacements.
+const LARGEST_ROTATION: f64 = 0.1;
+/// Relative residual of a step that has converged: some hundred times rounding.
+const SETTLED: f64 = 1e-13;
+/// Relative residual that is taken where a whole iteration does not lower it.
+const STAYS: f64 = 1e-9;
+/// Greatest residual of equilibrium relative to the forces with finite displacements: a tenth of what certificates allow.
+const BALANCED: f64 = 1e-10;
+/// Greatest difference of forces from their laws of tractions: a tenth of what certificates allow.
+const LAW_HOLDS: f64 = 1e-9;
+
+/// Newton's method from a guess: how many times all modes may change at once without that their number falls is its
+/// `patience`. What is found, and after how many iterations.
+pub(super) fn iterate(
+    system: &mut StepSystem,
+    start: &State,
+    guess: State,
+    control: &Control,
+    patience: u32,
+    mut search: Option<LineSearch>,
+) -> Result<(State, u64), StepFailure> {
+    if !system.laws.responses.is_empty() {
+        search = Some(of_tractions());
+    }
+    let (mut state, mut gradient) = first_state(system, start, guess, control)?;
+    system.residuals.clear();
+    let rounding = rounding(system);
+    let mut changes = ModeChanges::new(patience);
+    let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
+    // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
+    let most = match (system.laws.responses.is_empty(), system.finite() && search.is_none()) {
+        (false, _) => 25,
+        (true, true) => 60 + (state.gap.len() as u64).min(200),
+        (true, false) => 30,
+    };
+    for iteration in 0..most {
+        let mut residual = residual_of(system, start, &state, &gradient);
+        let (c, constraint) = control_value(system, start, &state, control);
+        let last = residual.len() - 1;
+        residual[last] = c;
+        let norm = relative_residual(system, &residual, &state).max(block_error(system, &state));
+        system.residuals.push(norm);
+        if !norm.is_finite() {
+            return Err(changes.failure("an iteration left the numbers"));
+        }
+        // Rounding is what a whole step does not lower.
+        let stays = whole && norm > 0.3 * last_norm;
+        let settled = norm <= SETTLED + rounding || (norm <= STAYS + 30.0 * rounding && stays);
+        // Rounding of positions excuses gaps, not equilibrium.
+        let balanced = !system.finite() || unbalanced_share(system, &residual, &state) <= BALANCED;
+        if iteration > 0 && !changes.changed && settled && balanced && traction_error(system, &state) <= LAW_HOLDS {
+            return Ok((state, iteration));
+        }
+        last_norm = norm;
+        let hessian = system.hessian(&state, &gradient);
+        let row = control_row(system, start, &state, control, &constraint, &hessian);
+        let right: Vec<f64> = residual.iter().map(|x| -x).collect();
+        system.count("newton_iterations", 1);
+        let solution = solve_linear(system, &state, &hessian, &row, &right);
+        // Modes without a solution may be on the way to ones that have one: with small
+        // displacements the shifted equations, a soft bedding, show which points close.
+        unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
+        let Some((step, _)) = solution.filter(|_| unsolved <= if system.finite() { 0 } else { UNSOLVED }) else {
+            return Err(changes.failure("the modes of the contact points leave no equilibrium"));
+        };
+        let share = rotation_bound(system, &step);
+        (state, gradient, whole) = match &mut search {
+            Some(search) => searched(system, start, (&state, &gradient), control, (&step[..], share), search)?,
+            None => {
+                let (state, gradient) = advanced(system, start, &state, &step, share)?;
+                (state, gradient, true)
+            }
+        };
+        let (wanted, holds) = wanted_modes(system, start, &state);
+        changes.update(&state, wanted, holds);
+        if search.is_none() && changes.hopeless(system.finite()) {
+            return Err(changes.failure("the modes of contact points keep changing"));
+        }
+        changes.take(&mut state);
+    }
+    Err(changes.failure("the modes of contact points keep changing"))
+}
+
+/// The guess as a state of the step, with what the loads, blocks and laws say there.
+fn first_state(
+    system: &mut StepSystem,
+    start: &State,
+    guess: State,
+    control: &Control,
+) -> Result<(State, Gradient), StepFailure> {
+    let mut state = guess;
+    state.factor = if let Control::Factor(target) = control { *target } else { state.factor };
+    system.settle(&mut state.motion, state.factor);
+    update_blocks(system, &mut state)?;
+    let gradient = system.gradient(&state);
+    state.gap = gradient.gap.clone();
+    update_tractions(system, start, &mut state).map_err(StepFailure::new)?;
+    Ok((state, gradient))
+}
+
+/// Residual that is rounding. Small displacements round by their own size, which the residual is relative to; a law of
+/// tractions from gaps must hold to that.
+fn rounding(system: &StepSystem) -> f64 {
+    match (system.finite(), system.laws.responses.is_empty()) {
+        (true, _) => 400.0 * f64::EPSILON * system.units().length / system.units().displacement,
+        (false, true) => 0.0,
+        (false, false) => 400.0 * f64::EPSILON,
+    }
+}
+
+/// Share of an iteration with finite displacements whose rotations stay where the linearisation means something.
+fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
+    if !system.finite() {
+        return 1.0;
+    }
+    let points = system.unknowns.contacts;
+    let turn = (0..system.unknowns.bodies)
+        .map(|b| (step[2 * points + 3 * b + 2] * system.units().displacement / system.units().length).abs())
+        .fold(0.0, f64::max);
+    (LARGEST_ROTATION / turn.max(1e-300)).min(1.0)
+}
+
+/// How the contact modes change from iteration to iteration: block principal pivoting with its fallback.
+struct ModeChanges {
+    patience: u32,
+    changed: bool,
+    /// Points that want to change, and what they and all others want.
+    differ: Vec<usize>,
+    wanted: Vec<ContactMode>,
+    /// Points that wanted to change in the iteration before.
+    cycling: Vec<usize>,
+    /// Fewest that wanted to, and iterations since.
+    least: usize,
+    without_gain: u32,
+    /// Fewest with which all changed at once, and how often they may without becoming fewer.
+    fewest: usize,
+    budget: u32,
+    /// Iterations in a row with far more changes than before.
+    astray: u32,
+}
+
+impl ModeChanges {
+    fn new(patience: u32) -> Self {
+        let (differ, wanted, cycling) = (Vec::new(), Vec::new(), Vec::new());
+        let (least, fewest) = (usize::MAX, usize::MAX);
+        let (without_gain, budget, astray) = (0, patience, 0);
+        ModeChanges { patience, changed: true, differ, wanted, cycling, least, without_gain, fewest, budget, astray }
+    }
+
+    fn failure(self, why: &str) -> StepFailure {
+        StepFailure { why: why.into(), cycling: self.cycling }
+    }
+
+    /// Takes note of the modes that a state asks for, and of whether the laws hold in its own.
+    fn update(&mut self, state: &State, wanted: Vec<ContactMode>, holds: bool) {
+        self.differ = (0..wanted.len()).filter(|c| wanted[*c] != state.mode[*c]).collect();
+        self.wanted = wanted;
+        let count = self.differ.len();
+        self.changed = count > 0 || !holds;
+        self.astray = if count > ASTRAY && count / 8 > self.fewest { self.astray + 1 } else { 0 };
+        self.without_gain = if count < self.least { 0 } else { self.without_gain + 1 };
+        self.least = self.least.min(count);
+    }
+
+    /// Whether the iteration has left the neighbourhood of a solution, or (finite displacements) few points cycle.
+    fn hopeless(&mut self, finite: bool) -> bool {
+        let cycles = finite && self.changed && self.least <= FEW && self.without_gain >= WITHOUT_GAIN;
+        let hopeless = self.astray > 1 || cycles;
+        if hopeless {
+            self.cycling = std::mem::take(&mut self.differ);
+        }
+        hopeless
+    }
+
+    /// Changes all modes, or one of them.
+    fn take(&mut self, state: &mut State) {
+        let count = self.differ.len();
+        if count < self.fewest && (self.patience > 0 || count <= 1) {
+            (self.fewest, self.budget) = (count, self.patience);
+            state.mode = std::mem::take(&mut self.wanted);
+        } else if self.budget > 0 {
+            self.budget -= 1;
+            state.mode = std::mem::take(&mut self.wanted);
+        } else if let Some(&c) = self.differ.last() {
+            state.mode[c] = self.wanted[c];
+        }
+        self.cycling = std::mem::take(&mut self.differ);
+    }
+}
+
+/// Greatest relative residual: balance and yielding against forces, gaps against motions.
+pub(super) fn relative_residual(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
+    let u = system.units();
+    let points = state.gap.len();
+    let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
+    let whole = largest_unknown(system, state);
+    let by_row = |(i, x): (usize, &f64)| {
+        let of_forces = if i < 2 * points && system.laws.responses.is(i / 2) {
+            traction_row(system, state, i / 2).0[i % 2] > 0.5
+        } else if i < 2 * points {
+            match state.mode[i / 2] {
+                ContactMode::Stick => false,
+                ContactMode::Facet(_) => i % 2 == 0,
+                ContactMode::Corner(..) | ContactMode::Open => true,
+            }
+        } else {
+            i + 1 < residual.len()
+        };
+        x.abs() / if of_forces { force } else { whole }
+    };
+    residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
+}
+
+/// Greatest residual of equilibrium, relative to the greatest force.
+fn unbalanced_share(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
+    let force = state.force.iter().flatten().map(|r| (r / system.units().force).abs()).fold(0.0, f64::max);
+    let rows = &residual[2 * state.gap.len()..residual.len() - 1];
+    rows.iter().map(|x| x.abs()).fold(0.0, f64::max) / force.max(1e-6)
+}
+
+fn largest_unknown(system: &StepSystem, state: &State) -> f64 {
+    let u = system.units();
+    let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
+    let motion = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * u.length));
+    force.max(motion.map(|m| m / u.displacement).fold(0.0, f64::max))
+}

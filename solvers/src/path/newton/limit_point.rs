@@ -1,0 +1,60 @@
+//! Whether a limit point is one: no rate with a growing factor leaves it.
+
+use super::rising::{Rising, limit_point_test};
+use super::state::{State, Tangent};
+use super::tracer::Tracer;
+use crate::contact::mode::ContactMode;
+
+/// Branches with growing λ that are taken at one factor.
+const MOST_BRANCHES: u32 = 3;
+
+/// Looks, with small displacements, for a rate with growing λ where there should be none. Where that
+/// is not decided, or not gone on with, the limit point is not proven. Where blocks flow, combinations
+/// of modes say nothing of their Gauss points: there the path itself shows its limit point.
+pub(super) fn test_limit_point(
+    tracer: &mut Tracer,
+    state: &State,
+    direction: f64,
+) -> Option<(Tangent, Vec<ContactMode>)> {
+    if tracer.system.finite() || !tracer.system.laws.responses.is_empty() || state.yields() {
+        return None;
+    }
+    match limit_point_test(&mut tracer.system, state, direction) {
+        Rising::None => {
+            tracer.limit.doubt = None;
+            tracer.limit.proven = Some(state.factor);
+        }
+        Rising::Unknown(why) => tracer.limit.doubt = Some(why),
+        Rising::Tangent(rate, modes) => {
+            tracer.limit.doubt = Some("there is a rate on which the load grows".into());
+            return Some((rate, modes));
+        }
+    }
+    None
+}
+
+/// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise
+/// the limit point is proven, or in doubt.
+pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) -> Option<(Tangent, Vec<ContactMode>)> {
+    let other = test_limit_point(tracer, state, direction)?;
+    let same = |factor: f64| (state.factor - factor) * direction <= 1e-10 * factor.abs();
+    let times = match tracer.limit.rose {
+        Some((factor, times)) if same(factor) => times + 1,
+        _ => 1,
+    };
+    if times > MOST_BRANCHES {
+        return None;
+    }
+    tracer.limit.rose = Some((state.factor, times));
+    tracer.limit.doubt = None;
+    tracer.system.count("branches", 1);
+    Some(other)
+}
+
+/// Why the path ends at a proven limit point, or beyond it.
+pub(super) fn not_followed(tracer: &Tracer, why: &str) -> String {
+    match &tracer.limit.peak {
+        None => format!("the path was not followed beyond it: {why}"),
+        Some(_) => format!("beyond it the path was followed to factor {} only: {why}", tracer.state.factor),
+    }
+}

@@ -1,0 +1,168 @@
+//! The linear system of a step: residual by modes, rows of constraints, the matrix and its solution.
+//!
+//! Rows by mode:
+//!
+//! ```text
+//! stuck     g − s = 0                     facet   a·r = b A,  Δg × d = 0
+//! corner    r = corner A                  body    ∂Π/∂q = 0          control  c(increment) = length
+//! response  r − A t(g) = 0 (see `response`)
+//! ```
+//!
+//! The matrix that is factorised is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄
+//! in every body and in every yielding contact. That makes it quasi-definite (Vanderbei 1995, SIAM J.
+//! Optim. 5) where modes repeat a condition or leave a motion free; iterative refinement against
+//! the true matrix removes the shift from the answer. Where refinement does not converge, the
+//! modes have no solution, and the step is refused. How it is factorised: see `border` and
+//! [`condensed`](crate::linear::condensed).
+
+use super::derivatives::{Gradient, Hessian};
+use super::factors::Kept;
+use super::response::{traction_residual, traction_row};
+use super::state::State;
+use super::system::StepSystem;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::csr::CsrMatrix;
+use std::rc::Rc;
+
+/// Backward error of every row that is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Residual of the modes' equations in units.
+pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gradient: &Gradient) -> Vec<f64> {
+    let u = system.units();
+    let points = state.gap.len();
+    let mut out = vec![0.0; system.size()];
+    for c in 0..points {
+        if system.laws.responses.is(c) {
+            out[2 * c..2 * c + 2].copy_from_slice(&traction_residual(system, state, c));
+            continue;
+        }
+        let gap = system.step_gap(start, state, c).map(|g| g / u.displacement);
+        let area = system.problem.contacts[c].area;
+        let r = state.force[c];
+        let rows = match (state.mode[c], system.law(c)) {
+            (ContactMode::Facet(i), Some(law)) => {
+                let f = &law.facets[i as usize];
+                let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
+                [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
+            }
+            (mode @ (ContactMode::Corner(..) | ContactMode::Open), Some(law)) => {
+                let corner = law.corner(mode).unwrap_or_default();
+                [(r[0] - corner[0] * area) / u.force, (r[1] - corner[1] * area) / u.force]
+            }
+            _ => gap,
+        };
+        out[2 * c] = rows[0];
+        out[2 * c + 1] = rows[1];
+    }
+    for (body, balance) in gradient.balance.iter().enumerate() {
+        if let Some(free) = system.unknowns.free[body] {
+            for k in 0..3 {
+                let unit = if k == 2 { u.force * u.length } else { u.force };
+                out[2 * points + 3 * free + k] = balance[k] / unit;
+            }
+        }
+    }
+    out
+}
+
+fn is_constant(system: &StepSystem, hessian: &Hessian) -> bool {
+    system.cache.hessian.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, hessian))
+}
+
+/// The modes' linear equations, factorised: where nothing else than modes makes them, those of
+/// the same modes are taken again.
+fn factorise(
+    system: &mut StepSystem,
+    state: &State,
+    hessian: &Hessian,
+    row: &[f64],
+) -> Option<(Rc<BorderedFactors>, bool)> {
+    let again = system.laws.responses.is_empty() && is_constant(system, hessian);
+    let directions: Vec<[f64; 4]> = system
+        .laws
+        .polygons
+        .iter()
+        .flat_map(|law| law.facets.iter().map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]))
+        .collect();
+    if let Some(kept) = system.cache.factors.last.as_ref().filter(|_| again)
+        && kept.modes == state.mode
+        && kept.directions == directions
+        && kept.held.serves(row)
+    {
+        return Some((kept.held.clone(), true));
+    }
+    let equations = hessian.rows(&system.unknowns);
+    let capacity = hessian.entries.len();
+    let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(capacity));
+    for (c, mode) in state.mode.iter().enumerate() {
+        let answer = system.laws.responses.is(c).then(|| traction_row(system, state, c));
+        for k in 0..2 {
+            let (equation, shift) = (rows.open_row(), shifts.open_row());
+            match &answer {
+                Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
+                None => equations.point(system.law(c), (c, k), *mode, false, equation, shift),
+            }
+            rows.end_row();
+            shifts.end_row();
+        }
+    }
+    equations.bodies(&mut rows, &mut shifts);
+    system.count("factorisations", 1);
+    let held = BorderedFactors::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.analysis)?;
+    let held = Rc::new(held);
+    system.cache.factors.last = again.then(|| Kept { modes: state.mode.clone(), directions, held: held.clone() });
+    Some((held, false))
+}
+
+/// Solves the modes' linear equations for one right-hand side in units, and whether it is solved:
+/// where the equations contradict each other, what comes back is the answer of the shifted ones.
+pub(super) fn solve_linear(
+    system: &mut StepSystem,
+    state: &State,
+    hessian: &Hessian,
+    row: &[f64],
+    right: &[f64],
+) -> Option<(Vec<f64>, bool)> {
+    let (held, again) = factorise(system, state, hessian, row)?;
+    let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
+    if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
+        return found;
+    }
+    // Another unknown held may serve this control better.
+    system.cache.factors.last = None;
+    let (held, _) = factorise(system, state, hessian, row)?;
+    refined(&BorderedSystem::new(held, row)?, right)
+}
+
+/// The solution of the equations without what was added, by refinement, and whether there is one.
+fn refined(bordered: &BorderedSystem, right: &[f64]) -> Option<(Vec<f64>, bool)> {
+    let mut x = vec![0.0; right.len()];
+    let mut rest = right.to_vec();
+    let mut before = f64::INFINITY;
+    let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let aim = norm(right);
+    if aim == 0.0 {
+        return Some((x, true));
+    }
+    let mut best = x.clone();
+    for _ in 0..30 {
+        let step = bordered.apply(&rest)?;
+        x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+        let (left, error) = bordered.left(right, &x);
+        rest = left;
+        let now = norm(&rest);
+        if now < before {
+            best.copy_from_slice(&x);
+        }
+        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim || error <= ROUNDING {
+            before = before.min(now);
+            break;
+        }
+        before = now;
+    }
+    // What is left over is rounding of the solution's own size, or the system has no solution.
+    let size = norm(&best).max(aim);
+    Some((best, before <= 1e-9 * size))
+}

@@ -1,0 +1,154 @@
+//! The load steps one after the other, converged states taken over, and the answer.
+
+use super::follow::follow;
+use super::load_to_factor::load_to_factor;
+use super::loads::StagedLoads;
+use super::monitors::resolve;
+use super::recorded::{recorded, work_state};
+use super::system::StepSystem;
+use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
+use crate::path::energy::EnergyBalance;
+use crate::path::outcome::{Outcome, PathRecord, stalled};
+use std::sync::Arc;
+use voussoir_core::certificate::flow_residual;
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Continuation, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings};
+
+/// Follows all load steps.
+pub(super) fn trace(
+    problem: &PathProblem,
+    settings: &PathSettings,
+    strategy: Arc<dyn Continuation>,
+    observer: &mut dyn PathObserver,
+) -> PathAnswer {
+    let monitors = resolve(problem, &strategy.monitors());
+    let built = monitors.and_then(|monitors| Ok((StepSystem::new(problem, settings.finite)?, monitors)));
+    let (mut system, monitors) = match built {
+        Ok(built) => built,
+        Err(why) => return stalled(problem, why),
+    };
+    system.monitors = monitors;
+    let state = system.undeformed();
+    let gradient = system.gradient(&state);
+    let energy = EnergyBalance::default();
+    let seen = recorded(&energy, &system, 0, &state, &gradient);
+    let work = work_state(&system, &state, &gradient);
+    let mut tracer = Tracer {
+        system,
+        settings,
+        strategy,
+        observer,
+        load_step: 0,
+        state,
+        record: Record { energy, work, state: seen, events: Vec::new(), notes: Vec::new() },
+        ending: Ending { status: Status::Stalled, motion: None, ray: None },
+        limit: LimitPoint::default(),
+        post_peak: PostPeak::default(),
+    };
+    run(&mut tracer, problem);
+    answer(tracer)
+}
+
+/// Follows the load steps one after the other.
+fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
+    let mut earlier = Vec::new();
+    for (index, load_step) in problem.load_steps.iter().enumerate() {
+        tracer.load_step = index;
+        tracer.state.factor = load_step.start;
+        tracer.system.load(StagedLoads {
+            earlier: earlier.clone(),
+            growing: &load_step.loading,
+            start: load_step.start,
+        });
+        let gradient = tracer.system.gradient(&tracer.state);
+        tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
+        let mut outcome = match load_step.end {
+            LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
+            LoadStepEnd::Collapse(most) => follow(tracer, load_step, most),
+        };
+        // Behind a peak a structure with finite displacements comes back to the load as another one:
+        // it has snapped through.
+        if tracer.system.finite() && tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
+            tracer.ending.status = Status::Collapse;
+            outcome = LoadStepEnding::Ended;
+        }
+        match outcome {
+            LoadStepEnding::Reached => earlier.push((tracer.state.factor - load_step.start, &load_step.loading)),
+            LoadStepEnding::Ended => {
+                if load_step.gravity && matches!(tracer.ending.status, Status::Collapse | Status::LimitPoint) {
+                    tracer.record.notes.push(format!(
+                        "the change of gravity is carried up to {:.9} of its value only",
+                        tracer.limit.peak.as_ref().map_or(tracer.state.factor, |p| p.factor)
+                    ));
+                    tracer.ending.status = Status::NoEquilibrium;
+                }
+                return;
+            }
+        }
+    }
+    tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
+}
+
+/// The answer of a trace that has ended.
+fn answer(mut tracer: Tracer) -> PathAnswer {
+    if let (Status::LimitPoint, Some(why)) = (tracer.ending.status, tracer.limit.doubt.take()) {
+        tracer.limit.peak = None;
+        end_path(&mut tracer, Status::Stalled, format!("the limit point on the path is not proven: {why}"));
+    }
+    if let (Status::LimitPoint, Some(factor)) = (tracer.ending.status, tracer.limit.proven) {
+        tracer.record.notes.push(format!(
+            "at factor {factor} no rate of solution has a factor that grows: all modes of the active contact points are excluded"
+        ));
+    }
+    let mut counters = tracer.system.counters.clone();
+    for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
+        counters.entry(name.into()).or_default();
+    }
+    let mut notes = tracer.record.notes;
+    let r = &tracer.record.state;
+    let (balance, size) = (r.work - r.stored - r.dissipated, r.work.abs() + r.stored.abs() + r.dissipated.abs());
+    if size > 1e-12 * tracer.system.units().force * tracer.system.units().displacement {
+        notes.push(format!(
+            "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
+            balance / size
+        ));
+    }
+    if tracer.ending.status != Status::NoEquilibrium
+        && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.post_peak.trough)
+    {
+        notes.push(format!(
+            "after the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
+            trough.factor,
+            trough.state.displacement - peak.state.displacement
+        ));
+    }
+    let (state, last, factor, motion) = match tracer.limit.peak {
+        Some(peak) => {
+            // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
+            let problem = tracer.system.problem;
+            let softens = !tracer.system.laws.responses.is_empty();
+            // The mechanism of the last state may not be one at the peak.
+            let fits = |motion: &Vec<[f64; 3]>| {
+                softens || tracer.system.finite() || flow_residual(problem, &peak.state.force, motion) <= 1e-6
+            };
+            let of_peak = peak.motion.filter(|_| tracer.system.finite() || !softens).filter(fits);
+            let of_end = tracer.ending.motion.filter(fits);
+            let motion = if softens { of_end.or(of_peak) } else { of_peak.or(of_end) };
+            (peak.state, Some(tracer.record.state), Some(peak.factor), motion)
+        }
+        None => {
+            let factor = matches!(
+                tracer.ending.status,
+                Status::Collapse | Status::LimitPoint | Status::Stands | Status::NoEquilibrium
+            )
+            .then_some(tracer.state.factor);
+            (tracer.record.state, None, factor, tracer.ending.motion)
+        }
+    };
+    let record = PathRecord { load_step: tracer.load_step, state, last, events: tracer.record.events, counters, notes };
+    Outcome::at(tracer.ending.status, factor).moving(motion).carried_by(tracer.ending.ray).answer(
+        tracer.system.problem,
+        tracer.system.finite(),
+        record,
+    )
+}

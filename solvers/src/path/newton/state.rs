@@ -1,0 +1,65 @@
+//! A state of a step, what it remembers, and its rate along the path.
+
+use super::blocks::YieldingBlock;
+use super::geometry::Place;
+use super::loads::Loads;
+use super::tractions::TractionUpdates;
+use crate::contact::mode::ContactMode;
+
+/// A state with its history.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub force: Vec<[f64; 2]>,
+    pub motion: Vec<[f64; 3]>,
+    pub factor: f64,
+    pub gap: Vec<[f64; 2]>,
+    pub mode: Vec<ContactMode>,
+    /// s: irreversible gap.
+    pub slip: Vec<[f64; 2]>,
+    /// What laws of tractions from gaps say, with their history.
+    pub updates: TractionUpdates,
+    /// Bodies whose material yields, by body.
+    pub blocks: Vec<Option<YieldingBlock>>,
+}
+
+impl State {
+    /// Where derivatives at it are taken.
+    pub fn place<'a>(&'a self, loads: &'a Loads<'a>) -> Place<'a> {
+        Place { force: &self.force, motion: &self.motion, loads, blocks: &self.blocks }
+    }
+
+    /// Whether a block yields in the step that ends here.
+    pub fn yields(&self) -> bool {
+        self.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
+    }
+}
+
+/// Tangent of a state per unit of its control.
+#[derive(Debug, Clone)]
+pub(super) struct Tangent {
+    pub force: Vec<[f64; 2]>,
+    pub motion: Vec<[f64; 3]>,
+    pub factor: f64,
+    pub gap: Vec<[f64; 2]>,
+}
+
+impl Tangent {
+    pub fn scaled(&self, by: f64) -> Tangent {
+        Tangent {
+            force: self.force.iter().map(|r| r.map(|x| x * by)).collect(),
+            motion: self.motion.iter().map(|q| q.map(|x| x * by)).collect(),
+            factor: self.factor * by,
+            gap: self.gap.iter().map(|g| g.map(|x| x * by)).collect(),
+        }
+    }
+}
+
+/// A state reached from nothing, all of it times a share.
+pub(super) fn in_proportion(state: &State, share: f64) -> State {
+    let mut state = state.clone();
+    state.force.iter_mut().flatten().for_each(|r| *r *= share);
+    state.motion.iter_mut().flatten().for_each(|q| *q *= share);
+    state.gap.iter_mut().flatten().for_each(|g| *g *= share);
+    state.factor *= share;
+    state
+}

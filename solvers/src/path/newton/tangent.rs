@@ -1,0 +1,124 @@
+//! Rates of converged states with their contact modes held, and the modes that a state asks for.
+
+use super::control::Control;
+use super::control_row::{add_weighted_gaps, control_row, control_value};
+use super::derivatives::Hessian;
+use super::linearised::solve_linear;
+use super::state::{State, Tangent};
+use super::system::StepSystem;
+use crate::contact::mode::ContactMode;
+
+pub(super) fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
+    add_step(system, &mut state.force, &mut state.motion, step, share);
+    state.factor += share * step[step.len() - 1] * system.units().factor;
+    system.settle(&mut state.motion, state.factor);
+}
+
+/// Adds a share of a solution of the linear equations to forces and motions of the free bodies.
+fn add_step(system: &StepSystem, force: &mut [[f64; 2]], motion: &mut [[f64; 3]], step: &[f64], share: f64) {
+    let u = system.units();
+    let points = force.len();
+    for (c, force) in force.iter_mut().enumerate() {
+        (0..2).for_each(|k| force[k] += share * step[2 * c + k] * u.force);
+    }
+    for (body, motion) in motion.iter_mut().enumerate() {
+        let Some(free) = system.unknowns.free[body] else { continue };
+        for (k, motion) in motion.iter_mut().enumerate() {
+            let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
+            *motion += share * step[2 * points + 3 * free + k] * unit;
+        }
+    }
+}
+
+/// Modes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
+/// associated the nearest mode need not be the return.
+pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (Vec<ContactMode>, bool) {
+    system.count("law_evaluations", state.gap.len() as u64);
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
+    let gaps = state.gap.iter().flatten().map(|g| g.abs());
+    let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * system.units().length));
+    // Gaps are differences of motions: beyond rounding of those a gap means nothing.
+    let rounding = 8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max);
+    let mut holds = true;
+    let modes = (0..state.gap.len())
+        .map(|c| match system.law(c) {
+            None => ContactMode::Stick,
+            Some(law) => {
+                let rho = system.stiffness(c);
+                let gap = system.step_gap(start, state, c);
+                let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
+                // A certificate allows 1e-8 of the greatest force.
+                let tolerance = (rounding * rho[0].max(rho[1])).clamp(1e-11 * largest, 3e-9 * largest);
+                let area = system.problem.contacts[c].area;
+                let mode = law.mode(state.mode[c], z, rho, area, tolerance);
+                holds &= mode != state.mode[c] || law.violation(mode, z, rho, area) <= tolerance;
+                mode
+            }
+        })
+        .collect();
+    (modes, holds)
+}
+
+/// Modes that a small share of a rate asks for, from a converged state.
+pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State) -> Vec<ContactMode> {
+    let mut ahead = ahead.clone();
+    ahead.gap = system.gradient(&ahead).gap;
+    wanted_modes(system, state, &ahead).0
+}
+
+/// Tangent of a converged state with its modes held, per unit of the control's gradient.
+pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
+    let gradient = system.gradient(state);
+    let hessian = system.hessian(state, &gradient);
+    let (_, constraint) = control_value(system, start, state, control);
+    let row = control_row(system, start, state, control, &constraint, &hessian);
+    tangent_of_modes(system, state, &hessian, &row)
+}
+
+/// Tangent with other modes than the state's, per unit of the sum of the multipliers of the points
+/// that change: the branch on which they yield. `None` where there is none.
+pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes: &[ContactMode]) -> Option<Tangent> {
+    let gradient = system.gradient(state);
+    let hessian = system.hessian(state, &gradient);
+    let mut by_gap = vec![0.0; 2 * state.gap.len()];
+    for c in (0..state.gap.len()).filter(|c| modes[*c] != state.mode[*c]) {
+        let flow = match (modes[c], system.law(c)) {
+            (ContactMode::Facet(i), Some(law)) => law.facets[i as usize].flow,
+            _ => [-1.0, 0.0],
+        };
+        (0..2).for_each(|k| by_gap[2 * c + k] = -flow[k] / system.units().displacement);
+    }
+    let mut row = vec![0.0; system.size()];
+    add_weighted_gaps(system, &mut row, &by_gap, &hessian);
+    let mut other = state.clone();
+    other.mode = modes.to_vec();
+    tangent_of_modes(system, &other, &hessian, &row)
+}
+
+/// Tangent of a state with its modes held, per unit of `row`.
+fn tangent_of_modes(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f64]) -> Option<Tangent> {
+    let mut right = vec![0.0; system.size()];
+    right[system.size() - 1] = 1.0;
+    let (x, _) = solve_linear(system, state, hessian, row, &right).filter(|(_, solved)| *solved)?;
+    Some(tangent_from(system, &x, state, hessian))
+}
+
+/// Forces, motions and the factor of a solution of the linear equations, without the gaps.
+pub(super) fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
+    let points = system.problem.contacts.len();
+    let (mut force, mut motion) = (vec![[0.0; 2]; points], vec![[0.0; 3]; system.unknowns.free.len()]);
+    add_step(system, &mut force, &mut motion, x, 1.0);
+    let factor = x[x.len() - 1] * system.units().factor;
+    for (body, settlement) in &system.loads.growing.settlements {
+        (0..3).for_each(|k| motion[*body][k] += factor * settlement[k]);
+    }
+    Tangent { force, motion, factor, gap: Vec::new() }
+}
+
+/// The rate of a solution of the linear equations.
+pub(super) fn tangent_from(system: &StepSystem, x: &[f64], state: &State, hessian: &Hessian) -> Tangent {
+    let rows = &hessian.rows(&system.unknowns).gaps;
+    let along = |i: usize| rows.row_dot(i, x) * system.units().displacement;
+    let gap = (0..state.gap.len()).map(|c| [along(2 * c), along(2 * c + 1)]).collect();
+    Tangent { gap, ..tangent_without_gaps(system, x) }
+}

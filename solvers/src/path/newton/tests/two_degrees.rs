@@ -1,0 +1,193 @@
+//! One contact point with friction, held by two springs.
+
+use super::{Kept, settings};
+use crate::path::continuation::arc_length::ArcLength;
+use crate::path::continuation::dissipation::Dissipation;
+use crate::path::continuation::exact_events::ExactEvents;
+use crate::path::continuation::load_control::LoadControl;
+use crate::path::newton::NewtonPath;
+use nalgebra::DMatrix;
+use std::sync::Arc;
+use voussoir_core::law::Facet;
+use voussoir_core::limit::{Counters, Status};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::path::{
+    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver, PointLaw,
+    Sliding, Unobserved,
+};
+
+/// One contact point on the ground, held by springs K over (t, n): the two-degree-of-freedom example.
+fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, LoadStepEnd)>) -> PathProblem {
+    let [[a, b], [_, d]] = stiffness;
+    let det = a * d - b * b;
+    let inverse = [[d / det, -b / det], [-b / det, a / det]];
+    // x is t reversed: n = y, t = −x. Forces and displacements below are given in (t, n).
+    let entry = |i: usize, j: usize| inverse[i % 2][j % 2] * if (i + j) % 2 == 1 { -1.0 } else { 1.0 };
+    let points = vec![Vec2::zeros(), Vec2::zeros()];
+    let block = PathBody {
+        members: vec![0],
+        pole: Vec2::zeros(),
+        held: true,
+        mass: 0.0,
+        points,
+        flexibility: Some(Arc::new(DMatrix::from_fn(4, 4, entry))),
+        inelastic: None,
+    };
+    let mut ground = block.clone();
+    ground.points.clear();
+    ground.flexibility = None;
+    let [left, right] = Facet::friction(friction, 0.0, 0.0);
+    let contact = Contact {
+        joint: 0,
+        position: Vec2::zeros(),
+        normal: Vec2::new(0.0, 1.0),
+        tangent: Vec2::new(-1.0, 0.0),
+        minus: Attachment { body: 1, slot: None },
+        plus: Attachment { body: 0, slot: Some(0) },
+        area: 1.0,
+        gap: 0.0,
+        law: PointLaw::Facets(vec![Facet::opening(0.0), left, right].into()),
+        compliance: [0.0; 2],
+        sliding: Sliding::middle(0.0),
+    };
+    PathProblem {
+        bodies: vec![block, ground],
+        body_of: vec![0, 1],
+        contacts: vec![contact],
+        load_steps: load_steps
+            .into_iter()
+            .map(|(f, end)| LoadStep {
+                stage: 0,
+                gravity: false,
+                loading: Loading {
+                    forces: vec![(0, Some(1), Vec2::zeros(), Vec2::new(-f.x, f.y))],
+                    ..Loading::default()
+                },
+                start: 0.0,
+                end,
+            })
+            .collect(),
+        length: 1.0,
+        counters: Counters::new(),
+    }
+}
+
+const K: [[f64; 2]; 2] = [[1.0, -1.0], [-1.0, 2.0]];
+
+fn turning() -> PathProblem {
+    two_degrees(
+        K,
+        1.25,
+        vec![
+            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
+            (Vec2::new(1.0, 0.0), LoadStepEnd::Collapse(f64::INFINITY)),
+        ],
+    )
+}
+
+/// Stick to λ = 1.25, slip back to λ = 1 along λ = 1.25 − u_t/4, then open without bound.
+#[test]
+fn a_path_that_turns_back() {
+    let mut states = Kept(Vec::new());
+    let mut how = settings(Some(Arc::new(ArcLength::default())));
+    how.stop_factor = Some(0.0);
+    let answer = NewtonPath {}.trace(&turning(), &how, &mut states);
+    assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+    assert!((answer.factor.unwrap() - 1.25).abs() < 1e-9, "{:?}", answer.factor);
+    let (mut slid, mut open) = (0, 0);
+    for state in states.0.iter().filter(|s| s.load_step == 1) {
+        let [normal, tangent] = state.gap[0];
+        if normal > 1e-9 {
+            open += 1;
+            assert!(
+                (tangent - (2.0 * state.factor - 1.0)).abs() < 1e-9 && (normal - (state.factor - 1.0)).abs() < 1e-9
+            );
+        } else if tangent > 1e-9 {
+            slid += 1;
+            assert!((state.factor - (1.25 - 0.25 * tangent)).abs() < 1e-9);
+        } else {
+            assert!(state.factor < 1.25 + 1e-9);
+        }
+    }
+    assert!(slid > 2 && open > 0, "{slid} {open} {:?}", answer.notes);
+}
+
+#[test]
+fn load_control_stops_at_the_limit_point() {
+    let answer = NewtonPath {}.trace(&turning(), &settings(Some(Arc::new(LoadControl::default()))), &mut Unobserved);
+    assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+    assert!((answer.factor.unwrap() - 1.25).abs() < 1e-6, "{:?} {:?}", answer.factor, answer.notes);
+    assert!(answer.counters["cutbacks"] > 0);
+}
+
+/// Total loads f = (1.2, −1), applied together. μ = 0.5, 0.9: separation, u = K⁻¹ f = (1.4, 0.2), the only
+/// solution. μ = 1.25, 1.5, 2: sticking, where |f_t| ≤ μ |f_n|; the other solutions of the
+/// benchmark (slip, separation) are not sought by a path that starts stuck.
+#[test]
+fn one_solution_of_the_two_degree_example() {
+    for (friction, tangential, normal) in
+        [(0.5, 1.4, 0.2), (0.9, 1.4, 0.2), (1.25, 0.0, 0.0), (1.5, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    {
+        let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
+        let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
+        assert_eq!(answer.status, Status::Stands, "μ {friction}: {:?}", answer.notes);
+        let [n, t] = answer.state.gap[0];
+        assert!((n - normal).abs() < 1e-12 && (t - tangential).abs() < 1e-12, "μ {friction}: {n} {t}");
+    }
+}
+
+/// The same with μ = 1.1, where separation is the only solution too: the step from the stuck state
+/// cycles, the one from the open state does not.
+#[test]
+fn separation_at_a_friction_close_to_the_load() {
+    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
+    let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
+    assert_eq!(answer.status, Status::Stands, "{:?} {:?} {:?}", answer.factor, answer.state.gap, answer.notes);
+    let [n, t] = answer.state.gap[0];
+    assert!((n - 0.2).abs() < 1e-12 && (t - 1.4).abs() < 1e-12, "{n} {t}");
+}
+
+/// A block on a spring, pressed with 1 N, μ = 0.5: slips at 0.5, unloads elastically, slips back after
+/// a reversal of twice the friction, and reloads: gap = slip, spring K_t = 1, contact compliant.
+#[test]
+fn slip_has_a_history() {
+    let load_step = |t: f64| (Vec2::new(t, 0.0), LoadStepEnd::Factor(1.0));
+    let problem = two_degrees(
+        [[1.0, 0.0], [0.0, 2.0]],
+        0.5,
+        vec![
+            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
+            load_step(0.8),
+            load_step(-0.6),
+            load_step(-0.9),
+            load_step(0.5),
+            load_step(0.9),
+        ],
+    );
+    // Force f_t = 0.8, 0.2, −0.7, −0.2, 0.7 in turn: slip f − 0.5 = 0.3; stuck while |f − 0.3| ≤ 0.5;
+    // back to −0.2; stuck; forward to 0.2.
+    let expected = [0.0, 0.3, 0.3, -0.2, -0.2, 0.2];
+    for strategy in [
+        None,
+        Some(Arc::new(LoadControl::default()) as Arc<dyn Continuation>),
+        Some(Arc::new(Dissipation::default()) as Arc<dyn Continuation>),
+    ] {
+        let mut states = Kept(Vec::new());
+        let answer = NewtonPath {}.trace(&problem, &settings(strategy), &mut states);
+        assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
+        for (load_step, slip) in expected.iter().enumerate() {
+            let last = states.0.iter().rfind(|s| s.load_step == load_step).expect("a state of every load step");
+            assert!((last.gap[0][1] - slip).abs() < 1e-12, "load step {load_step}: {} {slip}", last.gap[0][1]);
+        }
+        let end = answer.state;
+        // Dissipation: μ N × (0.3 + 0.5 + 0.4).
+        assert!((end.dissipated - 0.6).abs() < 1e-12, "{}", end.dissipated);
+    }
+}
+
+#[test]
+fn exact_events_are_refused() {
+    let answer = NewtonPath {}.trace(&turning(), &settings(Some(Arc::new(ExactEvents {}))), &mut Unobserved);
+    assert_eq!(answer.status, Status::Stalled);
+    assert!(answer.notes[0].contains("event_path"));
+}

@@ -1,0 +1,169 @@
+//! The state of a trace: the last converged state, what is recorded of the path, and how it ended.
+
+use super::cycle_detector::CycleDetector;
+use super::derivatives::Gradient;
+use super::events::events;
+use super::recorded::{energy_after, recorded, work_state};
+use super::state::{State, Tangent};
+use super::system::StepSystem;
+use crate::path::energy::{EnergyBalance, WorkState};
+use std::sync::Arc;
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Continuation, PathEvent, PathObserver, PathSettings, PathState};
+
+/// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
+/// come apart: what is left is rounding.
+const APART: f64 = 1e-6;
+
+/// How a load step ended.
+pub(super) enum LoadStepEnding {
+    /// At its factor.
+    Reached,
+    /// The path ends here.
+    Ended,
+}
+
+/// A peak or limit point.
+pub(super) struct Peak {
+    pub state: PathState,
+    pub factor: f64,
+    pub motion: Option<Vec<[f64; 3]>>,
+}
+
+/// What is written down of a path.
+pub(super) struct Record {
+    pub energy: EnergyBalance,
+    /// The last converged state as the work of the next step needs it.
+    pub work: WorkState,
+    /// The last converged state as others read it.
+    pub state: PathState,
+    pub events: Vec<PathEvent>,
+    pub notes: Vec<String>,
+}
+
+/// How a path ends.
+pub(super) struct Ending {
+    pub status: Status,
+    pub motion: Option<Vec<[f64; 3]>>,
+    pub ray: Option<Vec<[f64; 2]>>,
+}
+
+/// The first limit point and what is known of it.
+#[derive(Default)]
+pub(super) struct LimitPoint {
+    pub peak: Option<Peak>,
+    /// Why it is not proven to be one.
+    pub doubt: Option<String>,
+    /// Factor at which it is proven that no rate has growing λ.
+    pub proven: Option<f64>,
+    /// Factor at which a branch with growing λ was taken last, and how often there.
+    pub rose: Option<(f64, u32)>,
+}
+
+/// The path after its peak.
+#[derive(Default)]
+pub(super) struct PostPeak {
+    /// The least load, before the path rises again by a tenth of what it fell, and whether it has.
+    pub trough: Option<Peak>,
+    pub risen: bool,
+    pub cycles: CycleDetector,
+}
+
+/// A trace of a path.
+pub(super) struct Tracer<'a, 'o> {
+    pub system: StepSystem<'a>,
+    pub settings: &'a PathSettings,
+    pub strategy: Arc<dyn Continuation>,
+    pub observer: &'o mut dyn PathObserver,
+    pub load_step: usize,
+    /// The last converged state.
+    pub state: State,
+    pub record: Record,
+    pub ending: Ending,
+    pub limit: LimitPoint,
+    pub post_peak: PostPeak,
+}
+
+/// Takes a converged state as the next one. Whether to go on.
+pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
+    let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    if tracer.system.finite()
+        && let Some(peak) = &tracer.limit.peak
+        && greatest(&next.force) <= APART * greatest(&peak.state.force)
+    {
+        end_path(
+            tracer,
+            Status::Collapse,
+            "after the peak the blocks come apart: no forces are left between them".into(),
+        );
+        return false;
+    }
+    if !tracer.system.finite() {
+        tracer.system.drop_rounding(&mut next, tracer.system.loads.start);
+    }
+    let gradient = tracer.system.gradient(&next);
+    tracer.record.events.extend(events(&tracer.system, tracer.load_step, &tracer.state, &next));
+    let (energy, work) = foreseen(tracer, &next, &gradient);
+    tracer.record.energy = energy;
+    let start = tracer.state.clone();
+    tracer.system.keep(&start, &mut next);
+    tracer.record.state = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
+    tracer.state = next;
+    tracer.record.work = work;
+    tracer.system.count("steps", 1);
+    if !tracer.observer.state(tracer.system.problem, &tracer.record.state) {
+        end_path(tracer, Status::Stalled, "stopped by the observer".into());
+        return false;
+    }
+    if tracer.system.finite()
+        && let Some(why) = left_its_pairing(tracer)
+    {
+        let status = if tracer.limit.peak.is_some() { Status::Collapse } else { Status::Stalled };
+        end_path(tracer, status, why);
+        return false;
+    }
+    true
+}
+
+/// Energies at the end of a step from the last state, and what the next one needs of it.
+pub(super) fn foreseen(tracer: &Tracer, state: &State, gradient: &Gradient) -> (EnergyBalance, WorkState) {
+    let work = work_state(&tracer.system, state, gradient);
+    let start = (&tracer.state, &tracer.record.work);
+    (energy_after(tracer.record.energy, &tracer.system, start, (state, &work)), work)
+}
+
+/// Ends the path with a status.
+pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> LoadStepEnding {
+    tracer.ending.status = status;
+    if !note.is_empty() {
+        tracer.record.notes.push(note);
+    }
+    LoadStepEnding::Ended
+}
+
+/// A pressed point that has slipped further than its pairing holds.
+fn left_its_pairing(tracer: &Tracer) -> Option<String> {
+    let largest = tracer.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
+    let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
+    let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
+    let why = if c.sliding.share == 0.5 {
+        "contact points between corners that were together are paired for less"
+    } else {
+        "its contact point leaves the face that it slides on"
+    };
+    let (joint, factor) = (c.joint, tracer.state.factor);
+    Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))
+}
+
+pub(super) fn moved_along(tracer: &Tracer, rate: &Tangent, share: f64) -> State {
+    let mut guess = tracer.state.clone();
+    for (r, dr) in guess.force.iter_mut().zip(&rate.force) {
+        (0..2).for_each(|k| r[k] += share * dr[k]);
+    }
+    for (q, dq) in guess.motion.iter_mut().zip(&rate.motion) {
+        (0..3).for_each(|k| q[k] += share * dq[k]);
+    }
+    guess.factor += share * rate.factor;
+    guess
+}

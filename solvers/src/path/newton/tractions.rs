@@ -1,0 +1,107 @@
+//! Contact points with laws of tractions from gaps: r = A t(g, history).
+//!
+//! Two rows a point, with K = −A ∂t/∂g of the update itself and each row in its own scale,
+//!
+//! ```text
+//! σ (r − A t(g)) = 0,    σ (dr + K dg) = −σ (r − A t(g)),    σ = 1 / (F + U max|K|)
+//! ```
+//!
+//! where the joint is stiff against the rest this is g − c r = 0, where it has lost its stiffness
+//! r = A t: both are conditioned like the other rows. The history is that of the last converged state
+//! until the step is accepted.
+
+use std::sync::Arc;
+use voussoir_core::law::{InterfaceResponse, TractionPoint};
+use voussoir_core::path::PathProblem;
+
+/// Contact points of one law, and where their states stand.
+#[derive(Debug, Clone)]
+struct Group {
+    law: Arc<dyn InterfaceResponse>,
+    /// Contact points.
+    points: Vec<usize>,
+    /// Place of each point's state among those of all points.
+    places: Vec<usize>,
+}
+
+/// All contact points with laws of tractions from gaps.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Responses {
+    groups: Vec<Group>,
+    /// For each contact point whether it is one.
+    is: Vec<bool>,
+}
+
+/// What the laws say at a state.
+#[derive(Debug, Clone, Default)]
+pub(super) struct TractionUpdates {
+    /// For each contact point; empty without such laws.
+    pub points: Vec<TractionPoint>,
+    /// States of the laws after the step, contact point after contact point.
+    pub memory: Vec<f64>,
+    /// Those before it.
+    pub before: Vec<f64>,
+}
+
+impl Responses {
+    pub fn new(problem: &PathProblem) -> Self {
+        let mut groups: Vec<Group> = Vec::new();
+        let mut is = vec![false; problem.contacts.len()];
+        let mut place = 0;
+        for (contact, c) in problem.contacts.iter().enumerate() {
+            let Some(law) = c.law.response() else { continue };
+            is[contact] = true;
+            let at = groups.iter().position(|group| Arc::ptr_eq(&group.law, law)).unwrap_or_else(|| {
+                groups.push(Group { law: law.clone(), points: Vec::new(), places: Vec::new() });
+                groups.len() - 1
+            });
+            groups[at].points.push(contact);
+            groups[at].places.push(place);
+            place += law.state_size();
+        }
+        Responses { groups, is }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.groups.is_empty()
+    }
+
+    pub fn is(&self, contact: usize) -> bool {
+        self.is[contact]
+    }
+
+    /// Number of points.
+    pub fn count(&self) -> u64 {
+        self.groups.iter().map(|group| group.points.len() as u64).sum()
+    }
+
+    /// The contact points.
+    pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
+        self.groups.iter().flat_map(|group| group.points.iter().copied())
+    }
+
+    /// One update of all points, group by group. An error says what went wrong.
+    pub fn update(&self, gaps: &[[f64; 2]], before: &[f64]) -> Result<TractionUpdates, String> {
+        if self.is_empty() {
+            return Ok(TractionUpdates::default());
+        }
+        let mut all = vec![TractionPoint::ZERO; self.is.len()];
+        let mut memory = before.to_vec();
+        for group in &self.groups {
+            let size = group.law.state_size();
+            let gap: Vec<[f64; 2]> = group.points.iter().map(|c| gaps[*c]).collect();
+            let old: Vec<f64> = group.places.iter().flat_map(|at| before[*at..at + size].iter().copied()).collect();
+            let mut new = old.clone();
+            let mut points = vec![TractionPoint::ZERO; gap.len()];
+            group.law.respond(&gap, &old, &mut new, &mut points).map_err(|failed| {
+                let contact = group.points[failed.point];
+                format!("the law of contact point {contact} gives no traction: {:?}", failed.failure)
+            })?;
+            for (index, (contact, at)) in group.points.iter().zip(&group.places).enumerate() {
+                all[*contact] = points[index];
+                memory[*at..at + size].copy_from_slice(&new[index * size..(index + 1) * size]);
+            }
+        }
+        Ok(TractionUpdates { points: all, memory, before: before.to_vec() })
+    }
+}

@@ -1,0 +1,60 @@
+//! `axles`: wheels or axles on the extrados of an arch.
+
+use super::extrados::{on_extrados, x_at};
+use super::keys::{FRACTION, many};
+use super::load_kind::{LoadKind, Placed};
+use super::site::LoadSite;
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::plugin::{Card, Diagnostic, Parameter, PluginKind, Quantity, Range, Shape};
+
+/// Wheels or axles on the extrados of an arch.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axles {
+    /// Span fraction of the origin of the positions.
+    pub at: f64,
+    /// Horizontal distances from there \[m\].
+    pub positions: Vec<f64>,
+    /// Downwards \[N\], one for each position.
+    pub forces: Vec<f64>,
+}
+
+#[typetag::serde(name = "axles")]
+impl LoadKind for Axles {
+    fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
+        site.finite(&[("positions", &self.positions), ("forces", &self.forces)])?;
+        if self.positions.len() != self.forces.len() {
+            let message = format!("{} forces for {} positions", self.forces.len(), self.positions.len());
+            return site.fail("forces", message);
+        }
+        if self.positions.is_empty() {
+            return site.fail("positions", "there is no axle");
+        }
+        let start = x_at(site, self.at, "at")?;
+        let (mut placed, mut diagnostics) = (Vec::new(), Vec::new());
+        for (i, (position, force)) in self.positions.iter().zip(&self.forces).enumerate() {
+            match on_extrados(site, start + position, Vec2::new(0.0, -force), &format!("positions.{i}")) {
+                Ok(mut forces) => placed.append(&mut forces),
+                Err(mut wrong) => diagnostics.append(&mut wrong),
+            }
+        }
+        if diagnostics.is_empty() { Ok(placed.into()) } else { Err(diagnostics) }
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LoadKind,
+        tag: "axles",
+        summary: "wheels or axles on the extrados of an arch",
+        parameters: &[
+            Parameter::number("at", Quantity::Ratio, FRACTION, "span fraction of the origin of the positions"),
+            many("positions", &Shape::Number(Quantity::Length, Range::ANY), "horizontal distances from there"),
+            many("forces", &Shape::Number(Quantity::Force, Range::ANY), "downwards, one for each position"),
+        ],
+        file: file!(),
+        page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle.\n",
+        ..Card::BLANK
+    }
+}

@@ -1,0 +1,7 @@
+//! Dispersion of live loads between where they stand and the extrados of an arch. One file each; file = tag.
+
+mod law;
+pub mod none;
+pub mod uniform;
+
+pub use law::{Dispersion, Patch};

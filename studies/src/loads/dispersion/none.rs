@@ -1,0 +1,28 @@
+//! `none`: a load reaches the extrados as it stands.
+
+use super::law::{Dispersion, Patch};
+use serde::{Deserialize, Serialize};
+use voussoir_core::plugin::{Card, PluginKind};
+
+/// A load reaches the extrados as it stands.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Undispersed {}
+
+#[typetag::serde(name = "none")]
+impl Dispersion for Undispersed {
+    fn spread(&self, patch: Patch) -> Vec<Patch> {
+        vec![patch]
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::Dispersion,
+        tag: "none",
+        summary: "a load reaches the extrados as it stands",
+        file: file!(),
+        page: "# `none`\n\nThe load acts on the extrados where it stands, as where `dispersion` is not given.\n",
+        ..Card::BLANK
+    }
+}

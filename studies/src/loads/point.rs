@@ -1,0 +1,95 @@
+//! `point`: a force at a point.
+
+use super::dispersion::{Dispersion, Patch};
+use super::extrados::{on_extrados, on_patch, x_at};
+use super::keys::{BLOCK, DISPERSION, FRACTION, POINT, VECTOR};
+use super::load_kind::{LoadKind, Placed};
+use super::site::{BlockName, LoadSite};
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity};
+
+/// A force at a point.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointLoad {
+    /// Place on the extrados of an arch.
+    pub span_fraction: Option<f64>,
+    /// Or the block …
+    pub block: Option<BlockName>,
+    /// … and a point in or on it \[m\].
+    pub point: Option<[f64; 2]>,
+    /// \[N\].
+    pub force: [f64; 2],
+    /// How it spreads on its way to the extrados.
+    pub dispersion: Option<Box<dyn Dispersion>>,
+}
+
+#[typetag::serde(name = "point")]
+impl LoadKind for PointLoad {
+    fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
+        site.finite(&[("force", &self.force)])?;
+        let force = Vec2::from(self.force);
+        match (self.span_fraction, &self.block, self.point) {
+            (Some(fraction), None, None) => {
+                let x = x_at(site, fraction, "span_fraction")?;
+                let Some(dispersion) = &self.dispersion else {
+                    return Ok(on_extrados(site, x, force, "span_fraction")?.into());
+                };
+                let mut forces = Vec::new();
+                for Patch { from, to, share } in dispersion.spread(Patch { from: x, to: x, share: 1.0 }) {
+                    forces.extend(if from == to {
+                        on_extrados(site, from, force * share, "span_fraction")?
+                    } else {
+                        on_patch(site, [from, to], force * (share / (to - from)), ["span_fraction"; 2])?
+                    });
+                }
+                Ok(forces.into())
+            }
+            (None, Some(block), Some(point)) => {
+                site.finite(&[("point", &point)])?;
+                if self.dispersion.is_some() {
+                    return site.fail("dispersion", "spreads a load above an arch: give span_fraction");
+                }
+                Ok(vec![site.on_block(block, Vec2::from(point), force)?].into())
+            }
+            (Some(_), _, _) => {
+                let key = if self.block.is_some() { "block" } else { "point" };
+                site.fail(key, "given besides span_fraction; give span_fraction, or block and point")
+            }
+            (None, Some(_), None) => site.fail("point", "is missing: where on the block the force acts"),
+            (None, None, Some(_)) => site.fail("block", "is missing: the block on which the force acts"),
+            (None, None, None) => site.fail("", "needs span_fraction, or block and point"),
+        }
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LoadKind,
+        tag: "point",
+        summary: "a force at a point",
+        parameters: &[
+            Parameter::number(
+                "span_fraction",
+                Quantity::Ratio,
+                FRACTION,
+                "place on the extrados of an arch, along the span from the left",
+            )
+            .optional("block and point are given"),
+            BLOCK.optional("span_fraction is given"),
+            Parameter {
+                name: "point",
+                doc: "in or on the block",
+                shape: POINT,
+                need: Need::Optional("span_fraction is given"),
+            },
+            Parameter { name: "force", doc: "x to the right, y upwards", shape: VECTOR, need: Need::Required },
+            DISPERSION,
+        ],
+        file: file!(),
+        page: "# `point`\n\nA force at a point: on the extrados of an arch at `span_fraction`, or in or on a `block` at `point`. \
+               At the boundary of two voussoirs it goes to the one nearer to midspan, at midspan half to each.\n",
+        ..Card::BLANK
+    }
+}

@@ -1,0 +1,58 @@
+//! `pressure`: pressure on an edge of a block.
+
+use super::keys::{BLOCK, NUMBER};
+use super::load_kind::{LoadKind, Placed};
+use super::site::{BlockName, LoadSite};
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::geometry::turned;
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range};
+
+/// Pressure on an edge of a block.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pressure {
+    /// The block.
+    pub block: BlockName,
+    /// Index of the edge's first vertex, anticlockwise.
+    pub edge: usize,
+    /// Pushes inwards \[Pa\].
+    pub value: f64,
+}
+
+#[typetag::serde(name = "pressure")]
+impl LoadKind for Pressure {
+    fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
+        site.finite(&[("value", &[self.value])])?;
+        let body = site.block(&self.block)?;
+        let (vertices, edge) = (&site.assembly.bodies[body].vertices, self.edge);
+        if edge >= vertices.len() {
+            let message = format!("block \"{}\" has edges 0 to {}, not {edge}", self.block.text(), vertices.len() - 1);
+            return site.fail("edge", message);
+        }
+        let (a, b) = (vertices[edge], vertices[(edge + 1) % vertices.len()]);
+        // Of an anticlockwise polygon the inside lies to the left of every edge.
+        let force = turned(b - a) * (self.value * site.assembly.width);
+        Ok(site.spread(body, [a, b], force).into())
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LoadKind,
+        tag: "pressure",
+        summary: "pressure on an edge of a block",
+        parameters: &[
+            BLOCK,
+            Parameter {
+                name: "edge",
+                doc: "index of its first vertex, anticlockwise; on voussoirs 0 intrados, 1 right, 2 extrados, 3 left",
+                shape: NUMBER,
+                need: Need::Required,
+            },
+            Parameter::number("value", Quantity::Stress, Range::ANY, "pushes inwards"),
+        ],
+        file: file!(),
+        page: "# `pressure`\n\nAn even pressure on one edge of a block, over the full width: > 0 pushes inwards.\n",
+        ..Card::BLANK
+    }
+}

@@ -1,0 +1,115 @@
+//! Where a load is being placed: the blocks, the key of the load in the study, and what is wrong there.
+
+use crate::scenes::unknown;
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::geometry::{Vec2, contains};
+use voussoir_core::model::{Assembly, CONTACT_TOLERANCE, PointForce};
+use voussoir_core::plugin::Diagnostic;
+
+/// Parts of an evenly spread load on a deformable block.
+const PARTS: usize = 16;
+
+/// A block by name; a whole number is the name of a voussoir.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum BlockName {
+    /// By number.
+    Number(u64),
+    /// By name.
+    Name(String),
+}
+
+impl BlockName {
+    /// As text.
+    pub fn text(&self) -> String {
+        match self {
+            BlockName::Number(number) => number.to_string(),
+            BlockName::Name(name) => name.clone(),
+        }
+    }
+}
+
+/// The blocks that a load is placed on.
+#[derive(Debug)]
+pub struct LoadSite<'a> {
+    /// Blocks and joints.
+    pub assembly: &'a Assembly,
+    /// Key of the load in the study.
+    path: &'a str,
+    /// Free group of each body; `None` where bonds hold it to the ground.
+    held: Vec<Option<usize>>,
+}
+
+impl<'a> LoadSite<'a> {
+    /// The blocks of an assembly; `path` is the key of the load in the study.
+    pub fn new(assembly: &'a Assembly, path: &'a str) -> Self {
+        LoadSite { assembly, path, held: assembly.rigid_groups().0 }
+    }
+
+    /// A key of the load from the study's root.
+    pub fn key(&self, key: &str) -> String {
+        if key.is_empty() { self.path.to_string() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// What is wrong with a key of the load.
+    pub fn fail<T>(&self, key: &str, message: impl Into<String>) -> Result<T, Vec<Diagnostic>> {
+        Err(vec![Diagnostic::new(self.key(key), message)])
+    }
+
+    /// Refuses numbers that are not finite, by key.
+    pub fn finite(&self, values: &[(&str, &[f64])]) -> Result<(), Vec<Diagnostic>> {
+        let wrong: Vec<_> = values
+            .iter()
+            .filter(|(_, numbers)| numbers.iter().any(|x| !x.is_finite()))
+            .map(|(key, _)| Diagnostic::new(self.key(key), "must be finite"))
+            .collect();
+        if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+    }
+
+    /// Index of a block that a load can move.
+    pub fn movable(&self, body: usize, key: &str) -> Result<usize, Vec<Diagnostic>> {
+        let name = &self.assembly.bodies[body].name;
+        if self.assembly.bodies[body].fixed {
+            return self.fail(key, format!("block \"{name}\" is fixed: a load on it does nothing"));
+        }
+        if self.held[body].is_none() && self.assembly.is_rigid(body) {
+            let message = format!("block \"{name}\" is rigid and bonded to the ground: a load on it does nothing");
+            return self.fail(key, message);
+        }
+        Ok(body)
+    }
+
+    /// Index of a block that a load can move, by its name under the key `block`.
+    pub fn block(&self, block: &BlockName) -> Result<usize, Vec<Diagnostic>> {
+        let name = block.text();
+        let body = self.assembly.body(&name).ok_or_else(|| {
+            let names = self.assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.name.as_str());
+            vec![unknown(&self.key("block"), "block", &name, names)]
+        })?;
+        self.movable(body, "block")
+    }
+
+    /// A force at a point in or on a block.
+    pub fn on_block(&self, block: &BlockName, point: Vec2, force: Vec2) -> Result<PointForce, Vec<Diagnostic>> {
+        let body = self.block(block)?;
+        let tolerance = CONTACT_TOLERANCE * self.assembly.size();
+        if !contains(&self.assembly.bodies[body].vertices, point, tolerance) {
+            let message = format!("({}, {}) lies outside block \"{}\"", point.x, point.y, block.text());
+            return self.fail("point", message);
+        }
+        Ok(PointForce { body, point, force })
+    }
+
+    /// A force spread evenly between two points: as its resultant on a rigid block, as the points of
+    /// a Gauss rule on equal parts on a deformable one.
+    pub fn spread(&self, body: usize, [from, to]: [Vec2; 2], force: Vec2) -> Vec<PointForce> {
+        if self.assembly.is_rigid(body) || self.assembly.bodies[body].fixed {
+            return vec![PointForce { body, point: (from + to) / 2.0, force }];
+        }
+        let offset = 0.5 / 3f64.sqrt();
+        let at = |part: usize, side: f64| (part as f64 + 0.5 + side * offset) / PARTS as f64;
+        let places = (0..PARTS).flat_map(|part| [at(part, -1.0), at(part, 1.0)]);
+        let share = force / (2 * PARTS) as f64;
+        places.map(|t| PointForce { body, point: from + (to - from) * t, force: share }).collect()
+    }
+}

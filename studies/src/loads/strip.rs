@@ -1,0 +1,63 @@
+//! `strip`: vertical pressure on the extrados of an arch, over the full width.
+
+use super::dispersion::{Dispersion, Patch};
+use super::extrados::{on_patch, x_at};
+use super::keys::{DISPERSION, FRACTION};
+use super::load_kind::{LoadKind, Placed};
+use super::site::LoadSite;
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::plugin::{Card, Diagnostic, Parameter, PluginKind, Quantity, Range};
+
+/// Vertical pressure on the extrados of an arch, over the full width.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Strip {
+    /// Span fraction of its left end.
+    pub from: f64,
+    /// Span fraction of its right end.
+    pub to: f64,
+    /// On the plan area, downwards \[Pa\].
+    pub pressure: f64,
+    /// How it spreads on its way to the extrados.
+    pub dispersion: Option<Box<dyn Dispersion>>,
+}
+
+#[typetag::serde(name = "strip")]
+impl LoadKind for Strip {
+    fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
+        site.finite(&[("pressure", &[self.pressure])])?;
+        let ends = [x_at(site, self.from, "from")?, x_at(site, self.to, "to")?];
+        if self.from >= self.to {
+            return site.fail("to", format!("{} must be more than from, {}", self.to, self.from));
+        }
+        let density = Vec2::new(0.0, -self.pressure * site.assembly.width);
+        let Some(dispersion) = &self.dispersion else {
+            return Ok(on_patch(site, ends, density, ["from", "to"])?.into());
+        };
+        let mut forces = Vec::new();
+        for Patch { from, to, share } in dispersion.spread(Patch { from: ends[0], to: ends[1], share: 1.0 }) {
+            let density = density * (share * (ends[1] - ends[0]) / (to - from));
+            forces.extend(on_patch(site, [from, to], density, ["from", "to"])?);
+        }
+        Ok(forces.into())
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LoadKind,
+        tag: "strip",
+        summary: "vertical pressure on the extrados of an arch, over the full width",
+        parameters: &[
+            Parameter::number("from", Quantity::Ratio, FRACTION, "span fraction of the left end"),
+            Parameter::number("to", Quantity::Ratio, FRACTION, "span fraction of the right end"),
+            Parameter::number("pressure", Quantity::Stress, Range::ANY, "on the plan area, downwards"),
+            DISPERSION,
+        ],
+        file: file!(),
+        page: "# `strip`\n\nAn even vertical pressure on the plan area between two span fractions, over the full width. Each \
+               voussoir carries what stands above its straight extrados.\n",
+        ..Card::BLANK
+    }
+}

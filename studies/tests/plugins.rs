@@ -1,0 +1,270 @@
+//! What plug-ins of one's own meet: a solver whose table is refused when the study is loaded, `auto` by cards, writers
+//! with options, study kinds that choose values themselves.
+
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use voussoir::core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir::core::model::stage_loads;
+use voussoir::core::plugin::{Card, Need, Parameter, PluginKind, Shape};
+use voussoir::solve::CaseInput;
+use voussoir::solve::auto::{limit_solvers, path_solvers};
+use voussoir::study::{SelectedSolver, Study, load};
+
+/// A number that the card takes up to 10 and the solver up to 5.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(try_from = "u64")]
+struct Effort(u64);
+
+impl TryFrom<u64> for Effort {
+    type Error = String;
+
+    fn try_from(effort: u64) -> Result<Self, String> {
+        if effort > 5 { Err(format!("an effort of {effort} is beyond it")) } else { Ok(Effort(effort)) }
+    }
+}
+
+/// A solver whose card promises more than it reads.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fussy {
+    effort: Option<Effort>,
+}
+
+#[typetag::serde(name = "fussy_limit")]
+impl LimitSolver for Fussy {
+    fn solve(&self, _: &LimitProblem, _: LimitQuestion) -> LimitAnswer {
+        LimitAnswer {
+            status: Status::Stalled,
+            factor: None,
+            field_factor: 0.0,
+            field: None,
+            motion: None,
+            unique: None,
+            ray: None,
+            feasible_interval: None,
+            non_associated: None,
+            counters: Counters::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn refuses(&self, _: &LimitProblem) -> Option<String> {
+        None
+    }
+}
+
+const fn number(name: &'static str) -> Parameter {
+    let shape = Shape::Integer { min: 0, max: 10 };
+    Parameter { name, doc: "work of the search", shape, need: Need::Optional("little") }
+}
+
+voussoir::core::inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "fussy_limit",
+        summary: "reads less than its card says",
+        parameters: &[number("effort"), number("efort_of_old")],
+        file: file!(),
+        page: "for this test only",
+        ..Card::BLANK
+    }
+}
+
+const ARCH: &str = r#"name = "arch"
+[scene]
+scene = "arch"
+profile = { shape = "segmental", span = 4.0, rise = 1.0 }
+thickness = 0.5
+width = 1.0
+voussoirs = 7
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2200.0
+[joints.dry]
+law = "coulomb_associated"
+friction = 0.6
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
+"#;
+
+/// What is wrong with the arch and more text.
+fn wrong(more: &str, sets: &[(&str, &str)]) -> Vec<String> {
+    let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    let Err(wrong) = load(&format!("{ARCH}{more}"), "a.toml", &sets) else { panic!("{more} is accepted") };
+    wrong.iter().map(ToString::to_string).collect()
+}
+
+/// A solver table that its solver cannot read is a mistake with line and key, wherever it was written; never `auto`.
+#[test]
+fn a_solver_table_that_cannot_be_read_is_a_mistake() {
+    let lines = ARCH.lines().count();
+    let [message] = &wrong("[solver]\nsolver = \"fussy_limit\"\neffort = 7\n", &[])[..] else { panic!("one mistake") };
+    let place = format!("a.toml:{}:10: solver.effort: ", lines + 3);
+    assert!(message.starts_with(&place) && message.contains("beyond it"), "{message}");
+    let text = "[solver]\nsolver = \"fussy_limit\"\nefort_of_old = 2\n";
+    let [message] = &wrong(text, &[])[..] else { panic!("one mistake") };
+    assert!(message.contains("solver.efort_of_old") && message.contains("unknown field"), "{message}");
+    let solver = "[solver]\nsolver = \"fussy_limit\"\n";
+    let [message] = &wrong(&format!("{solver}[sweep]\n\"solver.effort\" = {{ list = [1, 7] }}\n"), &[])[..] else {
+        panic!("one mistake")
+    };
+    assert!(message.starts_with("a.toml:") && message.contains("solver.effort = 7"), "{message}");
+    let variant = "[[variants]]\nname = \"much\"\nset = { \"solver.effort\" = 9 }\n";
+    let [message] = &wrong(&format!("{solver}{variant}"), &[])[..] else { panic!("one mistake") };
+    let place = format!("a.toml:{}:27: solver.effort: ", lines + 5);
+    assert!(message.starts_with(&place) && message.contains("beyond it"), "{message}");
+    let sets = [("solver.solver", "fussy_limit"), ("solver.effort", "6")];
+    let [message] = &wrong("", &sets)[..] else { panic!("one mistake") };
+    assert!(message.starts_with("--set solver.effort: ") && message.contains("beyond it"), "{message}");
+    // Names that no solver has, by sweep and by variant.
+    let sweep = "[sweep]\n\"solver.solver\" = { list = [\"limit_chain\", \"limit_chian\"] }\n";
+    assert!(wrong(sweep, &[])[0].contains("did you mean \"limit_chain\"?"));
+    let variant = "[[variants]]\nname = \"a\"\nset = { \"solver.effrt\" = 1, \"solver.solver\" = \"fussy_limit\" }\n";
+    assert!(wrong(variant, &[])[0].contains("did you mean \"effort\"?"));
+    let strategy = "[solver]\nsolver = \"newton_path\"\ncontinuation = { strategy = \"arc_lenght\" }\n";
+    assert!(wrong(strategy, &[]).iter().any(|message| message.contains("did you mean \"arc_length\"?")));
+}
+
+fn every_study() -> Vec<(String, Study)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let mut files: Vec<_> = std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("a file").path()).collect();
+    files.sort();
+    let texts = files.iter().map(|path| (path, std::fs::read_to_string(path).expect("a text")));
+    let scenes = texts.filter(|(_, text)| text.contains("[scene]"));
+    let read = |path: &Path, text: &str| {
+        load(text, "study.toml", &[]).unwrap_or_else(|e| panic!("{}: {}", path.display(), e[0]))
+    };
+    scenes.map(|(path, text)| (path.display().to_string(), read(path, &text))).collect()
+}
+
+/// `auto` chooses by cards what a list of named solvers chose: paths where something deforms, exact ones where laws have
+/// facets, blocks are linear and displacements small; limit analysis elsewhere, for chains by three redundants.
+#[test]
+fn auto_chooses_what_it_chose_by_name() {
+    let (mut paths, mut limits) = (0, 0);
+    for (name, study) in every_study() {
+        for case in &study.cases {
+            let (assembly, settings) = (&case.assembly, &case.solver.settings);
+            let input = CaseInput { solver: &SelectedSolver::Auto, ..CaseInput::of(case) };
+            let chosen: Vec<String> = path_solvers(&input).into_iter().map(|(tag, _)| tag).collect();
+            let settles = case.stages.iter().any(|stage| !stage.settlements.is_empty());
+            if assembly.deforms() || settings.finite || settles {
+                let facets = |j| assembly.law(j).is_none_or(|law| law.formulation().facets().is_some());
+                let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
+                let exact = !settings.finite && linear && assembly.joints.iter().all(facets);
+                assert_eq!(chosen[0], if exact { "event_path" } else { "newton_path" }, "{name}, case {}", case.id);
+                assert_eq!(chosen.last().map(String::as_str), Some("newton_path"), "{name}");
+                paths += 1;
+                continue;
+            }
+            assert_eq!(chosen, Vec::<String>::new(), "{name}, case {}", case.id);
+            for loads in stage_loads(assembly, &case.stages) {
+                let problem = LimitProblem::new(assembly, &loads).expect("laws of facets");
+                let chosen: Vec<_> = limit_solvers(&SelectedSolver::Auto, &problem).into_iter().map(|s| s.0).collect();
+                let mut expected = vec!["limit_conic"];
+                let chain = voussoir::solvers::limit::chain::LimitChain {};
+                if chain.refuses(&problem).is_none() {
+                    expected.insert(0, "limit_chain");
+                }
+                if problem.non_associated {
+                    expected.insert(0, "limit_least");
+                }
+                assert_eq!(chosen, expected, "{name}, case {}", case.id);
+                limits += 1;
+            }
+        }
+    }
+    assert!(paths >= 30 && limits >= 40, "{paths} paths, {limits} stages of limit analysis");
+}
+
+/// A solver without a cost is taken by name only; defaults of cards are those of the types.
+#[test]
+fn defaults_of_cards_are_those_of_the_types() {
+    let study = Study::from_toml(ARCH).expect("a study");
+    let case = &study.cases[0];
+    let problem = LimitProblem::new(&case.assembly, &stage_loads(&case.assembly, &case.stages)[1]).expect("a problem");
+    let mut open = problem.clone();
+    open.non_associated = true;
+    let chosen = limit_solvers(&SelectedSolver::Auto, &open);
+    assert!(chosen.iter().all(|(tag, _)| tag != "fussy_limit" && tag != "limit_sequential"));
+    let least = voussoir::solvers::limit::nonassociated::LimitNonassociated::default();
+    assert_eq!(format!("{:?}", chosen[0].1), format!("{least:?}"));
+}
+
+/// A study kind that chooses values itself asks for cases by key and value; mistakes have the key.
+#[test]
+fn a_study_makes_cases_at_other_values() {
+    let study =
+        Study::from_toml(&format!("{ARCH}[sweep]\n\"scene.thickness\" = {{ list = [0.4, 0.5] }}\n")).expect("a study");
+    let case = study.at(1, &[("scene.profile.rise", 1.2)]).expect("a case");
+    assert_eq!(case.assembly.arch.as_ref().map(|arch| arch.rise), Some(1.2));
+    assert_eq!(case.parameters["scene.thickness"], 0.5);
+    assert_eq!(case.parameters["scene.profile.rise"], 1.2);
+    let same = study.at(1, &[]).expect("a case");
+    assert_eq!(same.resolved, study.cases[1].resolved);
+    let wrong = study.at(0, &[("scene.profile.rise", -1.0)]).expect_err("no arch");
+    assert_eq!(wrong[0].key, "scene.profile.rise");
+}
+
+/// `[output] writers` chooses, `[output.options]` says how; unknown names are mistakes with the nearest right one.
+#[test]
+fn writers_are_chosen_and_have_options() {
+    use voussoir::kinds::{RunRequest, read_study};
+    use voussoir::results::CaseResult;
+    struct Silent;
+    impl voussoir::solve::Observer for Silent {
+        fn answered(&self, _: &CaseResult) {}
+    }
+    let run = |more: &str| {
+        let study = read_study(&format!("{ARCH}{more}"), "a.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+        study.run(&RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() }, &Silent).files
+    };
+    let names = |more: &str| run(more).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+    assert_eq!(names("[output]\nwriters = [\"results_csv\"]\n"), ["results.csv", "results.json"]);
+    assert!(names("").contains(&"report.html".to_string()));
+    let report = |more: &str| {
+        let files = run(more);
+        let (_, bytes) = files.into_iter().find(|(name, _)| name == "report.html").expect("a report");
+        String::from_utf8(bytes).expect("text")
+    };
+    assert!(report("").contains("The scene with its loads"));
+    assert!(!report("[output.options.report]\ndrawn = 0\n").contains("The scene with its loads"));
+    assert!(wrong("[output]\nwriters = [\"result_csv\"]\n", &[])[0].contains("did you mean \"results_csv\"?"));
+    assert!(wrong("[output.options.report]\ndrwan = 1\n", &[])[0].contains("did you mean \"drawn\"?"));
+    assert!(wrong("[output.options.reprot]\n", &[])[0].contains("did you mean \"report\"?"));
+}
+
+/// Loads and dispersions are plug-ins with cards; mistakes in them have the nearest right name.
+#[test]
+fn mistakes_in_loads_have_the_nearest_right_name() {
+    let with = |load: &str| {
+        let text = ARCH.replace("{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }", load);
+        load_text(&text)
+    };
+    fn load_text(text: &str) -> Vec<String> {
+        load(text, "a.toml", &[]).err().map(|wrong| wrong.iter().map(ToString::to_string).collect()).unwrap_or_default()
+    }
+    let point = "kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0]";
+    assert_eq!(
+        with(&format!("{{ {point}, dispersion = {{ law = \"uniform\", angle = 30.0, depth = 0.3 }} }}")),
+        Vec::<String>::new()
+    );
+    let message = with(&format!("{{ {point}, dispersion = {{ law = \"unifrm\", angle = 30.0, depth = 0.3 }} }}"));
+    assert!(message[0].contains("did you mean \"uniform\"?"), "{message:?}");
+    let message = with(&format!("{{ {point}, dispersion = {{ law = \"uniform\", angel = 30.0, depth = 0.3 }} }}"));
+    assert!(message[0].contains("did you mean \"angle\"?"), "{message:?}");
+    let message = with("{ kind = \"stripe\", from = 0.1, to = 0.2, pressure = 1.0 }");
+    assert!(message[0].contains("did you mean \"strip\"?"), "{message:?}");
+    let schema = voussoir::kinds::json_schema::json_schema();
+    let text = schema.to_string();
+    for part in ["dispersion_uniform", "\"const\":\"axles\"", "\"drawn\"", "point_study", "\"efort_of_old\""] {
+        assert!(text.contains(part), "{part}");
+    }
+}
