@@ -4,7 +4,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use voussoir::core::law::{
-    BulkMaterial, Formulation, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, StressPoint, TractionPoint,
+    BulkMaterial, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, StressPoint, TractionPoint, UpdateContext,
 };
 use voussoir_benches::point::{cohesive, paper_stone, states, strains};
 
@@ -16,10 +16,10 @@ fn stress_updates(c: &mut Criterion) {
             let strains = strains(&*update, region, count);
             let old = states(&*update, count);
             let (mut new, mut points) = (old.clone(), vec![StressPoint::ZERO; count]);
-            let lengths = vec![1.0; count];
+            let contexts = vec![UpdateContext::of_length(1.0); count];
             group.throughput(Throughput::Elements(count as u64));
             group.bench_with_input(BenchmarkId::new(region, count), &strains, |b, strains| {
-                b.iter(|| update.update(black_box(strains), &lengths, &old, &mut new, &mut points));
+                b.iter(|| update.update(black_box(strains), &contexts, &old, &mut new, &mut points));
             });
         }
     }
@@ -39,7 +39,15 @@ fn in_a_plane(c: &mut Criterion) {
             let old: Vec<f64> = one.iter().copied().cycle().take(256 * planar.state_size()).collect();
             let (mut new, mut points) = (old.clone(), vec![PlanarPoint::ZERO; 256]);
             group.bench_function(format!("{name}, {region}"), |b| {
-                b.iter(|| planar.update(black_box(&strains), &[1.0; 256], &old, &mut new, &mut points));
+                b.iter(|| {
+                    planar.update(
+                        black_box(&strains),
+                        &[UpdateContext::of_length(1.0); 256],
+                        &old,
+                        &mut new,
+                        &mut points,
+                    )
+                });
             });
         }
     }
@@ -47,7 +55,7 @@ fn in_a_plane(c: &mut Criterion) {
 }
 
 fn joints(c: &mut Criterion) {
-    let Formulation::Response(response) = cohesive().formulation() else { return };
+    let Some(response) = cohesive().response() else { return };
     let mut group = c.benchmark_group("cohesive, batches of 256");
     group.throughput(Throughput::Elements(256));
     for (name, gap) in [("elastic", [-1e-6, 1e-6]), ("softening", [1e-5, 1e-4]), ("sliding", [-1e-5, 1e-3])] {

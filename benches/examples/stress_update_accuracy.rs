@@ -4,7 +4,7 @@
 //! the figure: `cargo run --release -p voussoir-benches --example stress_update_accuracy -- FIGURE.svg`.
 
 use std::time::Instant;
-use voussoir::core::law::{BulkMaterial, StressUpdate};
+use voussoir::core::law::{BulkMaterial, StressUpdate, UpdateContext};
 use voussoir::figures::{Series, chart_svg};
 use voussoir_benches::point::{ordinary_stone, paper_stone, states};
 
@@ -42,7 +42,7 @@ struct Walk<'a> {
 impl Walk<'_> {
     fn one(&mut self, strain: &Strain, from: &[f64], to: &mut [f64]) -> Strain {
         self.calls += 1;
-        self.update.update_point(strain, 1.0, from, to).expect("the update converges").stress
+        self.update.update_point(strain, &UpdateContext::of_length(1.0), from, to).expect("the update converges").stress
     }
 
     /// One implicit return.

@@ -1,6 +1,6 @@
 //! Points that benches drive: the crushing stone of Drosopoulos et al. (2008), a mortar joint.
 
-use voussoir::core::law::{Region, StressPoint, StressUpdate};
+use voussoir::core::law::{StressUpdate, UpdateContext};
 use voussoir::laws::cohesive::Cohesive;
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 
@@ -63,10 +63,9 @@ pub fn strains(update: &dyn StressUpdate, region: &str, count: usize) -> Vec<[f6
             0.0,
             0.0,
         ];
-        let found = update.update_point(&strain, 1.0, &old, &mut new);
-        let StressPoint { region: here, .. } =
-            found.unwrap_or(StressPoint { region: Region::Elastic, ..StressPoint::ZERO });
-        if here.name() == region {
+        let found = update.update_point(&strain, &UpdateContext::of_length(1.0), &old, &mut new);
+        let here = found.map_or("elastic", |point| point.branch.name);
+        if here == region {
             out.push(strain);
             if out.len() == count {
                 return out;

@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use voussoir_core::law::{Formulation, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
 use voussoir_core::plugin::{
     Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
 };
@@ -73,8 +73,8 @@ impl Cohesive {
 
 #[typetag::serde(name = "cohesive")]
 impl InterfaceLaw for Cohesive {
-    fn formulation(&self) -> Formulation {
-        Formulation::Response(Arc::new(CohesiveResponse {
+    fn response(&self) -> Option<Arc<dyn InterfaceResponse>> {
+        Some(Arc::new(CohesiveResponse {
             friction: friction(self.friction, self.friction_angle),
             normal: Mode::new(self.normal_stiffness, self.tensile_strength, self.tensile_fracture_energy),
             shear: Mode::new(self.shear_stiffness, self.cohesion, self.shear_fracture_energy),
@@ -85,6 +85,13 @@ impl InterfaceLaw for Cohesive {
         stiffness(Some(self.normal_stiffness), Some(self.shear_stiffness))
     }
 }
+
+/// The bond softens.
+const SOFTENING: UpdateBranch = UpdateBranch::new("softening", Effect::Softening);
+/// The broken share slides.
+const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
+/// The bond softens while its broken share slides.
+const SOFTENING_SLIDING: UpdateBranch = UpdateBranch::new("softening_sliding", Effect::Softening);
 
 /// The law at a point. State: damage D and slip z.
 #[derive(Debug, Clone)]
@@ -199,10 +206,10 @@ impl InterfaceResponse for CohesiveResponse {
             dissipated += released * mean.min(1.0) * (damage - damage_old);
         }
         let branch = match (grows, slides && slip != slip_old && self.friction * pressure > 0.0) {
-            (false, false) => UpdateBranch::Elastic,
-            (true, false) => UpdateBranch::Softening,
-            (false, true) => UpdateBranch::Sliding,
-            (true, true) => UpdateBranch::SofteningSliding,
+            (false, false) => UpdateBranch::ELASTIC,
+            (true, false) => SOFTENING,
+            (false, true) => SLIDING,
+            (true, true) => SOFTENING_SLIDING,
         };
         Ok(TractionPoint { traction, tangent, branch, stored, dissipated })
     }

@@ -3,7 +3,7 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::law::{Facet, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Sample, check_as};
 
 /// Dry friction, non-associated by default.
@@ -25,10 +25,10 @@ pub struct Coulomb {
 
 #[typetag::serde(name = "coulomb")]
 impl InterfaceLaw for Coulomb {
-    fn formulation(&self) -> Formulation {
+    fn facets(&self) -> Option<Vec<Facet>> {
         let mu = friction(self.friction, self.friction_angle);
         let [left, right] = Facet::friction(mu, 0.0, tangent(self.dilatancy_angle).min(mu));
-        Formulation::Facets(vec![Facet::opening(0.0), left, right])
+        Some(vec![Facet::opening(0.0), left, right])
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {
@@ -45,7 +45,7 @@ voussoir_core::inventory::submit! {
         tag: "coulomb",
         summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle says so",
         parameters: PARAMETERS,
-        provides: &[Capability::FACETS],
+        provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),

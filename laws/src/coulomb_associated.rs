@@ -3,7 +3,7 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::law::{Facet, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Property, Sample, check_as};
 
 /// Dry friction with associated flow.
@@ -22,10 +22,10 @@ pub struct CoulombAssociated {
 
 #[typetag::serde(name = "coulomb_associated")]
 impl InterfaceLaw for CoulombAssociated {
-    fn formulation(&self) -> Formulation {
+    fn facets(&self) -> Option<Vec<Facet>> {
         let mu = friction(self.friction, self.friction_angle);
         let [left, right] = Facet::friction(mu, 0.0, mu);
-        Formulation::Facets(vec![Facet::opening(0.0), left, right])
+        Some(vec![Facet::opening(0.0), left, right])
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {
@@ -39,7 +39,7 @@ voussoir_core::inventory::submit! {
         tag: "coulomb_associated",
         summary: "no tension, Coulomb friction with associated flow: slip opens the joint, as linear programs assume",
         parameters: &[FRICTION, FRICTION_ANGLE, NORMAL_STIFFNESS, SHEAR_STIFFNESS],
-        provides: &[Capability::FACETS],
+        provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),

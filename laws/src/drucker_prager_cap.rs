@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use surface::Surface;
 use update::{CapUpdate, Strength};
-use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressUpdate};
+use voussoir_core::law::{BulkMaterial, Elasticity, Isotropic, StressUpdate};
 use voussoir_core::plugin::{
     Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape, check_as,
 };
@@ -247,11 +247,11 @@ impl BulkMaterial for DruckerPragerCap {
         self.density
     }
 
-    fn deformability(&self) -> Deformability {
-        Deformability::Inelastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
+    fn elasticity(&self) -> Option<Elasticity> {
+        Some(Elasticity::isotropic(self.young_modulus, self.poisson_ratio))
     }
 
-    fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
+    fn inelastic(&self) -> Option<Arc<dyn StressUpdate>> {
         let surface = self.surface();
         let pieces = surface.pieces(&self.hardening());
         let strength = match self.softening() {

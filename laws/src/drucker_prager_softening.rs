@@ -2,12 +2,12 @@
 #![doc = include_str!("drucker_prager_softening.md")]
 
 use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
-use crate::meridian::{Returned, Trial, state_names};
+use crate::meridian::{APEX, Returned, SHEAR, Trial, state_names};
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::law::{
-    BulkMaterial, Deformability, Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt,
+    BulkMaterial, Elasticity, Isotropic, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt,
 };
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
 
@@ -81,11 +81,11 @@ impl BulkMaterial for DruckerPragerSoftening {
         self.density
     }
 
-    fn deformability(&self) -> Deformability {
-        Deformability::Inelastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
+    fn elasticity(&self) -> Option<Elasticity> {
+        Some(Elasticity::isotropic(self.young_modulus, self.poisson_ratio))
     }
 
-    fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
+    fn inelastic(&self) -> Option<Arc<dyn StressUpdate>> {
         Some(Arc::new(SofteningUpdate {
             elastic: Isotropic::new(self.young_modulus, self.poisson_ratio),
             law: self.clone(),
@@ -148,10 +148,11 @@ impl StressUpdate for SofteningUpdate {
     fn update_point(
         &self,
         strain: &Voigt,
-        length: f64,
+        context: &UpdateContext,
         old: &[f64],
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
+        let length = context.length;
         // Also refuses a length that is no number.
         if self.law.crushing_fracture_energy.is_some() && !(length > 0.0 && length <= self.largest_length) {
             return Err(UpdateFailure::LengthTooLarge);
@@ -180,7 +181,7 @@ impl StressUpdate for SofteningUpdate {
                 ratio: (q / trial.mises).max(0.0),
                 compaction: -3.0 * a * step,
                 jacobian,
-                region: Region::Shear,
+                branch: SHEAR,
             };
             (back, step)
         } else {
@@ -192,7 +193,7 @@ impl StressUpdate for SofteningUpdate {
                 ratio: 0.0,
                 compaction: -3.0 * a * step,
                 jacobian: [[slope / (9.0 * bulk * a * a + slope), 0.0], [0.0, 0.0]],
-                region: Region::Apex,
+                branch: APEX,
             };
             (back, step)
         };

@@ -4,11 +4,9 @@
 //! G = E / (2(1 + ν)), λ_L = E ν / ((1 + ν)(1 − 2ν)). **State.** None. **Validity.** Small strains.
 //! Limit loads do not depend on E and ν: limit analysis reads such blocks as rigid.
 
-use crate::meridian::Trial;
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
-use voussoir_core::law::{BulkMaterial, Deformability, Isotropic, StressPoint, StressUpdate, UpdateFailure, Voigt};
+use voussoir_core::law::{BulkMaterial, Elasticity};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample};
 
 /// A linear elastic material.
@@ -29,32 +27,8 @@ impl BulkMaterial for Elastic {
         self.density
     }
 
-    fn deformability(&self) -> Deformability {
-        Deformability::LinearElastic { young_modulus: self.young_modulus, poisson_ratio: self.poisson_ratio }
-    }
-
-    fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
-        Some(Arc::new(ElasticUpdate(Isotropic::new(self.young_modulus, self.poisson_ratio))))
-    }
-}
-
-/// Hooke's law at a point; no state.
-#[derive(Debug, Clone)]
-pub struct ElasticUpdate(pub Isotropic);
-
-impl StressUpdate for ElasticUpdate {
-    fn state_size(&self) -> usize {
-        0
-    }
-
-    fn initial_state(&self, _: &mut [f64]) {}
-
-    fn state_names(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn update_point(&self, strain: &Voigt, _: f64, old: &[f64], _: &mut [f64]) -> Result<StressPoint, UpdateFailure> {
-        Ok(Trial::new(&self.0, strain, old)?.elastic(&self.0))
+    fn elasticity(&self) -> Option<Elasticity> {
+        Some(Elasticity::isotropic(self.young_modulus, self.poisson_ratio))
     }
 }
 

@@ -11,5 +11,6 @@ pub mod drucker_prager_cap;
 pub mod drucker_prager_softening;
 pub mod elastic;
 pub mod mohr_coulomb;
+pub mod orthotropic_elastic;
 pub mod rigid;
 pub mod unilateral;

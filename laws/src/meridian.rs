@@ -8,7 +8,12 @@
 //! dσ = 2 G y dev dε + n (dq − y dQ) − 1 dp
 //! ```
 
-use voussoir_core::law::{Isotropic, Region, StressPoint, UpdateFailure, Voigt, von_mises};
+use voussoir_core::law::{Effect, Isotropic, StressPoint, UpdateBranch, UpdateFailure, Voigt, von_mises};
+
+/// On a surface that fails in shear.
+pub const SHEAR: UpdateBranch = UpdateBranch::new("shear", Effect::Yielding);
+/// At the tip of a cone in tension.
+pub const APEX: UpdateBranch = UpdateBranch::new("apex", Effect::Tearing);
 
 const PLASTIC_STRAIN: [&str; 6] = [
     "plastic_strain_xx [-]",
@@ -53,7 +58,12 @@ pub struct Returned {
     /// ∂(p, q) / ∂(P, Q).
     pub jacobian: [[f64; 2]; 2],
     /// Where it lies.
-    pub region: Region,
+    pub branch: UpdateBranch,
+}
+
+/// q²/(6 G) + p²/(2 K).
+fn stored(elastic: &Isotropic, pressure: f64, mises: f64) -> f64 {
+    mises * mises / (6.0 * elastic.shear) + pressure * pressure / (2.0 * elastic.bulk)
 }
 
 impl Trial {
@@ -78,7 +88,13 @@ impl Trial {
     pub fn elastic(&self, elastic: &Isotropic) -> StressPoint {
         let mut stress = self.deviator;
         stress[..3].iter_mut().for_each(|entry| *entry -= self.pressure);
-        StressPoint { stress, tangent: elastic.tangent(), region: Region::Elastic, dissipation: 0.0 }
+        StressPoint {
+            stress,
+            tangent: elastic.tangent(),
+            branch: UpdateBranch::ELASTIC,
+            stored: stored(elastic, self.pressure, self.mises),
+            dissipated: 0.0,
+        }
     }
 
     /// The answer with this return; adds the step's plastic strain to the state.
@@ -101,7 +117,12 @@ impl Trial {
             stress[i] -= unit * back.pressure;
         }
         let q = y * self.mises;
-        let dissipation = q * (self.mises - q) / (3.0 * shear) + back.pressure * back.compaction;
-        StressPoint { stress, tangent, region: back.region, dissipation }
+        StressPoint {
+            stress,
+            tangent,
+            branch: back.branch,
+            stored: stored(elastic, back.pressure, q),
+            dissipated: q * (self.mises - q) / (3.0 * shear) + back.pressure * back.compaction,
+        }
     }
 }

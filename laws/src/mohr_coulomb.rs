@@ -3,7 +3,7 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::law::{Facet, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
 
 /// A joint with strengths.
@@ -32,13 +32,13 @@ pub struct MohrCoulomb {
 
 #[typetag::serde(name = "mohr_coulomb")]
 impl InterfaceLaw for MohrCoulomb {
-    fn formulation(&self) -> Formulation {
+    fn facets(&self) -> Option<Vec<Facet>> {
         let mu = friction(self.friction, self.friction_angle);
         let dilatancy = self.dilatancy_angle.map_or(mu, |angle| tangent(angle).min(mu));
         let [left, right] = Facet::friction(mu, self.cohesion, dilatancy);
         let mut facets = vec![Facet::opening(self.tensile_strength), left, right];
         facets.extend(self.compressive_strength.map(Facet::crushing));
-        Formulation::Facets(facets)
+        Some(facets)
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {
@@ -65,7 +65,7 @@ voussoir_core::inventory::submit! {
             NORMAL_STIFFNESS,
             SHEAR_STIFFNESS,
         ],
-        provides: &[Capability::FACETS],
+        provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
             Sample::new("friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 2e-4, &["elastic", "sliding"]),

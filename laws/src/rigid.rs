@@ -4,7 +4,7 @@
 //! **State.** None. **Validity.** Stresses inside a rigid block are not defined.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::law::{BulkMaterial, Deformability};
+use voussoir_core::law::{BulkMaterial, Elasticity};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, Sample};
 
 /// ρ, which every material has.
@@ -29,8 +29,8 @@ impl BulkMaterial for Rigid {
         self.density
     }
 
-    fn deformability(&self) -> Deformability {
-        Deformability::Rigid
+    fn elasticity(&self) -> Option<Elasticity> {
+        None
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
-use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::law::{Facet, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Property, Sample, Shape};
 
 /// What a closed joint does along itself.
@@ -30,12 +30,12 @@ pub struct Unilateral {
 
 #[typetag::serde(name = "unilateral")]
 impl InterfaceLaw for Unilateral {
-    fn formulation(&self) -> Formulation {
+    fn facets(&self) -> Option<Vec<Facet>> {
         let mut facets = vec![Facet::opening(0.0)];
         if self.tangential == TangentialContact::Free {
             facets.extend(Facet::friction(0.0, 0.0, 0.0));
         }
-        Formulation::Facets(facets)
+        Some(facets)
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {
@@ -58,7 +58,7 @@ voussoir_core::inventory::submit! {
             NORMAL_STIFFNESS,
             SHEAR_STIFFNESS,
         ],
-        provides: &[Capability::FACETS],
+        provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
             Sample::new("tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["sliding"]),

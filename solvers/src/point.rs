@@ -7,7 +7,7 @@
 
 use std::fmt;
 use std::sync::Arc;
-use voussoir_core::law::{InterfaceResponse, PlanarUpdate, StressUpdate, UpdateFailure};
+use voussoir_core::law::{InterfaceResponse, PlanarUpdate, StressUpdate, UpdateContext, UpdateFailure};
 
 /// Greatest number of components.
 pub const COMPONENTS: usize = 6;
@@ -149,18 +149,19 @@ impl PointLaw {
         };
         match self {
             PointLaw::Space(law, length) => {
-                let point = law.update_point(strain, *length, old, new)?;
+                let point = law.update_point(strain, &UpdateContext::of_length(*length), old, new)?;
                 (out.stress, out.tangent) = (point.stress, point.tangent);
-                (out.region, out.dissipated) = (point.region.name(), point.dissipation);
+                (out.region, out.dissipated) = (point.branch.name, point.dissipated);
             }
             PointLaw::Plane(law, length) => {
-                let point = law.update_point(&[strain[0], strain[1], strain[2]], *length, old, new)?;
+                let point =
+                    law.update_point(&[strain[0], strain[1], strain[2]], &UpdateContext::of_length(*length), old, new)?;
                 out.stress[..3].copy_from_slice(&point.stress);
                 for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
                     row[..3].copy_from_slice(given);
                 }
                 out.across = [point.strain_across, point.stress_across];
-                (out.region, out.dissipated) = (point.region.name(), point.dissipation);
+                (out.region, out.dissipated) = (point.branch.name, point.dissipated);
             }
             PointLaw::Joint(law) => {
                 let point = law.respond_point([strain[0], strain[1]], old, new)?;
@@ -168,7 +169,7 @@ impl PointLaw {
                 for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
                     row[..2].copy_from_slice(given);
                 }
-                (out.region, out.dissipated) = (point.branch.name(), point.dissipated);
+                (out.region, out.dissipated) = (point.branch.name, point.dissipated);
             }
         }
         Ok(out)

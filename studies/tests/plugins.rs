@@ -156,7 +156,7 @@ fn auto_chooses_what_it_chose_by_name() {
             let chosen: Vec<String> = path_solvers(&input).into_iter().map(|(tag, _)| tag).collect();
             let settles = case.stages.iter().any(|stage| !stage.settlements.is_empty());
             if assembly.deforms() || settings.finite || settles {
-                let facets = |j| assembly.law(j).is_none_or(|law| law.formulation().facets().is_some());
+                let facets = |j| assembly.law(j).is_none_or(|law| law.facets().is_some());
                 let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
                 let exact = !settings.finite && linear && assembly.joints.iter().all(facets);
                 assert_eq!(chosen[0], if exact { "event_path" } else { "newton_path" }, "{name}, case {}", case.id);

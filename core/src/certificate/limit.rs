@@ -108,13 +108,13 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         .laws
         .iter()
         .enumerate()
-        .find_map(|(index, (name, law))| (joined(index) && law.formulation().facets().is_none()).then_some(name));
+        .find_map(|(index, (name, law))| (joined(index) && law.facets().is_none()).then_some(name));
     if let Some(name) = unread {
         let failures = vec![format!("joint law \"{name}\" is not given by facets: its strength cannot be checked")];
         return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
     }
     let facets: Vec<Vec<Facet>> =
-        assembly.catalogue.laws.iter().map(|(_, law)| law.formulation().facets().unwrap_or_default()).collect();
+        assembly.catalogue.laws.iter().map(|(_, law)| law.facets().unwrap_or_default()).collect();
     let mut check = Check {
         groups: assembly.rigid_groups().0,
         polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),

@@ -237,7 +237,7 @@ impl Mechanism {
 }
 
 fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {
-    let facets = law.formulation().facets().unwrap_or_default();
+    let facets = law.facets().unwrap_or_default();
     let mut uncrushed: Vec<_> = facets.into_iter().filter(|f| f.mode != FacetMode::Crushing).collect();
     if flow == FlowRule::NonAssociated {
         uncrushed.iter_mut().for_each(|f| f.normal = f.flow);

@@ -131,7 +131,7 @@ impl<'a> Groups<'a> {
     /// Rows of a joint's law over (N_0, N_1, T), and whether T is a variable: without friction T = 0 and slip is free.
     fn rows(&self, index: usize, first: usize) -> Result<(Vec<Row>, bool), String> {
         let joint = &self.assembly.joints[index];
-        let facets = self.assembly.law(joint).and_then(|law| law.formulation().facets()).unwrap_or_default();
+        let facets = self.assembly.law(joint).and_then(|law| law.facets()).unwrap_or_default();
         let polygon = YieldPolygon::of(&facets);
         if polygon.greatest_normal().is_finite() || polygon.least_normal() == f64::NEG_INFINITY {
             return Err("joints that crush, or never open, have no linear rows".into());

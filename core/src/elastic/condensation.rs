@@ -1,15 +1,14 @@
 //! Static condensation of a body's mesh on the points where something acts on it.
 //!
-//! Everything is computed for E = 1 and width 1 in the shape's own frame, in units of the shape's size: in
-//! plane problems the flexibility then does not depend on the size, and C = Q C̃ Qᵀ / (E width) with Q the
-//! body's rotation.
+//! Everything is computed for a material of modulus 1 and width 1 in the shape's own frame, in units of the shape's
+//! size: in plane problems the flexibility then does not depend on the size, and C = Q C̃ Qᵀ / (E width) with Q the
+//! body's rotation and E the material's modulus. The material's axes are those of the shape.
 
 use super::inelastic::{InelasticBody, Strains};
-use super::isotropic::IsotropicElastic;
 use super::mesh::MeshDensity;
 use super::shape::{Placement, Response, Shape, agree, placed};
 use super::stress::{Recovered, recovered};
-use crate::law::{PlanarUpdate, Plane};
+use crate::law::{Elasticity, PlanarUpdate, Plane, PlaneElasticity};
 use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
@@ -52,7 +51,7 @@ impl Known {
 }
 
 /// Condenses bodies. Congruent shapes (equal up to translation and rotation, vertices in the same
-/// order, with the same mesh density and Poisson's ratio) share one factorisation, and one
+/// order, with the same mesh density and elasticity but for its modulus) share one factorisation, and one
 /// flexibility where also their points agree.
 pub struct Condenser {
     plane: Plane,
@@ -75,14 +74,21 @@ impl Condenser {
     }
 
     /// The index of the shape of a body, made where there is none yet.
-    fn shape(&mut self, placement: &Placement, nu: f64, mesh: &MeshDensity, strains: bool) -> Result<usize, String> {
+    fn shape(
+        &mut self,
+        placement: &Placement,
+        elasticity: &Elasticity,
+        mesh: &MeshDensity,
+        strains: bool,
+    ) -> Result<usize, String> {
+        let elasticity = PlaneElasticity::new(elasticity, self.plane);
         let area = (placement.size.ln() * 1e6).floor() as i64;
         let near = (area - 1..=area + 1).filter_map(|key| self.by_area.get(&key)).flatten();
-        if let Some(&index) = near.into_iter().find(|&&index| self.shapes[index].shape.is(placement, nu, mesh, strains))
-        {
+        let known = |index: usize| self.shapes[index].shape.is(placement, &elasticity, mesh, strains);
+        if let Some(&index) = near.into_iter().find(|&&index| known(index)) {
             return Ok(index);
         }
-        let shape = Arc::new(Shape::new(placement, nu, mesh, self.plane, strains)?);
+        let shape = Arc::new(Shape::new(placement, elasticity, mesh, self.plane, strains)?);
         self.shapes.push(Known { shape, condensed: Vec::new(), strains: None, responses: Vec::new() });
         self.factorisations += 1;
         self.by_area.entry(area).or_default().push(self.shapes.len() - 1);
@@ -92,18 +98,18 @@ impl Condenser {
     fn prepare(
         &mut self,
         vertices: &[Vec2],
-        material: IsotropicElastic,
+        elasticity: &Elasticity,
         mesh: &MeshDensity,
         points: &[Vec2],
         strains: bool,
     ) -> Result<(Placement, usize, Vec<Vec2>), String> {
-        material.check()?;
+        elasticity.check()?;
         mesh.check()?;
         if !(self.width.is_finite() && self.width > 0.0) {
             return Err(format!("a body's width is greater than 0, not {} m", self.width));
         }
         let placement = Placement::new(vertices)?;
-        let shape = self.shape(&placement, material.poisson_ratio, mesh, strains && mesh.order == 1)?;
+        let shape = self.shape(&placement, elasticity, mesh, strains && mesh.order == 1)?;
         let local = points.iter().map(|&p| placement.local(p)).collect();
         Ok((placement, shape, local))
     }
@@ -113,31 +119,31 @@ impl Condenser {
     pub fn condense(
         &mut self,
         vertices: &[Vec2],
-        material: IsotropicElastic,
+        elasticity: &Elasticity,
         mesh: &MeshDensity,
         points: &[Vec2],
     ) -> Result<Condensed, String> {
-        let (placement, index, local) = self.prepare(vertices, material, mesh, points, false)?;
+        let (placement, index, local) = self.prepare(vertices, elasticity, mesh, points, false)?;
         let flexibility = self.shapes[index].flexibility(local, points)?;
-        let turned = placed(&flexibility, placement.rotation, 1.0 / (material.young_modulus * self.width), true);
+        let turned = placed(&flexibility, placement.rotation, 1.0 / (elasticity.modulus * self.width), true);
         Ok(Condensed { points: points.to_vec(), flexibility: turned })
     }
 
     /// The same body of a material that yields: its first answer is that of [`condense`](Self::condense)
-    /// with the same elastic constants, to the last bit for elements of order 2 and 3.
+    /// with the same elasticity, to the last bit for elements of order 2 and 3.
     pub fn inelastic(
         &mut self,
         vertices: &[Vec2],
-        material: IsotropicElastic,
+        elasticity: &Elasticity,
         update: Arc<PlanarUpdate>,
         mesh: &MeshDensity,
         points: &[Vec2],
     ) -> Result<InelasticBody, String> {
-        let (placement, index, local) = self.prepare(vertices, material, mesh, points, true)?;
+        let (placement, index, local) = self.prepare(vertices, elasticity, mesh, points, true)?;
         let (plane, width) = (self.plane, self.width);
         let known = &mut self.shapes[index];
         let flexibility = known.flexibility(local.clone(), points)?;
-        let scale = 1.0 / (material.young_modulus * width);
+        let scale = 1.0 / (elasticity.modulus * width);
         let flexibility = Arc::new(placed(&flexibility, placement.rotation, scale, true));
         let strains = known.strains.get_or_insert_with(|| Arc::new(Strains::new(&known.shape, plane))).clone();
         let response = known.responses.iter().find(|(points, _)| agree(points, &local));
@@ -152,27 +158,27 @@ impl Condenser {
             }
         };
         let shape = known.shape.clone();
-        Ok(InelasticBody::new(shape, strains, response, flexibility, placement, material, update, width))
+        Ok(InelasticBody::new(shape, strains, response, flexibility, placement, elasticity, update, width))
     }
 
     /// Displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform
-    /// `acceleration` \[m/s²\] as body force. They are those of a body in equilibrium; what is left of
+    /// `body_force` \[N/m³\]. They are those of a body in equilibrium; what is left of
     /// the resultant is in [`Recovered::imbalance`] and is balanced by inertia.
     pub fn recover(
         &mut self,
         vertices: &[Vec2],
-        material: IsotropicElastic,
+        elasticity: &Elasticity,
         mesh: &MeshDensity,
         points: &[Vec2],
         forces: &[Vec2],
-        acceleration: Vec2,
+        body_force: Vec2,
     ) -> Result<Recovered, String> {
         if points.len() != forces.len() {
             return Err(format!("{} forces act at {} points", forces.len(), points.len()));
         }
-        let (placement, index, local) = self.prepare(vertices, material, mesh, points, false)?;
+        let (placement, index, local) = self.prepare(vertices, elasticity, mesh, points, false)?;
         let shape = &self.shapes[index].shape;
-        let scale = 1.0 / (material.young_modulus * self.width * placement.size);
+        let scale = 1.0 / (elasticity.modulus * self.width * placement.size);
         let to_local = placement.rotation.transpose();
         let mut loads = DMatrix::zeros(2 * shape.mesh.nodes.len(), 1);
         for (place, force) in shape.places(&local, points)?.iter().zip(forces) {
@@ -181,7 +187,7 @@ impl Condenser {
                 (0..2).for_each(|i| loads[(2 * node + i, 0)] += value * force[i]);
             }
         }
-        let weight = acceleration * (material.density * placement.size.powi(2) * self.width);
+        let weight = body_force * (placement.size.powi(2) * self.width);
         let all = shape.displacements(loads)?;
         let displacement: Vec<Vec2> =
             (0..shape.mesh.nodes.len()).map(|i| Vec2::new(all[(2 * i, 0)], all[(2 * i + 1, 0)])).collect();
@@ -189,7 +195,7 @@ impl Condenser {
         for (point, force) in points.iter().zip(forces) {
             crate::model::add_force(&mut imbalance, point - placement.origin, *force, 1.0);
         }
-        let local = recovered(&shape.mesh, &shape.reference, shape.hooke, &displacement);
-        Ok(local.placed(placement.origin, placement.rotation, placement.size, material.young_modulus, imbalance))
+        let local = recovered(&shape.mesh, &shape.reference, &shape.elasticity, &displacement);
+        Ok(local.placed(placement.origin, placement.rotation, placement.size, elasticity.modulus, imbalance))
     }
 }

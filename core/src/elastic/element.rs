@@ -1,54 +1,16 @@
-//! One element: its map, its stiffness, its stresses. E = 1 and width 1 throughout.
+//! One element: its map, its stiffness, its stresses, for a material of modulus 1 and width 1 throughout.
 //!
-//! Displacement elements (orders 2 and 3): K = ∫ Bᵀ D B dA with (order + 1)² Gauss points, written
-//! with Lamé's constants, K_ab,ij = ∫ λ ∂_i N_a ∂_j N_b + μ (∂_j N_a ∂_i N_b + δ_ij ∇N_a · ∇N_b).
-//! In plane stress λ is replaced by ν / (1 − ν²).
+//! Displacement elements (orders 2 and 3): K = ∫ Bᵀ D B dA with (order + 1)² Gauss points, D the
+//! operator of the plane problem.
 //!
 //! Order 1 (Pian & Sumihara 1984, eq. 25): σ = P β, H = ∫ Pᵀ S P dA, G = ∫ Pᵀ B dA,
-//! K = Gᵀ H⁻¹ G, β = H⁻¹ G u, with S the compliance of the plane problem and P the three uniform
+//! K = Gᵀ H⁻¹ G, β = H⁻¹ G u, with S = D⁻¹ and P the three uniform
 //! stresses and two linear ones, t₁ ⊗ t₁ η and t₃ ⊗ t₃ ξ, along the element's mean axes t₁, t₃.
 
 use super::quadrature::{gauss, lagrange, lagrange_slopes, lobatto};
 use crate::law::Plane;
 use crate::model::geometry::Vec2;
-use nalgebra::{DMatrix, Matrix2, Matrix3, Matrix5, SMatrix, SVector};
-
-/// Lamé's constants for E = 1, λ as the plane problem sees it.
-#[derive(Debug, Clone, Copy)]
-pub struct Hooke {
-    pub lambda: f64,
-    pub mu: f64,
-}
-
-impl Hooke {
-    pub fn new(plane: Plane, nu: f64) -> Self {
-        let lambda = match plane {
-            Plane::Strain => nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-            Plane::Stress => nu / (1.0 - nu * nu),
-        };
-        Hooke { lambda, mu: 0.5 / (1.0 + nu) }
-    }
-
-    /// (σ_xx, σ_yy, σ_xy) from the displacement's gradient ∂u_i/∂x_j.
-    pub fn stress(&self, gradient: &Matrix2<f64>) -> [f64; 3] {
-        let pressure = self.lambda * gradient.trace();
-        let shear = self.mu * (gradient[(0, 1)] + gradient[(1, 0)]);
-        [pressure + 2.0 * self.mu * gradient[(0, 0)], pressure + 2.0 * self.mu * gradient[(1, 1)], shear]
-    }
-
-    /// D: (σ_xx, σ_yy, σ_xy) from (ε_xx, ε_yy, γ_xy).
-    pub fn stiffness(&self) -> Matrix3<f64> {
-        let Hooke { lambda, mu } = *self;
-        Matrix3::new(lambda + 2.0 * mu, lambda, 0.0, lambda, lambda + 2.0 * mu, 0.0, 0.0, 0.0, mu)
-    }
-
-    /// S: (ε_xx, ε_yy, γ_xy) from (σ_xx, σ_yy, σ_xy).
-    fn compliance(&self) -> Matrix3<f64> {
-        let (l, m) = (self.lambda, self.mu);
-        let (direct, cross) = ((l + 2.0 * m) / (4.0 * m * (l + m)), -l / (4.0 * m * (l + m)));
-        Matrix3::new(direct, cross, 0.0, cross, direct, 0.0, 0.0, 0.0, 1.0 / m)
-    }
-}
+use nalgebra::{DMatrix, Matrix2, Matrix3, Matrix5, SMatrix, SVector, Vector3};
 
 /// Shape functions at one point of the reference square \[−1, 1\]².
 #[derive(Debug, Clone)]
@@ -137,15 +99,14 @@ pub fn inertia(reference: &Reference, corners: &[Vec2; 4]) -> Vec<(f64, Vec2)> {
 }
 
 /// The element's stiffness, rows and columns (x, y) per node.
-pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], hooke: Hooke) -> DMatrix<f64> {
+pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -> DMatrix<f64> {
     if reference.order == 1 {
-        let hybrid = Hybrid::new(reference, corners, hooke);
+        let hybrid = Hybrid::new(reference, corners, d);
         let k = hybrid.coupling.transpose() * hybrid.stresses_from_displacements();
         return DMatrix::from_fn(8, 8, |i, j| 0.5 * (k[(i, j)] + k[(j, i)]));
     }
     let count = reference.nodes.len().pow(2);
     let mut k = DMatrix::zeros(2 * count, 2 * count);
-    let Hooke { lambda, mu } = hooke;
     for point in &reference.points {
         let (gradient, determinant) = gradients(corners, point);
         let area = point.weight * determinant;
@@ -153,12 +114,11 @@ pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], hooke: Hooke) -> DM
             let h = gradient[b] * area;
             for a in 0..=b {
                 let g = gradient[a];
-                let (xx, yy) = (g.x * h.x, g.y * h.y);
-                let both = mu * (xx + yy);
-                k[(2 * a, 2 * b)] += (lambda + mu) * xx + both;
-                k[(2 * a + 1, 2 * b + 1)] += (lambda + mu) * yy + both;
-                k[(2 * a, 2 * b + 1)] += lambda * g.x * h.y + mu * g.y * h.x;
-                k[(2 * a + 1, 2 * b)] += lambda * g.y * h.x + mu * g.x * h.y;
+                let (xx, yy, xy, yx) = (g.x * h.x, g.y * h.y, g.x * h.y, g.y * h.x);
+                k[(2 * a, 2 * b)] += d.m11 * xx + d.m33 * yy + d.m13 * (xy + yx);
+                k[(2 * a + 1, 2 * b + 1)] += d.m22 * yy + d.m33 * xx + d.m23 * (xy + yx);
+                k[(2 * a, 2 * b + 1)] += d.m12 * xy + d.m33 * yx + d.m13 * xx + d.m23 * yy;
+                k[(2 * a + 1, 2 * b)] += d.m12 * yx + d.m33 * xy + d.m13 * xx + d.m23 * yy;
             }
         }
     }
@@ -202,8 +162,7 @@ pub fn strain_operators(reference: &Reference, corners: &[Vec2; 4], plane: Plane
 }
 
 /// K of strains from [`strain_operators`].
-pub fn stiffness_of_strains(operators: &[(DMatrix<f64>, f64)], hooke: Hooke) -> DMatrix<f64> {
-    let d = hooke.stiffness();
+pub fn stiffness_of_strains(operators: &[(DMatrix<f64>, f64)], d: &Matrix3<f64>) -> DMatrix<f64> {
     let columns = operators[0].0.ncols();
     let mut k = DMatrix::zeros(columns, columns);
     for (b, weight) in operators {
@@ -223,14 +182,14 @@ struct Hybrid {
 }
 
 impl Hybrid {
-    fn new(reference: &Reference, corners: &[Vec2; 4], hooke: Hooke) -> Self {
+    fn new(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -> Self {
         let (_, middle) = bilinear(corners, [0.0, 0.0]);
         let modes = [0, 1].map(|i| {
             let t = middle.column(i).normalize();
             [t[0] * t[0], t[1] * t[1], t[0] * t[1]]
         });
         let mut hybrid = Hybrid { inverse: Matrix5::zeros(), coupling: SMatrix::zeros(), modes };
-        let compliance = hooke.compliance();
+        let compliance = d.try_inverse().unwrap_or(Matrix3::repeat(f64::NAN));
         let mut h = Matrix5::zeros();
         for point in &reference.points {
             let (gradient, determinant) = gradients(corners, point);
@@ -273,13 +232,13 @@ impl Hybrid {
 pub fn stresses(
     reference: &Reference,
     corners: &[Vec2; 4],
-    hooke: Hooke,
+    d: &Matrix3<f64>,
     displacement: &[Vec2],
 ) -> (Vec<[f64; 3]>, [f64; 3]) {
     let grid: Vec<[f64; 2]> =
         reference.nodes.iter().flat_map(|&eta| reference.nodes.iter().map(move |&xi| [xi, eta])).collect();
     if reference.order == 1 {
-        let hybrid = Hybrid::new(reference, corners, hooke);
+        let hybrid = Hybrid::new(reference, corners, d);
         let u = SVector::<f64, 8>::from_fn(|i, _| displacement[i / 2][i % 2]);
         let beta = hybrid.stresses_from_displacements() * u;
         let at = |place: [f64; 2]| <[f64; 3]>::from(hybrid.field(place) * beta);
@@ -289,7 +248,7 @@ pub fn stresses(
     let sample = |place: [f64; 2]| {
         let (gradient, _) = gradients(corners, &reference.at(place));
         let sum = gradient.iter().zip(displacement).fold(Matrix2::zeros(), |sum, (g, u)| sum + u * g.transpose());
-        hooke.stress(&sum)
+        <[f64; 3]>::from(d * Vector3::new(sum.m11, sum.m22, sum.m12 + sum.m21))
     };
     let samples: Vec<[f64; 3]> =
         sampling.iter().flat_map(|&eta| sampling.iter().map(move |&xi| [xi, eta])).map(sample).collect();
@@ -308,6 +267,7 @@ pub fn stresses(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::{Elasticity, PlaneElasticity};
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.2], [1.7, 1.1], [-0.1, 0.9]];
 
@@ -318,8 +278,9 @@ mod tests {
         let corners = CORNERS.map(Vec2::from);
         let area = crate::model::geometry::area_and_centroid(&corners).0;
         for (order, plane) in [1, 2, 3].iter().flat_map(|&p| [(p, Plane::Strain), (p, Plane::Stress)]) {
-            let (reference, hooke) = (Reference::new(order), Hooke::new(plane, 0.3));
-            let k = stiffness(&reference, &corners, hooke);
+            let reference = Reference::new(order);
+            let d = PlaneElasticity::new(&Elasticity::isotropic(1.0, 0.3), plane).stiffness;
+            let k = stiffness(&reference, &corners, &d);
             let values = k.clone().symmetric_eigenvalues();
             let zero = values.iter().filter(|v| v.abs() < 1e-12).count();
             assert_eq!((zero, values.min() > -1e-12), (3, true), "order {order}");
@@ -330,24 +291,13 @@ mod tests {
             };
             let nodes: Vec<Vec2> = (0..reference.nodes.len().pow(2)).map(|k| strain * place(k)).collect();
             let u = nalgebra::DVector::from_fn(k.nrows(), |i, _| nodes[i / 2][i % 2]);
-            let stress = hooke.stress(&strain);
+            let stress = d * Vector3::new(1.0, -0.5, 0.3);
             let energy = 0.5 * area * (stress[0] * 1.0 + stress[1] * -0.5 + stress[2] * 0.3);
             assert!((0.5 * u.dot(&(&k * &u)) - energy).abs() < 1e-13, "order {order}");
-            let (at_nodes, middle) = stresses(&reference, &corners, hooke, &nodes);
+            let (at_nodes, middle) = stresses(&reference, &corners, &d, &nodes);
             for found in at_nodes.iter().chain([&middle]) {
                 assert!((0..3).all(|i| (found[i] - stress[i]).abs() < 1e-13), "order {order}: {found:?} {stress:?}");
             }
-        }
-    }
-
-    /// The compliance inverts Hooke's law.
-    #[test]
-    fn compliance_inverts_hooke() {
-        for plane in [Plane::Strain, Plane::Stress] {
-            let hooke = Hooke::new(plane, 0.35);
-            let stress = hooke.stress(&Matrix2::new(0.3, 0.1, 0.5, -0.7));
-            let strain = hooke.compliance() * nalgebra::Vector3::from(stress);
-            assert!((strain - nalgebra::Vector3::new(0.3, -0.7, 0.6)).norm() < 1e-15);
         }
     }
 }

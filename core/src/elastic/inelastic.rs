@@ -15,8 +15,8 @@
 //! no matrix is factorised. Internal forces of symmetric stresses are in equilibrium for any v, so
 //! gravity enters as for elastic bodies: it is the inertia relief of the forces on the points.
 //!
-//! Everything is in the shape's own frame with unit area, forces in E × width × size. An isotropic law
-//! gives the same in any frame; states (plastic strains) are in the shape's frame.
+//! Everything is in the shape's own frame with unit area, forces in modulus × width × size: strains, stresses,
+//! states (plastic strains) and the axes of the material.
 //!
 //! **Characteristic length** of a Gauss point: √A of its element (Rots 1988, Computational modeling of concrete
 //! fracture, section 5). What localises is a band one element wide, h∥ along the compression, so that the energy
@@ -26,11 +26,10 @@
 //! follows with half of its strain, and 13/18 of the element take part; so softening is for elements of order 1.
 
 use super::element::strain_operators;
-use super::isotropic::IsotropicElastic;
 use super::mesh::{Mesh, MeshDensity};
 use super::shape::{Place, Placement, Response, Shape, at_places};
 use super::stress::Recovered;
-use crate::law::{PlanarPoint, PlanarUpdate, Plane};
+use crate::law::{Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext, Voigt};
 use crate::model::geometry::{Vec2, area_and_centroid};
 use nalgebra::{DMatrix, Matrix2};
 use std::fmt;
@@ -91,13 +90,16 @@ pub struct InelasticBody {
     pub(super) rotation: Matrix2<f64>,
     pub(super) size: f64,
     pub(super) width: f64,
-    pub(super) material: IsotropicElastic,
+    /// E \[Pa\]: what the shape's elasticity is relative to.
+    pub(super) modulus: f64,
+    /// C⁻¹ × E in space.
+    pub(super) compliance: [Voigt; 6],
     pub(super) update: Arc<PlanarUpdate>,
 }
 
 impl fmt::Debug for InelasticBody {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.debug_struct("InelasticBody").field("material", &self.material).finish_non_exhaustive()
+        out.debug_struct("InelasticBody").field("update", &self.update).finish_non_exhaustive()
     }
 }
 
@@ -109,12 +111,26 @@ impl InelasticBody {
         (places, response): Response,
         flexibility: Arc<DMatrix<f64>>,
         placement: Placement,
-        material: IsotropicElastic,
+        elasticity: &Elasticity,
         update: Arc<PlanarUpdate>,
         width: f64,
     ) -> Self {
         let Placement { origin, rotation, size, .. } = placement;
-        InelasticBody { shape, strains, places, response, flexibility, origin, rotation, size, width, material, update }
+        let (modulus, compliance) = (elasticity.modulus, elasticity.compliance());
+        InelasticBody {
+            shape,
+            strains,
+            places,
+            response,
+            flexibility,
+            origin,
+            rotation,
+            size,
+            width,
+            modulus,
+            compliance,
+            update,
+        }
     }
 
     /// C of the elastic body \[m/N\].
@@ -185,7 +201,7 @@ impl InelasticBody {
 
     /// Forces (x, y per point) \[N\] in the body's axes as loads of the shape.
     pub(super) fn local_forces(&self, forces: &[f64]) -> Vec<f64> {
-        let scale = 1.0 / (self.material.young_modulus * self.width * self.size);
+        let scale = 1.0 / (self.modulus * self.width * self.size);
         let to_local = self.rotation.transpose() * scale;
         forces.chunks(2).flat_map(|f| <[f64; 2]>::from(to_local * Vec2::new(f[0], f[1]))).collect()
     }
@@ -217,7 +233,7 @@ impl InelasticBody {
         self.shape.balanced(&mut rest);
         let left = rest.iter().zip(internal).map(|(f, own)| (f - own).abs());
         let worst = left.fold(0.0, |a: f64, x| if x.is_nan() { x } else { a.max(x) });
-        worst * self.material.young_modulus * self.width * self.size
+        worst * self.modulus * self.width * self.size
     }
 
     pub(super) fn strains_at(&self, displacement: &[f64]) -> Vec<[f64; 3]> {
@@ -243,16 +259,17 @@ impl InelasticBody {
         history: &[f64],
         new: &mut [f64],
     ) -> Result<Vec<PlanarPoint>, String> {
-        let lengths: Vec<f64> = self
+        let context = |length: &f64| UpdateContext::of_length(length * self.size);
+        let contexts: Vec<UpdateContext> = self
             .strains
             .operators
             .iter()
             .zip(&self.strains.lengths)
-            .flat_map(|(points, length)| std::iter::repeat_n(length * self.size, points.len()))
+            .flat_map(|(points, length)| std::iter::repeat_n(context(length), points.len()))
             .collect();
         let mut points = vec![PlanarPoint::ZERO; strains.len()];
         self.update
-            .update(strains, &lengths, history, new, &mut points)
+            .update(strains, &contexts, history, new, &mut points)
             .map_err(|wrong| format!("the stress at a Gauss point cannot be found: {wrong}"))?;
         Ok(points)
     }
@@ -263,7 +280,7 @@ impl InelasticBody {
         let mut next = points.iter();
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
             for ((b, weight), point) in operators.iter().zip(&mut next) {
-                let stress = point.stress.map(|s| s * weight / self.material.young_modulus);
+                let stress = point.stress.map(|s| s * weight / self.modulus);
                 for (j, column) in b.column_iter().enumerate() {
                     internal[2 * nodes[j / 2] + j % 2] +=
                         column[0] * stress[0] + column[1] * stress[1] + column[2] * stress[2];
@@ -291,36 +308,31 @@ impl InelasticBody {
     }
 
     /// Displacements and stresses of the whole mesh in world axes of the undeformed placement. Stresses at
-    /// nodes are those of the Gauss points next to them, so that none lies beyond the yield surface. Also
-    /// σ_zz \[Pa\] at the nodes and in the elements.
-    pub fn recover(&self, displacement: &[f64], state: &InelasticState) -> Result<(Recovered, [Vec<f64>; 2]), String> {
+    /// nodes are those of the Gauss points next to them, so that none lies beyond the yield surface.
+    pub fn recover(&self, displacement: &[f64], state: &InelasticState) -> Result<Recovered, String> {
         let strains = self.strains_at(displacement);
         let mut new = state.history.clone();
         let points = self.stresses(&strains, &state.history, &mut new)?;
+        let full = |p: &PlanarPoint| [p.stress[0], p.stress[1], p.stress_across, p.stress[2]];
         let mesh = &self.shape.mesh;
-        let mut sums = vec![([0.0; 3], 0.0, 0.0); mesh.nodes.len()];
-        let mut element_across = Vec::with_capacity(mesh.elements.len());
+        let mut sums = vec![([0.0; 4], 0.0); mesh.nodes.len()];
         let mut element_stress = Vec::with_capacity(mesh.elements.len());
         let per = self.strains.operators[0].len();
         for (index, nodes) in mesh.elements.iter().enumerate() {
             let here = &points[index * per..(index + 1) * per];
             for (node, point) in nodes.iter().zip(here) {
-                (0..3).for_each(|i| sums[*node].0[i] += point.stress[i]);
-                sums[*node].1 += point.stress_across;
-                sums[*node].2 += 1.0;
+                (0..4).for_each(|i| sums[*node].0[i] += full(point)[i]);
+                sums[*node].1 += 1.0;
             }
             let weights = &self.strains.operators[index];
             let area: f64 = weights.iter().map(|w| w.1).sum();
-            element_stress
-                .push([0, 1, 2].map(|i| here.iter().zip(weights).map(|(p, w)| p.stress[i] * w.1).sum::<f64>() / area));
-            element_across.push(here.iter().zip(weights).map(|(p, w)| p.stress_across * w.1).sum::<f64>() / area);
+            let mean = |i: usize| here.iter().zip(weights).map(|(p, w)| full(p)[i] * w.1).sum::<f64>() / area;
+            element_stress.push([0, 1, 2, 3].map(mean));
         }
-        let across = sums.iter().map(|(_, zz, count)| zz / count).collect();
         let local: Vec<Vec2> = displacement.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect();
-        let stress = sums.into_iter().map(|(sum, _, count)| sum.map(|s| s / count)).collect();
+        let stress = sums.into_iter().map(|(sum, count)| sum.map(|s| s / count)).collect();
         let recovered = Recovered::with(mesh, local, stress, element_stress);
-        let placed = recovered.placed(self.origin, self.rotation, self.size, 1.0, [0.0; 3]);
-        Ok((placed, [across, element_across]))
+        Ok(recovered.placed(self.origin, self.rotation, self.size, 1.0, [0.0; 3]))
     }
 
     /// Mean over each element of a value of its Gauss points.

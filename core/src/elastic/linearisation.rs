@@ -1,11 +1,10 @@
 //! A body of a yielding material linearised at displacements of its nodes: stresses, energies, tangent, and the
 //! condensation of the tangent on its points. The equations are those of the module `inelastic`.
 
-use super::element::{Hooke, stiffness_of_strains};
+use super::element::stiffness_of_strains;
 use super::inelastic::{InelasticBody, InelasticState};
-use super::isotropic::IsotropicElastic;
 use super::shape::{SPRINGS, at_places, placed};
-use crate::law::{PlanarPoint, Region};
+use crate::law::{Effect, PlanarPoint};
 use crate::linear::{Entries, SparseLu};
 use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
@@ -62,40 +61,27 @@ impl InelasticBody {
         self.unbalanced(&linear.internal, forces)
     }
 
-    /// ε^p of a strain and its stress: what Hooke's law does not explain.
-    fn plastic_strain(&self, strain: &[f64; 3], point: &PlanarPoint) -> [f64; 4] {
-        let IsotropicElastic { young_modulus: e, poisson_ratio: nu, .. } = self.material;
-        let ([xx, yy, xy], zz) = (point.stress, point.stress_across);
-        let direct = |s: f64| ((1.0 + nu) * s - nu * (xx + yy + zz)) / e;
-        [
-            strain[0] - direct(xx),
-            strain[1] - direct(yy),
-            point.strain_across - direct(zz),
-            strain[2] - 2.0 * (1.0 + nu) * xy / e,
-        ]
+    /// C⁻¹ σ of a point: the elastic part of (ε_xx, ε_yy, ε_zz, γ_xy).
+    fn elastic_strain(&self, stress: [f64; 4]) -> [f64; 4] {
+        let entry = |i: usize| (0..4).map(|j| self.compliance[i][j] * stress[j]).sum::<f64>() / self.modulus;
+        [0, 1, 2, 3].map(entry)
     }
 
     /// ∂(σ · Δε^p)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\].
     fn dissipation_slope(&self, point: &PlanarPoint, step: &[f64; 4]) -> [f64; 3] {
-        let IsotropicElastic { young_modulus: e, poisson_ratio: nu, .. } = self.material;
-        let ([xx, yy, xy], zz) = (point.stress, point.stress_across);
-        let mut slope = [0.0; 3];
-        for (j, slope) in slope.iter_mut().enumerate() {
+        let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
+        [0, 1, 2].map(|j| {
             let t = [point.tangent[0][j], point.tangent[1][j], point.tangent_across[j], point.tangent[2][j]];
-            let trace = t[0] + t[1] + t[2];
-            let direct = |s: f64| ((1.0 + nu) * s - nu * trace) / e;
-            let elastic = [direct(t[0]), direct(t[1]), direct(t[2]), 2.0 * (1.0 + nu) * t[3] / e];
+            let elastic = self.elastic_strain(t);
             let total = [f64::from(j == 0), f64::from(j == 1), 0.0, f64::from(j == 2)];
-            let stress = [xx, yy, zz, xy];
-            *slope = (0..4).map(|i| t[i] * step[i] + stress[i] * (total[i] - elastic[i])).sum();
-        }
-        slope
+            (0..4).map(|i| t[i] * step[i] + stress[i] * (total[i] - elastic[i])).sum()
+        })
     }
 
     /// The body at displacements of its nodes, `start` being the state at the step's start. An error
     /// says why there are no stresses or no tangent.
     pub fn linearise(&self, displacement: Vec<f64>, start: &InelasticState) -> Result<Linearisation, String> {
-        let (e, volume) = (self.material.young_modulus, self.size.powi(2) * self.width);
+        let volume = self.size.powi(2) * self.width;
         let strains = self.strains_at(&displacement);
         let mut end = start.clone();
         let points = self.stresses(&strains, &start.history, &mut end.history)?;
@@ -104,21 +90,22 @@ impl InelasticBody {
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
             for (b, weight) in operators {
                 let (point, strain) = (&points[index], &strains[index]);
-                let plastic = self.plastic_strain(strain, point);
-                let elastic = [strain[0], strain[1], point.strain_across, strain[2]];
-                let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
-                stored += 0.5 * weight * volume * (0..4).map(|i| stress[i] * (elastic[i] - plastic[i])).sum::<f64>();
-                if point.region != Region::Elastic {
+                stored += weight * volume * point.stored;
+                if !point.branch.is_elastic() {
+                    let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
+                    let (elastic, total) =
+                        (self.elastic_strain(stress), [strain[0], strain[1], point.strain_across, strain[2]]);
+                    let plastic = [0, 1, 2, 3].map(|i| total[i] - elastic[i]);
                     let before = start.plastic_strain[index];
                     let step = [0, 1, 2, 3].map(|i| plastic[i] - before[i]);
                     let [x, y, z, xy] = step;
                     let equivalent = (2.0 / 3.0 * (x * x + y * y + z * z + 0.5 * xy * xy)).sqrt();
                     end.plastic_strain[index] = plastic;
                     end.equivalent[index] += equivalent;
-                    if point.region != Region::Apex && stress[0] + stress[1] + stress[2] < 0.0 {
+                    if point.branch.effect != Effect::Tearing && stress[0] + stress[1] + stress[2] < 0.0 {
                         end.crushed[index] += equivalent;
                     }
-                    end.dissipated += weight * volume * point.dissipation;
+                    end.dissipated += weight * volume * point.dissipated;
                     let by_strain = self.dissipation_slope(point, &step).map(|s| s * weight * volume);
                     for (j, column) in b.column_iter().enumerate() {
                         slope[2 * nodes[j / 2] + j % 2] +=
@@ -145,7 +132,7 @@ impl InelasticBody {
             }
             let (x, own) = solved.ok_or("the tangent stiffness of a block that yields has no inverse")?;
             rest = displacement.iter().zip(own.iter()).map(|(v, own)| v - own).collect();
-            let scale = 1.0 / (e * self.width);
+            let scale = 1.0 / (self.modulus * self.width);
             flexibility = Arc::new(placed(&at_places(&self.places, &x), self.rotation, scale, false));
             response = Arc::new(x);
         } else if start.yielded {
@@ -170,23 +157,22 @@ impl InelasticBody {
 
     /// P K⁺ Pᵀ Nᵀ and P K⁺ f_int for the tangents of points that yield, the elastic stiffness elsewhere.
     fn solve(&self, points: &[PlanarPoint], internal: &[f64], share: f64) -> Option<(DMatrix<f64>, Vec<f64>)> {
-        let e = self.material.young_modulus;
         let size = internal.len();
         let mut entries: Entries = Vec::new();
         entries.extend(SPRINGS.map(|dof| (dof, dof, 1.0)));
         let mut first = 0;
-        let hooke = Hooke::new(self.update.plane(), self.material.poisson_ratio);
+        let elastic = &self.shape.elasticity.stiffness;
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
             let here = &points[first..first + operators.len()];
             first += operators.len();
-            let k = if here.iter().all(|point| point.region == Region::Elastic) {
-                stiffness_of_strains(operators, hooke)
+            let k = if here.iter().all(|point| point.branch.is_elastic()) {
+                stiffness_of_strains(operators, elastic)
             } else {
                 let mut k = DMatrix::zeros(2 * nodes.len(), 2 * nodes.len());
                 for ((b, weight), point) in operators.iter().zip(here) {
-                    let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / e);
-                    if point.region != Region::Elastic {
-                        d += hooke.stiffness() * share;
+                    let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / self.modulus);
+                    if !point.branch.is_elastic() {
+                        d += elastic * share;
                     }
                     k += b.transpose() * (d * *weight) * b;
                 }
@@ -232,7 +218,7 @@ impl InelasticBody {
         if linear.yielding == 0 {
             return vec![0.0; 2 * self.places.len()];
         }
-        let scale = 1.0 / (self.material.young_modulus * self.width * self.size);
+        let scale = 1.0 / (self.modulus * self.width * self.size);
         let local: Vec<f64> = linear
             .response
             .column_iter()

@@ -42,7 +42,6 @@
 mod condensation;
 mod element;
 mod inelastic;
-mod isotropic;
 mod joint;
 mod linearisation;
 mod mesh;
@@ -53,7 +52,6 @@ mod stress;
 
 pub use self::condensation::{Condensed, Condenser};
 pub use self::inelastic::{InelasticBody, InelasticState, largest_element};
-pub use self::isotropic::IsotropicElastic;
 pub use self::joint::{breaks_on_joint, joint_points, union_breaks};
 pub use self::linearisation::Linearisation;
 pub use self::mesh::{Mesh, MeshDensity, edge_breaks, edge_points};

@@ -1,9 +1,9 @@
-//! A shape: a placed polygon's mesh in its own frame with its factorisation, for E = 1, width 1 and area 1
+//! A shape: a placed polygon's mesh in its own frame with its factorisation, for modulus 1, width 1 and area 1
 //! (origin at the centroid, x along edge 0), and what forces on its points do to it.
 
-use super::element::{Hooke, Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
+use super::element::{Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
 use super::mesh::{Mesh, MeshDensity};
-use crate::law::Plane;
+use crate::law::{Plane, PlaneElasticity};
 use crate::linear::{Entries, SparseLdlt};
 use crate::model::geometry::{Vec2, area_and_centroid, bounding_box, turned};
 use nalgebra::{DMatrix, Matrix2};
@@ -62,17 +62,16 @@ pub(super) type Place = Vec<(usize, f64)>;
 /// Places of points, and the elastic displacements of all nodes by forces there.
 pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
-/// A mesh with its factorisation, for E = 1, width 1 and area 1, centroid at the origin.
+/// A mesh with its factorisation, for modulus 1, width 1 and area 1, centroid at the origin.
 pub(super) struct Shape {
     vertices: Vec<Vec2>,
     /// √area \[m\].
     size: f64,
-    poisson_ratio: f64,
     density: MeshDensity,
     /// Whether the elements are those of strains also where others are better for linear materials.
     of_strains: bool,
     pub reference: Reference,
-    pub hooke: Hooke,
+    pub elasticity: PlaneElasticity,
     pub mesh: Mesh,
     /// Stiffness with springs of stiffness 1 at `SPRINGS`.
     factorised: SparseLdlt,
@@ -89,13 +88,13 @@ pub(super) struct Shape {
 impl Shape {
     pub fn new(
         placement: &Placement,
-        nu: f64,
+        elasticity: PlaneElasticity,
         density: &MeshDensity,
         plane: Plane,
         of_strains: bool,
     ) -> Result<Self, String> {
         let mesh = Mesh::new(&placement.local, density)?;
-        let (reference, hooke) = (Reference::new(density.order), Hooke::new(plane, nu));
+        let (reference, d) = (Reference::new(density.order), &elasticity.stiffness);
         let count = mesh.nodes.len();
         let mut entries: Entries = Vec::with_capacity(mesh.elements.len() * (2 * mesh.elements[0].len()).pow(2));
         entries.extend(SPRINGS.map(|dof| (dof, dof, 1.0)));
@@ -103,8 +102,8 @@ impl Shape {
         for (index, nodes) in mesh.elements.iter().enumerate() {
             let corners = mesh.corners(index);
             let k = match of_strains {
-                true => stiffness_of_strains(&strain_operators(&reference, &corners, plane), hooke),
-                false => stiffness(&reference, &corners, hooke),
+                true => stiffness_of_strains(&strain_operators(&reference, &corners, plane), d),
+                false => stiffness(&reference, &corners, d),
             };
             let row = |i: usize| 2 * nodes[i / 2] + i % 2;
             for j in 0..k.ncols() {
@@ -128,11 +127,10 @@ impl Shape {
         Ok(Shape {
             vertices: placement.local.clone(),
             size: placement.size,
-            poisson_ratio: nu,
             density: *density,
             of_strains,
             reference,
-            hooke,
+            elasticity,
             mesh,
             factorised,
             stiffest,
@@ -142,8 +140,14 @@ impl Shape {
         })
     }
 
-    pub fn is(&self, placement: &Placement, nu: f64, density: &MeshDensity, of_strains: bool) -> bool {
-        self.poisson_ratio == nu
+    pub fn is(
+        &self,
+        placement: &Placement,
+        elasticity: &PlaneElasticity,
+        density: &MeshDensity,
+        of_strains: bool,
+    ) -> bool {
+        self.elasticity == *elasticity
             && self.of_strains == of_strains
             && self.density == *density
             && (self.size / placement.size - 1.0).abs() <= CONGRUENT
@@ -299,6 +303,7 @@ pub(super) fn placed(local: &DMatrix<f64>, q: Matrix2<f64>, scale: f64, symmetri
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::Elasticity;
 
     /// C̃ of a graded mesh of a concave polygon equals that of a dense solution of another form: the
     /// stiffness bordered by the conditions of mean motion, solved by LU with complete pivoting.
@@ -308,11 +313,12 @@ mod tests {
         for order in 1..=3 {
             let density = MeshDensity { elements: [2, 2], order, grading: [1.0; 2] };
             let placement = Placement::new(&outline).unwrap();
-            let shape = Shape::new(&placement, 0.25, &density, Plane::Strain, false).unwrap();
+            let elasticity = PlaneElasticity::new(&Elasticity::isotropic(1.0, 0.25), Plane::Strain);
+            let shape = Shape::new(&placement, elasticity, &density, Plane::Strain, false).unwrap();
             let n = 2 * shape.mesh.nodes.len();
             let mut system = DMatrix::zeros(n + 3, n + 3);
             for (index, nodes) in shape.mesh.elements.iter().enumerate() {
-                let k = stiffness(&shape.reference, &shape.mesh.corners(index), shape.hooke);
+                let k = stiffness(&shape.reference, &shape.mesh.corners(index), &shape.elasticity.stiffness);
                 let row = |i: usize| 2 * nodes[i / 2] + i % 2;
                 (0..k.nrows()).for_each(|i| (0..k.nrows()).for_each(|j| system[(row(i), row(j))] += k[(i, j)]));
             }

@@ -1,7 +1,8 @@
 //! Stresses and displacements of a whole mesh, for pictures and files; nothing else needs them.
 
-use super::element::{Hooke, Reference, stresses};
+use super::element::{Reference, stresses};
 use super::mesh::Mesh;
+use crate::law::PlaneElasticity;
 use crate::model::geometry::Vec2;
 use nalgebra::Matrix2;
 
@@ -19,10 +20,10 @@ pub struct Recovered {
     pub order: usize,
     /// Elastic displacement of each node, relative to the body's mean rigid motion \[m\].
     pub displacement: Vec<Vec2>,
-    /// (σ_xx, σ_yy, σ_xy) at each node, tension positive, the mean of the elements that share it \[Pa\].
-    pub stress: Vec<[f64; 3]>,
+    /// (σ_xx, σ_yy, σ_zz, σ_xy) at each node, tension positive, the mean of the elements that share it \[Pa\].
+    pub stress: Vec<[f64; 4]>,
     /// The same in the middle of each element \[Pa\].
-    pub element_stress: Vec<[f64; 3]>,
+    pub element_stress: Vec<[f64; 4]>,
     /// Resultant of what was given, \[F_x, F_y, moment about the centroid\] \[N, N m\]; zero in
     /// equilibrium.
     pub imbalance: [f64; 3],
@@ -40,21 +41,21 @@ fn vtk_order(order: usize) -> Vec<usize> {
     places
 }
 
-/// Stresses of a mesh with E = 1.
-pub fn recovered(mesh: &Mesh, reference: &Reference, hooke: Hooke, displacement: &[Vec2]) -> Recovered {
+/// Stresses of a mesh with modulus 1.
+pub fn recovered(mesh: &Mesh, reference: &Reference, elasticity: &PlaneElasticity, displacement: &[Vec2]) -> Recovered {
     let mut sums = vec![([0.0; 3], 0.0); mesh.nodes.len()];
     let mut element_stress = Vec::with_capacity(mesh.elements.len());
     for (index, nodes) in mesh.elements.iter().enumerate() {
         let local: Vec<Vec2> = nodes.iter().map(|&node| displacement[node]).collect();
-        let (at_nodes, middle) = stresses(reference, &mesh.corners(index), hooke, &local);
+        let (at_nodes, middle) = stresses(reference, &mesh.corners(index), &elasticity.stiffness, &local);
         for (node, stress) in nodes.iter().zip(at_nodes) {
             (0..3).for_each(|i| sums[*node].0[i] += stress[i]);
             sums[*node].1 += 1.0;
         }
-        element_stress.push(middle);
+        element_stress.push(elasticity.with_across(middle));
     }
     // Triangles of a cut polygon list each vertex, so a node without an element cannot be.
-    let stress = sums.into_iter().map(|(sum, count)| sum.map(|s| s / count)).collect();
+    let stress = sums.into_iter().map(|(sum, count)| elasticity.with_across(sum.map(|s| s / count))).collect();
     Recovered::with(mesh, displacement.to_vec(), stress, element_stress)
 }
 
@@ -63,8 +64,8 @@ impl Recovered {
     pub(super) fn with(
         mesh: &Mesh,
         displacement: Vec<Vec2>,
-        stress: Vec<[f64; 3]>,
-        element_stress: Vec<[f64; 3]>,
+        stress: Vec<[f64; 4]>,
+        element_stress: Vec<[f64; 4]>,
     ) -> Self {
         let order = vtk_order(mesh.order);
         Recovered {
@@ -78,19 +79,19 @@ impl Recovered {
         }
     }
 
-    /// The same in the world: `self` has unit size and E = 1.
+    /// The same in the world: `self` has unit size and modulus 1.
     pub(super) fn placed(
         self,
         origin: Vec2,
         rotation: Matrix2<f64>,
         size: f64,
-        young_modulus: f64,
+        modulus: f64,
         imbalance: [f64; 3],
     ) -> Self {
-        let turn = |stress: [f64; 3]| {
-            let [xx, yy, xy] = stress.map(|s| s * young_modulus);
+        let turn = |stress: [f64; 4]| {
+            let [xx, yy, zz, xy] = stress.map(|s| s * modulus);
             let turned = rotation * Matrix2::new(xx, xy, xy, yy) * rotation.transpose();
-            [turned[(0, 0)], turned[(1, 1)], turned[(0, 1)]]
+            [turned[(0, 0)], turned[(1, 1)], zz, turned[(0, 1)]]
         };
         Recovered {
             nodes: self.nodes.iter().map(|x| origin + rotation * x * size).collect(),

@@ -6,8 +6,13 @@
 //! strength is no plastic flow: the joint opens and closes where it was, so its share in g_p is not
 //! kept; what has torn or crushed or dilated is.
 
-use super::interface::{Facet, FacetMode, InterfaceResponse, TractionPoint, UpdateBranch};
-use super::material::UpdateFailure;
+use super::branch::{Effect, UpdateBranch};
+use super::facet::{Facet, FacetMode};
+use super::response::{InterfaceResponse, TractionPoint};
+use super::update::UpdateFailure;
+
+/// The joint yields on some facet.
+const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
 
 /// A joint of facets with stiffness.
 #[derive(Debug, Clone)]
@@ -29,9 +34,9 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl FacetResponse {
-    /// Facets with stiffness \[k_n, k_t\] \[Pa/m\], both finite.
-    pub fn new(facets: Vec<Facet>, stiffness: [f64; 2]) -> Self {
-        FacetResponse { facets, stiffness }
+    /// Facets with stiffness \[k_n, k_t\] \[Pa/m\]; `None` unless both are finite.
+    pub fn new(facets: Vec<Facet>, stiffness: [f64; 2]) -> Option<Self> {
+        stiffness.iter().all(|k| k.is_finite()).then_some(FacetResponse { facets, stiffness })
     }
 
     fn pull(&self, direction: [f64; 2]) -> [f64; 2] {
@@ -131,16 +136,16 @@ impl InterfaceResponse for FacetResponse {
             }
             let size = trial[0].abs().max(trial[1].abs());
             if found.excess > 1e-12 * size {
-                return Err(UpdateFailure::NoConvergence);
+                return Err(UpdateFailure::Law("no flow of the law's facets returns the traction to them"));
             }
         }
-        let mut branch = UpdateBranch::Elastic;
+        let mut branch = UpdateBranch::ELASTIC;
         let mut dissipated = 0.0;
         for (facet, step) in found.facets.iter().zip(found.steps) {
             let Some(facet) = facet else { continue };
             dissipated += step * dot(facet.flow, found.traction);
             if step > 0.0 && !(facet.mode == FacetMode::Opening && facet.bound == 0.0) {
-                branch = UpdateBranch::Sliding;
+                branch = SLIDING;
                 new[0] -= step * facet.flow[0];
                 new[1] -= step * facet.flow[1];
             }

@@ -1,21 +1,29 @@
 //! Laws of joints and materials: the traits that plug-ins implement, and what core derives from them.
 
+mod branch;
+mod elasticity;
+mod facet;
 mod facet_response;
 mod interface;
+mod isotropic;
 mod material;
 mod plane;
+mod response;
 mod strength;
+mod stress;
+mod update;
 mod yield_polygon;
 
+pub use self::branch::{Effect, UpdateBranch};
+pub use self::elasticity::{Elasticity, LinearUpdate};
+pub use self::facet::{Facet, FacetMode, FlowRule, is_associated};
 pub use self::facet_response::FacetResponse;
-pub use self::interface::{
-    Facet, FacetMode, FlowRule, Formulation, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch,
-    is_associated,
-};
-pub use self::material::{
-    BatchFailure, BulkMaterial, Deformability, Isotropic, Region, StressPoint, StressUpdate, UpdateFailure, Voigt,
-    von_mises,
-};
-pub use self::plane::{PlanarPoint, PlanarUpdate, Plane};
+pub use self::interface::InterfaceLaw;
+pub use self::isotropic::{Isotropic, von_mises};
+pub use self::material::BulkMaterial;
+pub use self::plane::{PlanarPoint, PlanarUpdate, Plane, PlaneElasticity};
+pub use self::response::{InterfaceResponse, TractionPoint};
 pub use self::strength::{ForceRow, JointStrength, StressBlock, Tangential, integrate};
+pub use self::stress::{StressPoint, StressUpdate, Voigt};
+pub use self::update::{BatchFailure, UpdateContext, UpdateFailure};
 pub use self::yield_polygon::YieldPolygon;

@@ -8,11 +8,15 @@
 //! 0 = C_zb dε_b + C_zz dε_zz    →    C̄_ab = C_ab − C_az C_zb / C_zz
 //! ```
 //!
-//! (static condensation; de Souza Neto, Perić & Owen 2008, section 9.2). The out-of-plane shears of an
-//! isotropic law stay zero. ε_zz at the end of a step is the last number of the state: the next step
+//! (static condensation; de Souza Neto, Perić & Owen 2008, section 9.2). The out-of-plane shears stay zero: the
+//! plane is a plane of symmetry of the material. ε_zz at the end of a step is the last number of the state: the next step
 //! starts there.
 
-use super::material::{BatchFailure, Region, StressPoint, StressUpdate, UpdateFailure, Voigt};
+use super::branch::UpdateBranch;
+use super::elasticity::Elasticity;
+use super::stress::{StressPoint, StressUpdate, Voigt};
+use super::update::{BatchFailure, UpdateContext, UpdateFailure};
+use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// Stress state of deformable bodies.
@@ -46,9 +50,11 @@ pub struct PlanarPoint {
     /// ∂σ_zz/∂(ε_xx, ε_yy, γ_xy) \[Pa\]; 0 in plane stress.
     pub tangent_across: [f64; 3],
     /// Where the stress lies.
-    pub region: Region,
-    /// Plastic work of the step per volume \[J/m³\].
-    pub dissipation: f64,
+    pub branch: UpdateBranch,
+    /// Energy stored per volume at the end of the step \[J/m³\].
+    pub stored: f64,
+    /// Energy dissipated per volume in the step \[J/m³\].
+    pub dissipated: f64,
 }
 
 impl PlanarPoint {
@@ -59,8 +65,9 @@ impl PlanarPoint {
         strain_across: 0.0,
         tangent: [[0.0; 3]; 3],
         tangent_across: [0.0; 3],
-        region: Region::Elastic,
-        dissipation: 0.0,
+        branch: UpdateBranch::ELASTIC,
+        stored: 0.0,
+        dissipated: 0.0,
     };
 }
 
@@ -80,7 +87,8 @@ impl PlanarUpdate {
         law.initial_state(&mut old);
         let mut new = old.clone();
         let length = if law.largest_length().is_finite() { law.largest_length() / 2.0 } else { 1.0 };
-        let stiffness = law.update_point(&[0.0; 6], length, &old, &mut new)?.tangent[ACROSS][ACROSS];
+        let stiffness =
+            law.update_point(&[0.0; 6], &UpdateContext::of_length(length), &old, &mut new)?.tangent[ACROSS][ACROSS];
         Ok(PlanarUpdate { law, plane, stiffness })
     }
 
@@ -110,16 +118,16 @@ impl PlanarUpdate {
     pub fn update_point(
         &self,
         strain: &[f64; 3],
-        length: f64,
+        context: &UpdateContext,
         old: &[f64],
         new: &mut [f64],
     ) -> Result<PlanarPoint, UpdateFailure> {
         match self.plane {
             Plane::Strain => {
                 let strain = in_space(strain, 0.0);
-                Ok(planar(&self.law.update_point(&strain, length, old, new)?, 0.0, None))
+                Ok(planar(&self.law.update_point(&strain, context, old, new)?, 0.0, None))
             }
-            Plane::Stress => self.zero_stress(strain, length, old, new),
+            Plane::Stress => self.zero_stress(strain, context, old, new),
         }
     }
 
@@ -127,20 +135,20 @@ impl PlanarUpdate {
     pub fn update(
         &self,
         strains: &[[f64; 3]],
-        lengths: &[f64],
+        contexts: &[UpdateContext],
         old: &[f64],
         new: &mut [f64],
         points: &mut [PlanarPoint],
     ) -> Result<(), BatchFailure> {
         let (size, count) = (self.state_size(), strains.len());
-        if lengths.len() != count || points.len() != count || old.len() != count * size || new.len() != count * size {
+        if contexts.len() != count || points.len() != count || old.len() != count * size || new.len() != count * size {
             return Err(BatchFailure { point: 0, failure: UpdateFailure::WrongSize });
         }
         if self.plane == Plane::Stress {
             for (index, (strain, point)) in strains.iter().zip(points).enumerate() {
                 let place = index * size..(index + 1) * size;
                 *point = self
-                    .zero_stress(strain, lengths[index], &old[place.clone()], &mut new[place])
+                    .zero_stress(strain, &contexts[index], &old[place.clone()], &mut new[place])
                     .map_err(|failure| BatchFailure { point: index, failure })?;
             }
             return Ok(());
@@ -155,7 +163,7 @@ impl PlanarUpdate {
             }
             let place = start * size..end * size;
             self.law
-                .update(&space[..here], &lengths[start..end], &old[place.clone()], &mut new[place], &mut found[..here])
+                .update(&space[..here], &contexts[start..end], &old[place.clone()], &mut new[place], &mut found[..here])
                 .map_err(|wrong| BatchFailure { point: start + wrong.point, ..wrong })?;
             for (point, found) in points[start..end].iter_mut().zip(&found) {
                 *point = planar(found, 0.0, None);
@@ -169,7 +177,7 @@ impl PlanarUpdate {
     fn zero_stress(
         &self,
         strain: &[f64; 3],
-        length: f64,
+        context: &UpdateContext,
         old: &[f64],
         new: &mut [f64],
     ) -> Result<PlanarPoint, UpdateFailure> {
@@ -183,7 +191,7 @@ impl PlanarUpdate {
         let (mut z, mut reach) = (across, size.max(f64::MIN_POSITIVE));
         for _ in 0..EVALUATIONS {
             let full = in_space(strain, z);
-            let point = self.law.update_point(&full, length, old_own, &mut new[..own])?;
+            let point = self.law.update_point(&full, context, old_own, &mut new[..own])?;
             let stress = point.stress[ACROSS];
             let largest = IN_PLANE.iter().fold(0.0_f64, |a, &i| a.max(point.stress[i].abs()));
             let noise = 4.0 * f64::EPSILON * self.stiffness * size.max(z.abs());
@@ -218,6 +226,50 @@ impl PlanarUpdate {
     }
 }
 
+/// The rows and columns of the plane; condensed over zz where nothing holds the point there.
+fn in_plane(c: &[Voigt; 6], free: bool) -> [[f64; 3]; 3] {
+    IN_PLANE
+        .map(|i| IN_PLANE.map(|j| c[i][j] - if free { c[i][ACROSS] * c[ACROSS][j] / c[ACROSS][ACROSS] } else { 0.0 }))
+}
+
+/// The elastic operator of a plane problem, relative to the modulus of the material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneElasticity {
+    /// D: (σ_xx, σ_yy, σ_xy) from (ε_xx, ε_yy, γ_xy).
+    pub stiffness: Matrix3<f64>,
+    /// σ_zz from (σ_xx, σ_yy, σ_xy).
+    across: Vector3<f64>,
+}
+
+impl PlaneElasticity {
+    /// An operator in space, used in a plane that is one of its planes of symmetry.
+    pub fn new(elasticity: &Elasticity, plane: Plane) -> Self {
+        let c = &elasticity.relative;
+        let rows = in_plane(c, plane == Plane::Stress);
+        let stiffness = Matrix3::from_fn(|i, j| rows[i][j]);
+        let row = Vector3::from(IN_PLANE.map(|j| if plane == Plane::Stress { 0.0 } else { c[ACROSS][j] }));
+        let mut plane = PlaneElasticity { stiffness, across: row };
+        plane.across = plane.compliance() * row;
+        plane
+    }
+
+    /// D⁻¹.
+    pub fn compliance(&self) -> Matrix3<f64> {
+        self.stiffness.try_inverse().unwrap_or(Matrix3::repeat(f64::NAN))
+    }
+
+    /// (σ_xx, σ_yy, σ_zz, σ_xy) of an elastic stress in the plane.
+    pub fn with_across(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 4] {
+        [xx, yy, self.across.dot(&Vector3::new(xx, yy, xy)), xy]
+    }
+
+    /// The smaller of the moduli along x and y.
+    pub fn softest(&self) -> f64 {
+        let compliance = self.compliance();
+        1.0 / compliance.m11.max(compliance.m22)
+    }
+}
+
 fn in_space(strain: &[f64; 3], across: f64) -> Voigt {
     [strain[0], strain[1], across, strain[2], 0.0, 0.0]
 }
@@ -225,21 +277,17 @@ fn in_space(strain: &[f64; 3], across: f64) -> Voigt {
 /// The components in the plane; condensed over zz where C_zz of the undeformed material is given.
 fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> PlanarPoint {
     let c = &point.tangent;
-    let mut tangent = [[0.0; 3]; 3];
     // Without stiffness across, as at the tip of a cone, there is nothing to condense.
     let free = condense.is_some_and(|stiffness| c[ACROSS][ACROSS].abs() > 1e-14 * stiffness);
-    for (row, &i) in tangent.iter_mut().zip(&IN_PLANE) {
-        for (entry, &j) in row.iter_mut().zip(&IN_PLANE) {
-            *entry = c[i][j] - if free { c[i][ACROSS] * c[ACROSS][j] / c[ACROSS][ACROSS] } else { 0.0 };
-        }
-    }
+    let tangent = in_plane(c, free);
     PlanarPoint {
         stress: IN_PLANE.map(|i| point.stress[i]),
         stress_across: point.stress[ACROSS],
         strain_across,
         tangent,
         tangent_across: if condense.is_some() { [0.0; 3] } else { IN_PLANE.map(|j| c[ACROSS][j]) },
-        region: point.region,
-        dissipation: point.dissipation,
+        branch: point.branch,
+        stored: point.stored,
+        dissipated: point.dissipated,
     }
 }

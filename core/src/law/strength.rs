@@ -15,7 +15,7 @@
 //! (ġ_0, ġ_1, ġ_t) = −Σ γ_i d_i, γ ≥ 0. A row's d is its facet's own; opening and crushing are
 //! associated.
 
-use super::interface::{Facet, FacetMode};
+use super::facet::{Facet, FacetMode};
 use super::yield_polygon::{YieldPolygon, dot};
 
 /// A linear row over (N_0, N_1, T) \[N\].

@@ -1,6 +1,6 @@
 //! The polygon of tractions that the facets of a law admit: corners and recession cone.
 
-use super::interface::Facet;
+use super::facet::Facet;
 
 /// The polygon of admissible tractions of a law: its vertices and the directions in which it is
 /// unbounded.

@@ -92,7 +92,7 @@ impl LimitProblem {
             }
             let (name, interface) = &assembly.catalogue.laws[law];
             if let std::collections::btree_map::Entry::Vacant(place) = read.entry(law) {
-                let facets = interface.formulation().facets().ok_or_else(|| {
+                let facets = interface.facets().ok_or_else(|| {
                     format!("joint law \"{name}\" is not given by facets: limit analysis cannot read it")
                 })?;
                 non_associated |= !is_associated(&facets);

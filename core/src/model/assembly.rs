@@ -3,7 +3,7 @@
 use super::geometry::{Vec2, area_and_centroid, bounding_box};
 use super::joints::{Bond, Joint};
 use crate::elastic::{MeshDensity, largest_element};
-use crate::law::{BulkMaterial, Deformability, InterfaceLaw, Plane};
+use crate::law::{BulkMaterial, InterfaceLaw, Plane};
 use std::sync::Arc;
 
 /// The materials and interface laws of a study, by name.
@@ -113,7 +113,7 @@ impl Assembly {
 
     /// Whether a body's material is rigid.
     pub fn is_rigid(&self, body: usize) -> bool {
-        self.material(body).deformability() == Deformability::Rigid
+        self.material(body).elasticity().is_none()
     }
 
     /// Whether a body is free and its material deforms.
@@ -123,14 +123,14 @@ impl Assembly {
 
     /// Whether a body's material yields.
     pub fn yields(&self, body: usize) -> bool {
-        matches!(self.material(body).deformability(), Deformability::Inelastic { .. })
+        self.material(body).inelastic().is_some()
     }
 
     /// Whether the elements of a body are small enough for its material to soften without snapping
     /// back inside an element; the error names sizes and what to change.
     pub fn fine_enough(&self, body: usize) -> Result<(), String> {
         let (name, material) = &self.catalogue.materials[self.bodies[body].material];
-        let Some(update) = material.stress_update().filter(|_| self.yields(body)) else { return Ok(()) };
+        let Some(update) = material.inelastic() else { return Ok(()) };
         let (most, own) = (update.largest_length(), largest_element(&self.bodies[body].vertices, &self.mesh)?);
         if own <= most {
             return Ok(());

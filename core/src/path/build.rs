@@ -3,8 +3,8 @@
 use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 use super::sliding::Sliding;
-use crate::elastic::{Condenser, IsotropicElastic, breaks_on_joint, joint_points, union_breaks};
-use crate::law::{Deformability, PlanarUpdate};
+use crate::elastic::{Condenser, breaks_on_joint, joint_points, union_breaks};
+use crate::law::PlanarUpdate;
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint, Stage, Target, root};
@@ -101,7 +101,7 @@ fn points_of_joint(assembly: &Assembly, joint: &Joint) -> Result<(Vec<f64>, Vec<
 
 /// Contact points of all joints between bodies; the joints on which meshes do not match.
 fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTreeSet<usize>, String> {
-    let laws: Vec<PointLaw> = assembly.catalogue.laws.iter().map(|(_, law)| law.formulation().into()).collect();
+    let laws: Vec<Option<PointLaw>> = assembly.catalogue.laws.iter().map(|(_, law)| PointLaw::of(&**law)).collect();
     let mut nonmatching = BTreeSet::new();
     for (index, joint) in assembly.joints.iter().enumerate() {
         if problem.body_of[joint.minus] == problem.body_of[joint.plus] {
@@ -116,7 +116,7 @@ fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTre
         let height = joint.height();
         let law = match joint.bond {
             Bond::Bonded => &PointLaw::Bonded,
-            Bond::Law(law) => &laws[law],
+            Bond::Law(law) => laws[law].as_ref().ok_or("a joint law gives neither facets nor tractions from gaps")?,
         };
         for (position, weight) in positions.into_iter().zip(weights) {
             let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
@@ -168,7 +168,7 @@ fn regularise_nonmatching_joints(problem: &mut PathProblem, assembly: &Assembly,
     for contact in problem.contacts.iter_mut().filter(|c| nonmatching.contains(&c.joint) && rigid(c)) {
         let joint = &assembly.joints[contact.joint];
         let sides = [joint.minus, joint.plus].into_iter().filter(|side| assembly.is_deformable(*side));
-        let moduli = sides.filter_map(|side| IsotropicElastic::of(assembly.material(side))).map(|e| e.young_modulus);
+        let moduli = sides.filter_map(|side| assembly.material(side).elasticity()).map(|elasticity| elasticity.modulus);
         let softest = moduli.fold(f64::INFINITY, f64::min);
         if softest.is_finite() {
             contact.compliance = [joint.height() / (REGULARISATION * softest * contact.area); 2];
@@ -240,24 +240,23 @@ fn condense(problem: &mut PathProblem, assembly: &Assembly) -> Result<(), String
     for body in problem.bodies.iter_mut().filter(|body| body.members.len() == 1) {
         let block = body.members[0];
         let material = assembly.material(block);
-        let Some(elastic) = IsotropicElastic::of(material).filter(|_| assembly.is_deformable(block)) else { continue };
+        let Some(elasticity) = material.elasticity().filter(|_| assembly.is_deformable(block)) else { continue };
         let vertices = &assembly.bodies[block].vertices;
-        if !matches!(material.deformability(), Deformability::Inelastic { .. }) {
-            let condensed = condenser.condense(vertices, elastic, &assembly.mesh, &body.points)?;
+        let Some(law) = material.inelastic() else {
+            let condensed = condenser.condense(vertices, &elasticity, &assembly.mesh, &body.points)?;
             body.flexibility = Some(Arc::new(condensed.flexibility));
             continue;
-        }
+        };
         let index = assembly.bodies[block].material;
         let update = match updates.get(&index) {
             Some(update) => update.clone(),
             None => {
-                let law = material.stress_update().ok_or("a material that yields has no stresses")?;
                 let update = PlanarUpdate::new(law, assembly.plane).map_err(|why| why.to_string())?;
                 updates.entry(index).or_insert(Arc::new(update)).clone()
             }
         };
         assembly.fine_enough(block)?;
-        let inelastic = condenser.inelastic(vertices, elastic, update, &assembly.mesh, &body.points)?;
+        let inelastic = condenser.inelastic(vertices, &elasticity, update, &assembly.mesh, &body.points)?;
         body.flexibility = Some(inelastic.flexibility());
         body.inelastic = Some(Arc::new(inelastic));
     }

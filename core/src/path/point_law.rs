@@ -1,6 +1,6 @@
 //! The law of a contact point: what it can carry and how it moves.
 
-use crate::law::{Facet, Formulation, InterfaceResponse};
+use crate::law::{Facet, InterfaceLaw, InterfaceResponse};
 use std::sync::Arc;
 
 /// The law of a contact point. Points of one law share it.
@@ -14,16 +14,12 @@ pub enum PointLaw {
     Response(Arc<dyn InterfaceResponse>),
 }
 
-impl From<Formulation> for PointLaw {
-    fn from(formulation: Formulation) -> Self {
-        match formulation {
-            Formulation::Facets(facets) => PointLaw::Facets(facets.into()),
-            Formulation::Response(response) => PointLaw::Response(response),
-        }
-    }
-}
-
 impl PointLaw {
+    /// The first form that a law has, in the order in which path solvers ask for them.
+    pub fn of(law: &dyn InterfaceLaw) -> Option<Self> {
+        law.facets().map(|facets| PointLaw::Facets(facets.into())).or_else(|| law.response().map(PointLaw::Response))
+    }
+
     /// Its facets, where it has that form.
     pub fn facets(&self) -> Option<&[Facet]> {
         match self {

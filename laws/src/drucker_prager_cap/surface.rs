@@ -25,8 +25,17 @@
 //! guards the rest. (The rational form is Moré's for the secular equation of trust regions: Moré &
 //! Sorensen 1983.)
 
-use crate::meridian::Returned;
-use voussoir_core::law::{Isotropic, Region, UpdateFailure};
+use crate::meridian::{APEX, Returned, SHEAR};
+use voussoir_core::law::{Effect, Isotropic, UpdateBranch, UpdateFailure};
+
+/// On the surface between shear failure and cap.
+const TRANSITION: UpdateBranch = UpdateBranch::new("transition", Effect::Yielding);
+/// On the cap: compaction, crushing.
+const CAP: UpdateBranch = UpdateBranch::new("cap", Effect::Yielding);
+
+/// The search for η ends without a root.
+const NO_RETURN: UpdateFailure =
+    UpdateFailure::Law("the return to the surface of drucker_prager_cap did not meet its tolerance");
 
 const ITERATIONS: usize = 200;
 
@@ -117,7 +126,7 @@ struct Gauge {
     factor: f64,
     /// ∂t/∂x, ∂t/∂q, ∂t/∂D.
     gradient: [f64; 3],
-    region: Region,
+    branch: UpdateBranch,
 }
 
 /// x, q and D at some η with what Newton needs.
@@ -180,7 +189,7 @@ impl Surface {
 
     fn gauge(&self, side: Side, x: f64, q: f64, size: f64) -> Gauge {
         if x == 0.0 && q == 0.0 {
-            return Gauge { factor: f64::INFINITY, gradient: [0.0; 3], region: Region::Elastic };
+            return Gauge { factor: f64::INFINITY, gradient: [0.0; 3], branch: UpdateBranch::ELASTIC };
         }
         match side {
             Side::Cap => {
@@ -189,7 +198,7 @@ impl Surface {
                 let factor = size / length;
                 let by_x = -factor * (along / length) / length / self.eccentricity;
                 let by_q = -factor * (across / length) / length / self.roundness;
-                Gauge { factor, gradient: [by_x, by_q, 1.0 / length], region: Region::Cap }
+                Gauge { factor, gradient: [by_x, by_q, 1.0 / length], branch: CAP }
             }
             Side::Shear if self.in_transition(x, q) => {
                 // The larger root of (t x)² + (t q − κ D)² = (α D)²; x, q relative to the ray's length.
@@ -205,7 +214,7 @@ impl Surface {
                 let by_x = -factor * u / (slope * size);
                 let by_q = -factor * v / (slope * size);
                 let by_size = (m * v + r * r) / (slope * size);
-                Gauge { factor, gradient: [by_x, by_q, by_size], region: Region::Transition }
+                Gauge { factor, gradient: [by_x, by_q, by_size], branch: TRANSITION }
             }
             Side::Shear => {
                 let length = q + self.friction * x;
@@ -213,7 +222,7 @@ impl Surface {
                 Gauge {
                     factor,
                     gradient: [-factor * self.friction / length, -factor / length, 1.0 / length],
-                    region: Region::Shear,
+                    branch: SHEAR,
                 }
             }
         }
@@ -290,12 +299,12 @@ impl Surface {
             if next <= low || next >= high || next == eta {
                 // Nothing left between two neighbouring numbers.
                 let met = psi.abs() <= 1e-12;
-                return if met { Ok(Some(self.finished(side, eta, &way))) } else { Err(UpdateFailure::NoConvergence) };
+                return if met { Ok(Some(self.finished(side, eta, &way))) } else { Err(NO_RETURN) };
             }
             eta = next;
             way = at(eta);
         }
-        Err(UpdateFailure::NoConvergence)
+        Err(NO_RETURN)
     }
 
     fn finished(&self, side: Side, eta: f64, way: &Way) -> Returned {
@@ -325,7 +334,7 @@ impl Surface {
                 [1.0 - sign * bulk * w_by_p, -sign * bulk * w_by_q],
                 [q_rate * eta_by_p, way.ratio + q_rate * eta_by_q],
             ],
-            region: if tip { Region::Apex } else { way.gauge.region },
+            branch: if tip { APEX } else { way.gauge.branch },
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::surface::{Piece, Surface, Table};
 use crate::meridian::{Trial, state_names};
-use voussoir_core::law::{StressPoint, StressUpdate, UpdateFailure, Voigt};
+use voussoir_core::law::{StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt};
 
 /// Index of ε_v in the state.
 const COMPACTION: usize = 6;
@@ -89,7 +89,7 @@ impl StressUpdate for CapUpdate {
     fn update_point(
         &self,
         strain: &Voigt,
-        length: f64,
+        context: &UpdateContext,
         old: &[f64],
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
@@ -98,6 +98,7 @@ impl StressUpdate for CapUpdate {
                 self.by_table(Table { pieces, reversible: true }, strain, old, new, COMPACTION)
             }
             Strength::Softening { intact, drop, crushing, largest_length } => {
+                let length = context.length;
                 // Also refuses a length that is no number.
                 if !(length > 0.0 && length <= *largest_length) {
                     return Err(UpdateFailure::LengthTooLarge);

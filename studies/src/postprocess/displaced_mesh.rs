@@ -4,8 +4,7 @@
 use crate::results::CaseResult;
 use crate::results::inelastic_state;
 use crate::verify::fields::{path_forces, path_motion};
-use voussoir_core::elastic::{Condenser, IsotropicElastic, Recovered};
-use voussoir_core::law::{Deformability, Plane};
+use voussoir_core::elastic::{Condenser, Recovered};
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage};
@@ -124,40 +123,28 @@ impl EndState<'_> {
     fn deformable_block(&self, block: usize, condenser: &mut Condenser) -> Result<DisplacedBlock, String> {
         let (assembly, shape, body) = (self.assembly, &self.assembly.bodies[block], self.problem.body_of[block]);
         let material = &assembly.catalogue.materials[shape.material].1;
-        let (young_modulus, poisson_ratio) = match material.deformability() {
-            Deformability::LinearElastic { young_modulus, poisson_ratio }
-            | Deformability::Inelastic { young_modulus, poisson_ratio } => (young_modulus, poisson_ratio),
-            _ => return Err(format!("the material of \"{}\" does not deform", shape.name)),
+        let Some(elasticity) = material.elasticity() else {
+            return Err(format!("the material of \"{}\" does not deform", shape.name));
         };
-        let elastic = IsotropicElastic { young_modulus, poisson_ratio, density: material.density() };
         let (points, own) = (&self.problem.bodies[body].points, &self.forces[body]);
         let theta = self.state.motion[body][2];
         let weight = self.turn(-theta, self.gravity);
-        let mut recovered = condenser.recover(&shape.vertices, elastic, &assembly.mesh, points, own, weight)?;
-        let (mut plastic_strain, mut yielded_across) = (Vec::new(), None);
+        let body_force = weight * material.density();
+        let mut recovered = condenser.recover(&shape.vertices, &elasticity, &assembly.mesh, points, own, body_force)?;
+        let mut plastic_strain = Vec::new();
         if let (Some(inelastic), Some(own)) = (&self.problem.bodies[body].inelastic, self.state.inelastic(body)) {
             let imbalance = recovered.imbalance;
-            let (found, zz) = inelastic.recover(&own.displacement, &own.state)?;
-            recovered = Recovered { imbalance, ..found };
-            yielded_across = Some(zz);
+            recovered = Recovered { imbalance, ..inelastic.recover(&own.displacement, &own.state)? };
             plastic_strain = inelastic.by_element(&own.state.equivalent);
         }
-        let across = match assembly.plane {
-            Plane::Strain => poisson_ratio,
-            Plane::Stress => 0.0,
-        };
-        let full = |stress: &[[f64; 3]], own: Option<&Vec<f64>>| -> Vec<[f64; 4]> {
-            let zz = |i: usize, [xx, yy, _]: [f64; 3]| own.map_or(across * (xx + yy), |own| own[i]);
-            stress.iter().enumerate().map(|(i, s)| [s[0], s[1], zz(i, *s), s[2]]).collect()
-        };
         let [fx, fy, moment] = recovered.imbalance;
         let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * self.problem.bodies[body].mass;
         let displaced = recovered.nodes.iter().zip(&recovered.displacement);
         Ok(DisplacedBlock {
             block,
             displacement: displaced.map(|(node, u)| self.rigid(body, *node) + self.turn(theta, *u)).collect(),
-            stress: full(&recovered.stress, yielded_across.as_ref().map(|zz| &zz[0])),
-            cell_stress: full(&recovered.element_stress, yielded_across.as_ref().map(|zz| &zz[1])),
+            stress: recovered.stress,
+            cell_stress: recovered.element_stress,
             nodes: recovered.nodes,
             cells: recovered.elements,
             order: recovered.order,

@@ -106,7 +106,7 @@ pub fn with_crushing(
 ) -> Mechanism {
     if problem.yields() {
         mechanism.crushing.retain(|crushing| {
-            let facets = assembly.law(&assembly.joints[crushing.joint]).and_then(|law| law.formulation().facets());
+            let facets = assembly.law(&assembly.joints[crushing.joint]).and_then(|law| law.facets());
             facets.unwrap_or_default().iter().any(|facet| facet.mode == FacetMode::Crushing)
         });
     }

@@ -1,6 +1,6 @@
 //! Joints whose contact points stand too far apart for the fracture energy of their law.
 
-use voussoir_core::law::{Deformability, Plane};
+use voussoir_core::law::PlaneElasticity;
 use voussoir_core::model::Assembly;
 use voussoir_core::path::PathProblem;
 
@@ -33,15 +33,9 @@ pub fn coarse_joints(problem: &PathProblem, assembly: &Assembly) -> Vec<SoftensO
         let joint = &assembly.joints[pair[0].joint];
         let soft = [joint.minus, joint.plus].into_iter().filter_map(|block| {
             let body = &assembly.bodies[block];
-            match assembly.catalogue.materials[body.material].1.deformability() {
-                Deformability::LinearElastic { young_modulus, poisson_ratio } if !body.fixed => {
-                    Some(match assembly.plane {
-                        Plane::Strain => young_modulus / (1.0 - poisson_ratio * poisson_ratio),
-                        Plane::Stress => young_modulus,
-                    })
-                }
-                _ => None,
-            }
+            let material = &assembly.catalogue.materials[body.material].1;
+            let elasticity = material.elasticity().filter(|_| !body.fixed && material.inelastic().is_none())?;
+            Some(elasticity.modulus * PlaneElasticity::new(&elasticity, assembly.plane).softest())
         });
         let modulus = soft.fold(f64::INFINITY, f64::min);
         let length = modulus * energy / (strength * strength);

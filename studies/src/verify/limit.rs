@@ -40,7 +40,7 @@ fn non_associated(assembly: &Assembly) -> bool {
     assembly.joints.iter().any(|joint| match joint.bond {
         Bond::Bonded => false,
         Bond::Law(law) => {
-            let facets = assembly.catalogue.laws[law].1.formulation().facets();
+            let facets = assembly.catalogue.laws[law].1.facets();
             facets.is_some_and(|facets| !is_associated(&facets))
         }
     })

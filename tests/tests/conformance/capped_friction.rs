@@ -1,7 +1,7 @@
 //! `capped_friction`: associated friction with a crushing strength.
 
 use serde::{Deserialize, Serialize};
-use voussoir_core::law::{Facet, Formulation, InterfaceLaw};
+use voussoir_core::law::{Facet, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample};
 
 /// Associated friction with a crushing strength.
@@ -18,9 +18,9 @@ pub struct CappedFriction {
 
 #[typetag::serde(name = "capped_friction")]
 impl InterfaceLaw for CappedFriction {
-    fn formulation(&self) -> Formulation {
+    fn facets(&self) -> Option<Vec<Facet>> {
         let [left, right] = Facet::friction(self.friction, 0.0, self.friction);
-        Formulation::Facets(vec![Facet::opening(0.0), left, right, Facet::crushing(self.compressive_strength)])
+        Some(vec![Facet::opening(0.0), left, right, Facet::crushing(self.compressive_strength)])
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {
@@ -39,9 +39,9 @@ voussoir_core::inventory::submit! {
             Parameter::number("stiffness", Quantity::Stiffness, Range::POSITIVE, "stiffness k of the joint itself")
                 .optional("the joint itself is stiff"),
         ],
-        provides: &[Capability::FACETS],
+        provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE],
-        samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6\nstiffness = 1e10", 1e-4, &[])],
+        samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6\nstiffness = 1e10", 1e-3, &["elastic", "sliding"])],
         sources: &["where the equations come from"],
         file: file!(),
         page: "# `capped_friction`\n\nPurpose, equations, regimes, state, validity, sources.\n",

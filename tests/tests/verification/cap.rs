@@ -1,6 +1,6 @@
 //! The cap model against closed forms (reference values derived from its equations by hand, by name).
 
-use voussoir::core::law::{BulkMaterial, Isotropic, PlanarUpdate, Plane, StressUpdate};
+use voussoir::core::law::{BulkMaterial, Isotropic, PlanarUpdate, Plane, StressUpdate, UpdateContext};
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
 
@@ -131,8 +131,8 @@ fn first_yield(update: &dyn StressUpdate, direction: [f64; 3], stress_per_strain
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
         let strain = [-middle * direction[0], -middle * direction[1], -middle * direction[2], 0.0, 0.0, 0.0];
-        let point = update.update_point(&strain, 1.0, &old, &mut new).unwrap();
-        if point.region.name() == "elastic" { low = middle } else { high = middle }
+        let point = update.update_point(&strain, &UpdateContext::of_length(1.0), &old, &mut new).unwrap();
+        if point.branch.name == "elastic" { low = middle } else { high = middle }
     }
     -low * stress_per_strain
 }
@@ -161,7 +161,7 @@ fn hydrostatic_compaction_along_the_table() {
         for step in 1..=steps {
             let trace = -0.02 * f64::from(step) / f64::from(steps);
             let strain = [trace / 3.0, trace / 3.0, trace / 3.0, 0.0, 0.0, 0.0];
-            let point = update.update_point(&strain, 1.0, &old, &mut new).unwrap();
+            let point = update.update_point(&strain, &UpdateContext::of_length(1.0), &old, &mut new).unwrap();
             old.copy_from_slice(&new);
             let p = -point.stress[0];
             let compaction = 0.0005 - trace - p / bulk;
@@ -170,7 +170,7 @@ fn hydrostatic_compaction_along_the_table() {
                 .windows(2)
                 .find(|w| w[0][0] <= compaction && compaction <= w[1][0])
                 .map_or(12.0 * MPA, |w| w[0][1] + (compaction - w[0][0]) * (w[1][1] - w[0][1]) / (w[1][0] - w[0][0]));
-            if point.region.name() == "cap" {
+            if point.branch.name == "cap" {
                 near(p, wanted, 1e-9);
             }
         }

@@ -12,6 +12,7 @@ mod finite;
 mod flow_rule;
 mod force_method;
 mod newton;
+mod orthotropic;
 mod path_certificate;
 mod paths_read;
 mod plastic;

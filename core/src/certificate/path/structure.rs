@@ -5,8 +5,8 @@
 //! on a joint, bodies condensed on their points) and the rule by which a contact point slides ([`Sliding`]).
 //! Order is the convention between the two: bodies by their first block, contact points joint by joint along each.
 
-use crate::elastic::{Condenser, IsotropicElastic, breaks_on_joint, union_breaks};
-use crate::law::{Formulation, PlanarUpdate};
+use crate::elastic::{Condenser, breaks_on_joint, union_breaks};
+use crate::law::PlanarUpdate;
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint, Stage, Target};
@@ -115,10 +115,11 @@ fn contact_points(
     joint: &Joint,
 ) -> Result<Vec<Contact>, String> {
     let (normal, tangent) = joint.frame();
-    let law = match assembly.law(joint).map(|law| law.formulation()) {
+    let law = match assembly.law(joint).map(|law| (law.facets(), law.response())) {
         None => PointLaw::Bonded,
-        Some(Formulation::Facets(facets)) => PointLaw::Facets(facets.into()),
-        Some(Formulation::Response(response)) => PointLaw::Response(response),
+        Some((Some(facets), _)) => PointLaw::Facets(facets.into()),
+        Some((None, Some(response))) => PointLaw::Response(response),
+        Some((None, None)) => return Err("a joint law gives neither facets nor tractions from gaps".into()),
     };
     let stiffness = assembly.law(joint).filter(|_| law.facets().is_some()).and_then(|law| law.stiffness());
     let mut found = Vec::new();
@@ -174,8 +175,8 @@ fn stiffen_shared_places(read: &mut PathProblem, assembly: &Assembly) -> Result<
     for contact in read.contacts.iter_mut().filter(|c| shared[c.joint] && stiff(c)) {
         let joint = &assembly.joints[contact.joint];
         let moduli = [joint.minus, joint.plus].map(|side| {
-            let elastic = IsotropicElastic::of(assembly.material(side)).filter(|_| assembly.is_deformable(side));
-            elastic.map_or(f64::INFINITY, |elastic| elastic.young_modulus)
+            let elasticity = assembly.material(side).elasticity().filter(|_| assembly.is_deformable(side));
+            elasticity.map_or(f64::INFINITY, |elasticity| elasticity.modulus)
         });
         contact.compliance = [joint.height() / (REGULARISATION * moduli[0].min(moduli[1]) * contact.area); 2];
     }
@@ -232,21 +233,20 @@ fn condense(read: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
     let mut laws: Vec<(usize, Arc<PlanarUpdate>)> = Vec::new();
     for (block, shape) in assembly.bodies.iter().enumerate().filter(|(block, _)| assembly.is_deformable(*block)) {
-        let Some(elastic) = IsotropicElastic::of(assembly.material(block)) else { continue };
+        let Some(elasticity) = assembly.material(block).elasticity() else { continue };
         let body = &mut read.bodies[read.body_of[block]];
-        if !assembly.yields(block) {
-            let condensed = condenser.condense(&shape.vertices, elastic, &assembly.mesh, &body.points)?;
+        let Some(yielding) = assembly.material(block).inelastic() else {
+            let condensed = condenser.condense(&shape.vertices, &elasticity, &assembly.mesh, &body.points)?;
             body.flexibility = Some(Arc::new(condensed.flexibility));
             continue;
-        }
+        };
         if !laws.iter().any(|(material, _)| *material == shape.material) {
-            let law = assembly.material(block).stress_update().ok_or("a material that yields has no stresses")?;
-            let law = PlanarUpdate::new(law, assembly.plane).map_err(|why| why.to_string())?;
+            let law = PlanarUpdate::new(yielding, assembly.plane).map_err(|why| why.to_string())?;
             laws.push((shape.material, Arc::new(law)));
         }
         let law = laws.iter().find(|(material, _)| *material == shape.material).map(|(_, law)| law.clone());
         let law = law.ok_or("a material that yields has no stresses")?;
-        let inelastic = condenser.inelastic(&shape.vertices, elastic, law, &assembly.mesh, &body.points)?;
+        let inelastic = condenser.inelastic(&shape.vertices, &elasticity, law, &assembly.mesh, &body.points)?;
         body.flexibility = Some(inelastic.flexibility());
         body.inelastic = Some(Arc::new(inelastic));
     }

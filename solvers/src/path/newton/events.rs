@@ -4,7 +4,7 @@ use super::state::State;
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use crate::path::events::{ContactStatus, transition};
-use voussoir_core::law::{TractionPoint, UpdateBranch};
+use voussoir_core::law::{Effect, TractionPoint};
 use voussoir_core::path::PathEvent;
 
 /// Status of a point in a mode of its facets.
@@ -22,10 +22,10 @@ fn of_mode(system: &StepSystem, contact: usize, mode: ContactMode, gap: [f64; 2]
 
 /// Status of a point whose law gives tractions from gaps.
 fn of_tractions(point: &TractionPoint, gap: [f64; 2], slip: f64) -> ContactStatus {
-    match point.branch {
+    match point.branch.effect {
         _ if gap[0] > 0.0 && point.traction == [0.0; 2] && point.tangent == [[0.0; 2]; 2] => ContactStatus::Open,
-        UpdateBranch::Softening | UpdateBranch::SofteningSliding => ContactStatus::Softens,
-        UpdateBranch::Sliding => ContactStatus::Slides { forward: slip > 0.0 },
+        Effect::Softening => ContactStatus::Softens,
+        Effect::Sliding => ContactStatus::Slides { forward: slip > 0.0 },
         _ => ContactStatus::Sticks,
     }
 }

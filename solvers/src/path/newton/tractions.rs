@@ -95,7 +95,7 @@ impl Responses {
             let mut points = vec![TractionPoint::ZERO; gap.len()];
             group.law.respond(&gap, &old, &mut new, &mut points).map_err(|failed| {
                 let contact = group.points[failed.point];
-                format!("the law of contact point {contact} gives no traction: {:?}", failed.failure)
+                format!("the law of contact point {contact} gives no traction: {}", failed.failure)
             })?;
             for (index, (contact, at)) in group.points.iter().zip(&group.places).enumerate() {
                 all[*contact] = points[index];

@@ -7,8 +7,7 @@ use crate::config::dotted_key::join;
 use crate::config::expand::{Expanded, Expansion};
 use crate::study::{DiagnosticList, OUTPUT, StudySource, read_plugin};
 use serde_json::{Map, Value as Json};
-use std::sync::Arc;
-use voussoir_core::law::{BulkMaterial, FacetResponse, Formulation, InterfaceLaw, PlanarUpdate, Plane};
+use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate, Plane};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 use voussoir_solvers::point::{Control, PointLaw};
 
@@ -283,25 +282,12 @@ fn material_law(
 
 /// A joint law that gives tractions from gaps, by itself or by its facets with a stiffness.
 fn joint_law(diagnostics: &mut DiagnosticList<'_>, law: Box<dyn InterfaceLaw>, tag: &str) -> Option<PointLaw> {
-    match law.formulation() {
-        Formulation::Response(response) => Some(PointLaw::Joint(response)),
-        Formulation::Facets(facets) => match law.stiffness() {
-            Some(stiffness) if stiffness.iter().all(|k| k.is_finite()) => {
-                Some(PointLaw::Joint(Arc::new(FacetResponse::new(facets, stiffness))))
-            }
-            _ => {
-                let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
-                let help = "give the joint normal_stiffness and shear_stiffness";
-                diagnostics.wrong("point.joint", message, help);
-                None
-            }
-        },
-        _ => {
-            let message = format!("interface law \"{tag}\" gives no tractions from gaps");
-            diagnostics.wrong("point.joint", message, "drive a law of facets or of tractions from gaps");
-            None
-        }
+    if let Some(response) = law.response() {
+        return Some(PointLaw::Joint(response));
     }
+    let message = format!("interface law \"{tag}\" without stiffness gives no tractions from gaps");
+    diagnostics.wrong("point.joint", message, "give the joint normal_stiffness and shear_stiffness");
+    None
 }
 
 fn read_segment(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, segment: &Json, at: &str) -> Segment {

@@ -6,9 +6,10 @@ use crate::path::newton::loads::StagedLoads;
 use crate::path::newton::step::solve_step;
 use crate::path::newton::system::StepSystem;
 use std::sync::Arc;
-use voussoir_core::elastic::{Condenser, IsotropicElastic, MeshDensity};
+use voussoir_core::elastic::{Condenser, MeshDensity};
 use voussoir_core::law::{
-    Isotropic, PlanarUpdate, Plane, Region, StressPoint, StressUpdate, UpdateFailure, Voigt, von_mises,
+    Effect, Elasticity, Isotropic, PlanarUpdate, Plane, StressPoint, StressUpdate, UpdateBranch, UpdateContext,
+    UpdateFailure, Voigt, von_mises,
 };
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
@@ -38,7 +39,7 @@ impl StressUpdate for Mises {
     fn update_point(
         &self,
         strain: &Voigt,
-        _length: f64,
+        _context: &UpdateContext,
         old: &[f64],
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
@@ -52,11 +53,13 @@ impl StressUpdate for Mises {
         let share = if step > 0.0 { 3.0 * g * step / trial } else { 0.0 };
         let mut point = StressPoint { tangent: self.elastic.tangent(), ..StressPoint::ZERO };
         point.stress = std::array::from_fn(|i| deviator[i] * (1.0 - share) - if i < 3 { pressure } else { 0.0 });
+        let mises = trial - 3.0 * g * step;
+        point.stored = mises * mises / (6.0 * g) + pressure * pressure / (2.0 * self.elastic.bulk);
         if step > 0.0 {
-            point.region = Region::Shear;
+            point.branch = UpdateBranch::new("shear", Effect::Yielding);
             new[6] += step;
             (0..6).for_each(|i| new[i] += deviator[i] / trial * step * if i < 3 { 1.5 } else { 3.0 });
-            point.dissipation = (trial - 3.0 * g * step) * step;
+            point.dissipated = (trial - 3.0 * g * step) * step;
             point.tangent = Isotropic::stiffness(g * (1.0 - share), self.elastic.bulk);
             let turn = 9.0 * g * g * (step / trial - 1.0 / (3.0 * g + h));
             for i in 0..6 {
@@ -75,11 +78,11 @@ fn steps_with_yielding_blocks_converge_quadratically() {
     let places = [0.0, 0.5, 1.0].map(|t| Vec2::new(t, 0.0));
     let mut points = places.to_vec();
     points.push(Vec2::new(1.0, 1.0));
-    let material = IsotropicElastic { young_modulus: 1e9, poisson_ratio: 0.2, density: 0.0 };
+    let elasticity = Elasticity::isotropic(1e9, 0.2);
     let law = Mises { elastic: Isotropic::new(1e9, 0.2), strength: 1e6, hardening: 1e8 };
     let update = Arc::new(PlanarUpdate::new(Arc::new(law), Plane::Strain).unwrap());
     let mesh = MeshDensity { elements: [2, 2], order: 2, grading: [1.0; 2] };
-    let inelastic = Condenser::new(Plane::Strain, 1.0).inelastic(&square, material, update, &mesh, &points).unwrap();
+    let inelastic = Condenser::new(Plane::Strain, 1.0).inelastic(&square, &elasticity, update, &mesh, &points).unwrap();
     let mut block = body(Vec2::new(0.5, 0.5), points, None, false);
     block.flexibility = Some(inelastic.flexibility());
     block.inelastic = Some(Arc::new(inelastic));
