@@ -1,4 +1,4 @@
-//! Where a path of finite displacements leads from a state at which no step converges.
+//! Branch switching: where a path leads from a state at which no step converges.
 //!
 //! There some contact points are active. The modes that the last rate asks for are one
 //! candidate; it is a solution of the rate problem only if it asks for the same modes itself (a point

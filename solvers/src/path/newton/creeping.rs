@@ -1,5 +1,4 @@
-//! Corners of the path (small displacements, laws of facets): which way it goes on where several points
-//! change at once, and steps that only seem to follow it.
+//! Steps that only seem to follow the path (small displacements, laws of facets): they creep.
 //!
 //! With flow that is not associated the modes that a step asks for at a corner may be those of no solution: whatever
 //! its length, a point slips against its friction. A step so short that this is below the tolerance of the law

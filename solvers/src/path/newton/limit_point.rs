@@ -21,12 +21,12 @@ pub(super) fn test_limit_point(
     }
     match limit_point_test(&mut tracer.system, state, direction) {
         LimitPointTest::None => {
-            tracer.limit.doubt = None;
+            tracer.limit.unproven = None;
             tracer.limit.proven = Some(state.factor);
         }
-        LimitPointTest::Unknown(why) => tracer.limit.doubt = Some(why),
+        LimitPointTest::Unknown(why) => tracer.limit.unproven = Some(why),
         LimitPointTest::Tangent(rate, modes) => {
-            tracer.limit.doubt = Some("there is a rate on which the load grows".into());
+            tracer.limit.unproven = Some("there is a rate on which the load grows".into());
             return Some((rate, modes));
         }
     }
@@ -46,7 +46,7 @@ pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) 
         return None;
     }
     tracer.limit.rose = Some((state.factor, times));
-    tracer.limit.doubt = None;
+    tracer.limit.unproven = None;
     tracer.system.count("branches", 1);
     Some(other)
 }
