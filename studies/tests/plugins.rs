@@ -198,7 +198,7 @@ fn defaults_of_cards_are_those_of_the_types() {
     open.non_associated = true;
     let chosen = limit_solvers(&SelectedSolver::Auto, &open);
     assert!(chosen.iter().all(|(tag, _)| tag != "fussy_limit" && tag != "limit_sequential"));
-    let least = voussoir::solvers::limit::least::LimitLeast::default();
+    let least = voussoir::solvers::limit::nonassociated::LimitNonassociated::default();
     assert_eq!(format!("{:?}", chosen[0].1), format!("{least:?}"));
 }
 
