@@ -291,3 +291,26 @@ fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> Pla
         dissipated: point.dissipated,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An isotropic operator in the plane is Hooke's law with Lamé's constants, and its compliance inverts it.
+    #[test]
+    fn compliance_inverts_hooke() {
+        let nu = 0.35;
+        for plane in [Plane::Strain, Plane::Stress] {
+            let lambda = match plane {
+                Plane::Strain => nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+                Plane::Stress => nu / (1.0 - nu * nu),
+            };
+            let mu = 0.5 / (1.0 + nu);
+            let (strain, pressure) = (Vector3::new(0.3, -0.7, 0.6), lambda * (0.3 - 0.7));
+            let stress = Vector3::new(pressure + 2.0 * mu * 0.3, pressure - 2.0 * mu * 0.7, mu * 0.6);
+            let operator = PlaneElasticity::new(&Elasticity::isotropic(5e9, nu), plane);
+            assert!((operator.stiffness * strain - stress).norm() < 1e-14);
+            assert!((operator.compliance() * stress - strain).norm() < 1e-14);
+        }
+    }
+}
