@@ -105,25 +105,31 @@ fn holds(problem: &RateProblem, rate: &Rate) -> bool {
     })
 }
 
-/// Laws of the fuzzed problems with the facets that are active, whether the point is open with a strength, and at the
-/// apex.
-fn laws(random: &mut Lcg) -> Vec<(Vec<Facet>, Vec<usize>, Option<usize>, bool)> {
+/// A law with the facets that are active, whether the point is open with a strength, and at the apex.
+struct Sample {
+    facets: Vec<Facet>,
+    active: Vec<usize>,
+    open: Option<usize>,
+    apex: bool,
+}
+
+/// Laws of the fuzzed problems.
+fn laws(random: &mut Lcg) -> Vec<Sample> {
     let mut all = Vec::new();
     for dilatancy in [0.0, 0.3, 1.0] {
         let friction = 0.2 + 2.5 * random.next().abs();
-        let dry = [vec![Facet::opening(0.0)], Facet::friction(friction, 0.0, dilatancy * friction).to_vec()].concat();
-        let strong = [
-            vec![Facet::opening(0.4)],
-            Facet::friction(friction, 1.0, dilatancy * friction).to_vec(),
-            vec![Facet::crushing(9.0)],
-        ]
-        .concat();
-        all.push((dry.clone(), vec![0, 1, 2], None, true));
-        all.push((dry.clone(), vec![1], None, false));
-        all.push((dry, vec![2], None, false));
-        all.push((strong.clone(), vec![1, 3], None, false));
-        all.push((strong.clone(), vec![0, 2], None, false));
-        all.push((strong, vec![0, 1], Some(0), false));
+        let slip = |cohesion: f64| Facet::friction(friction, cohesion, dilatancy * friction).to_vec();
+        let dry = [vec![Facet::opening(0.0)], slip(0.0)].concat();
+        let strong = [vec![Facet::opening(0.4)], slip(1.0), vec![Facet::crushing(9.0)]].concat();
+        let mut add = |facets: &[Facet], active: &[usize], open, apex| {
+            all.push(Sample { facets: facets.to_vec(), active: active.to_vec(), open, apex });
+        };
+        add(&dry, &[0, 1, 2], None, true);
+        add(&dry, &[1], None, false);
+        add(&dry, &[2], None, false);
+        add(&strong, &[1, 3], None, false);
+        add(&strong, &[0, 2], None, false);
+        add(&strong, &[0, 1], Some(0), false);
     }
     all
 }
@@ -193,17 +199,9 @@ fn fuzzed_rate_problems_are_solved() {
         let root = DMatrix::from_fn(2 * count, columns, |_, _| random.next());
         let soft = [0.0, 1e-3, 0.1][number / 5 % 3];
         let mut point = |k: &usize| {
-            let (facets, active, open, apex) = &laws[*k];
-            let guess = open.map_or(ContactMode::Stick, |f| ContactMode::Facet(f as u8));
-            let mut point = ActivePoint {
-                facets,
-                active: active.clone(),
-                open: *open,
-                apex: *apex,
-                guess,
-                hit: true,
-                stiffness: 1.0,
-            };
+            let Sample { facets, active, open, apex } = &laws[*k];
+            let (active, guess) = (active.clone(), ContactMode::Stick);
+            let mut point = ActivePoint { facets, active, open: *open, apex: *apex, guess, hit: true, stiffness: 1.0 };
             let candidates = point.candidates();
             point.guess = candidates[((random.next() + 1.0) / 2.0 * candidates.len() as f64) as usize];
             point

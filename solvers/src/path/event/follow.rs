@@ -26,7 +26,7 @@ enum End {
     /// Not followed further, and why.
     Stalled(String),
     /// A direction without end under a load, and the sense of λ.
-    Ray(Direction, Load, f64),
+    Ray(Box<Direction>, Box<Load>, f64),
 }
 
 /// One load step while it is followed.
@@ -131,7 +131,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
-        return Err(End::Ray(direction, run.load.clone(), run.sense));
+        return Err(End::Ray(Box::new(direction), Box::new(run.load.clone()), run.sense));
     }
     advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
     if whole && direction.factor > 0.0 {
