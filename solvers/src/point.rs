@@ -59,7 +59,7 @@ pub enum Control {
 pub enum Stop {
     /// The law has no answer.
     Law(UpdateFailure),
-    /// The controlled stresses could not be reached: beyond the strength, or behind a peak that only
+    /// The controlled stresses could not be reached: beyond the strength, or beyond a peak that only
     /// a controlled strain can pass. The part of the step that was done, and the greatest error of a
     /// controlled stress at the last attempt \[Pa\].
     Unreachable {
@@ -77,7 +77,7 @@ impl fmt::Display for Stop {
             Stop::Unreachable { done, error } => write!(
                 out,
                 "the controlled stresses cannot be reached (done: {:.3} of the step, error {error:.3e} Pa): they are beyond \
-                 the strength, or behind a peak that only a controlled strain passes",
+                 the strength, or beyond a peak that only a controlled strain passes",
                 done
             ),
         }
@@ -269,7 +269,7 @@ impl DrivenPoint {
         residual(controls, &self.response).iter().fold(0.0, |a, b| a.max(b.abs()))
     }
 
-    /// Where stresses are controlled, unloading comes first: behind a peak a stress that falls has two answers, unloading
+    /// Where stresses are controlled, unloading comes first: beyond a peak a stress that falls has two answers, unloading
     /// and more softening, and only the first is stable (its second-order work Δσ·Δε is positive, Hill 1958).
     fn solve(&mut self, controls: &[Control]) -> Result<PointResponse, Stop> {
         if controls.iter().any(|control| matches!(control, Control::Stress(_))) {
@@ -283,13 +283,13 @@ impl DrivenPoint {
         self.solve_from(controls, &self.response.tangent.clone())
     }
 
-    /// Materials unload as they were loaded first, joints as the law says a little behind the present gap.
+    /// Materials unload as they were loaded first, joints as the law says a little before the present gap.
     fn unloading_tangent(&mut self) -> Result<[[f64; COMPONENTS]; COMPONENTS], Stop> {
         if !matches!(self.law, PointLaw::Joint(_)) {
             return Ok(self.elastic);
         }
-        let behind = self.response.strain.map(|gap| (1.0 - 1e-6) * gap);
-        self.evaluate(&behind).map(|found| found.tangent)
+        let before = self.response.strain.map(|gap| (1.0 - 1e-6) * gap);
+        self.evaluate(&before).map(|found| found.tangent)
     }
 
     /// Newton's method from a predictor by this tangent.

@@ -89,6 +89,16 @@ fn wrong_input_overwrites_nothing() {
     assert_eq!(text(&out.join("results.json")), "precious");
     assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
     assert_eq!(code(&voussoir(&["check", wrong.to_str().expect("a path")])), 2);
+    // A solver that does not exist, or a key that it does not have, is a mistake too, never another solver.
+    for (set, right) in [("solver.solver=limit_chian", "limit_chain"), ("solver.tolerence=1e-6", "tolerance")] {
+        let study = study();
+        let output =
+            voussoir(&["run", study.to_str().expect("a path"), "--out", out.to_str().expect("a path"), "--set", set]);
+        assert_eq!(code(&output), 2, "{set}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains(&format!("did you mean \"{right}\"?")), "{said}");
+        assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
+    }
     assert_eq!(code(&voussoir(&["run", "no_such_file.toml"])), 3);
     assert_eq!(code(&voussoir(&["run", study().to_str().expect("a path"), "--set", "friction"])), 2);
     assert_eq!(code(&voussoir(&["run", study().to_str().expect("a path"), "--case", "99"])), 2);

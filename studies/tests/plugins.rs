@@ -2,13 +2,17 @@
 //! with options, study kinds that choose values themselves.
 
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::path::Path;
+use voussoir::config::diagnostic::LocatedDiagnostic;
 use voussoir::core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::model::stage_loads;
-use voussoir::core::plugin::{Card, Need, Parameter, PluginKind, Shape};
-use voussoir::solve::CaseInput;
+use voussoir::core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir::kinds::{KindEntry, LoadedStudy, OwnResults, RunRequest, StudyKind, read_study};
+use voussoir::results::{CaseLabel, CaseResult};
 use voussoir::solve::auto::{limit_solvers, path_solvers};
-use voussoir::study::{SelectedSolver, Study, load};
+use voussoir::solve::{CaseInput, Observer, solve_case, solve_cases};
+use voussoir::study::{Case, Outline, SelectedSolver, Study, StudySource, load};
 
 /// A number that the card takes up to 10 and the solver up to 5.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -194,7 +198,7 @@ fn defaults_of_cards_are_those_of_the_types() {
     open.non_associated = true;
     let chosen = limit_solvers(&SelectedSolver::Auto, &open);
     assert!(chosen.iter().all(|(tag, _)| tag != "fussy_limit" && tag != "limit_sequential"));
-    let least = voussoir::solvers::limit::least::LimitLeast::default();
+    let least = voussoir::solvers::limit::nonassociated::LimitNonassociated::default();
     assert_eq!(format!("{:?}", chosen[0].1), format!("{least:?}"));
 }
 
@@ -213,15 +217,104 @@ fn a_study_makes_cases_at_other_values() {
     assert_eq!(wrong[0].key, "scene.profile.rise");
 }
 
+/// A study kind of one's own: it tries another value of one key for each case, and says which case carries more.
+struct Try;
+
+impl Try {
+    fn other<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
+        let (key, value) = (study.outline.table["key"].as_str()?, study.outline.table["value"].as_f64()?);
+        let mut case = study.at(label.id % study.cases.len(), &[(key, value)]).ok()?;
+        case.id = label.id;
+        Some(Cow::Owned(case))
+    }
+}
+
+impl StudyKind for Try {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        Ok(Box::new(Study::from_source(source)?))
+    }
+
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
+        let missing = !outline.table.contains_key("key");
+        missing.then(|| Diagnostic::new("kind", "needs a table [try_value]")).into_iter().collect()
+    }
+
+    fn solve(&self, study: &Study, wanted: &[usize], _: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+        let made = wanted.iter().filter_map(|id| {
+            let label = CaseLabel { id: study.cases.len() + id, ..CaseLabel::default() };
+            Some(solve_case(&*self.case(study, &label)?))
+        });
+        solve_cases(study, wanted, 1, observer).into_iter().chain(made).collect()
+    }
+
+    fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
+        match study.cases.get(label.id) {
+            Some(case) => Some(Cow::Borrowed(case)),
+            None => self.other(study, label),
+        }
+    }
+
+    fn own_results(&self, _: &Study, cases: &[CaseResult]) -> OwnResults {
+        let stronger = cases.iter().max_by(|a, b| a.load_factor.partial_cmp(&b.load_factor).expect("numbers"));
+        let mut own = OwnResults::default();
+        own.other.insert("strongest".into(), stronger.map(|case| case.label.id).into());
+        own
+    }
+}
+
+voussoir::core::inventory::submit! { KindEntry { tag: "try_value", kind: &Try } }
+
+voussoir::core::inventory::submit! {
+    Card {
+        kind: PluginKind::StudyKind,
+        tag: "try_value",
+        summary: "each case once more with another value of one key",
+        parameters: &[
+            Parameter { name: "key", doc: "of a number", shape: Shape::Text, need: Need::Required },
+            Parameter::number("value", Quantity::Ratio, Range::ANY, "that is tried"),
+        ],
+        file: file!(),
+        page: "for this test only",
+        ..Card::BLANK
+    }
+}
+
+/// Keys in the schema, cases and results of its own, verified; mistakes in its table have the nearest right name.
+#[test]
+fn a_study_kind_of_ones_own() {
+    let kind = "kind = \"try_value\"\n";
+    let with = |table: &str| format!("{kind}{ARCH}[output]\nwriters = [\"results_csv\"]\n[try_value]\n{table}");
+    let text = with("key = \"scene.thickness\"\nvalue = 0.4\n");
+    let study = read_study(&text, "a.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let output = study.run(&RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() }, &Silent);
+    assert!(output.certified);
+    let (_, bytes) = output.files.iter().find(|(name, _)| name == "results.json").expect("results");
+    let results = String::from_utf8(bytes.clone()).expect("text");
+    let json: serde_json::Value = serde_json::from_str(&results).expect("JSON");
+    assert_eq!((json["cases"].as_array().map(Vec::len), &json["strongest"]), (Some(2), &0.into()));
+    assert_eq!(json["cases"][1]["parameters"]["scene.thickness"], 0.4);
+    assert_eq!(study.verify(&results).expect("results").findings, vec![]);
+    let weaker = study.verify(&results.replace("\"strongest\": 0", "\"strongest\": 1")).expect("results");
+    assert!(weaker.findings[0].1.contains("try_value"), "{:?}", weaker.findings);
+    let factor = json["cases"][1]["load_factor"].to_string();
+    assert_ne!(factor, "null");
+    assert!(!study.verify(&results.replace(&factor, "1.0")).expect("results").findings.is_empty());
+    assert!(voussoir::kinds::json_schema::json_schema().to_string().contains("\"try_value\""));
+    let wrong = read_study(&with("kee = \"scene.thickness\"\nvalue = 0.4\n"), "a.toml", &[]).err().expect("a mistake");
+    assert!(wrong.iter().any(|one| one.to_string().contains("did you mean \"key\"?")), "{wrong:?}");
+    let wrong = read_study(&format!("{kind}{ARCH}"), "a.toml", &[]).err().expect("a mistake");
+    assert!(wrong[0].message.contains("[try_value]"));
+}
+
+struct Silent;
+
+impl Observer for Silent {
+    fn answered(&self, _: &CaseResult) {}
+}
+
 /// `[output] writers` chooses, `[output.options]` says how; unknown names are mistakes with the nearest right one.
 #[test]
 fn writers_are_chosen_and_have_options() {
-    use voussoir::kinds::{RunRequest, read_study};
-    use voussoir::results::CaseResult;
-    struct Silent;
-    impl voussoir::solve::Observer for Silent {
-        fn answered(&self, _: &CaseResult) {}
-    }
     let run = |more: &str| {
         let study = read_study(&format!("{ARCH}{more}"), "a.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
         study.run(&RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() }, &Silent).files

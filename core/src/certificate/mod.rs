@@ -10,5 +10,8 @@ pub use self::mechanism::{
     CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
     mechanism_above, velocity_at,
 };
-pub use self::path::{PathChecker, TOLERANCES, Tolerance, flow_residual, power_residual, ray_residual, tolerance};
+pub use self::path::{
+    Displaced, PathChecker, TOLERANCES, Tolerance, flow_residual, leaves_forces, path_structure, power_residual,
+    ray_residual, tolerance,
+};
 pub use self::products::{COVERED, proved};

@@ -23,7 +23,7 @@
 use crate::law::{Facet, YieldPolygon};
 use crate::limit::{FIRST, LAST, ProductStep};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, StageLoads};
+use crate::model::{Assembly, Bond, Joint, StageLoads};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -77,31 +77,92 @@ pub fn proved(
     Ok((proved, rounding))
 }
 
-impl Rows {
-    fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
-        let (groups, count) = assembly.rigid_groups();
-        let size = assembly.size();
+/// Groups of bodies with the poles about which they balance.
+struct Groups<'a> {
+    assembly: &'a Assembly,
+    of_body: Vec<Option<usize>>,
+    poles: Vec<Vec2>,
+    size: f64,
+}
+
+impl<'a> Groups<'a> {
+    fn new(assembly: &'a Assembly) -> Self {
+        let (of_body, count) = assembly.rigid_groups();
         let mut poles: Vec<Option<Vec2>> = vec![None; count];
-        for (body, group) in groups.iter().enumerate() {
+        for (body, group) in of_body.iter().enumerate() {
             if let Some(group) = group {
                 poles[*group].get_or_insert_with(|| assembly.inertia(body).centroid);
             }
         }
-        let pole = |group: usize| poles[group].unwrap_or_else(Vec2::zeros);
-        let about = |group: usize, w: [f64; 3]| [w[0], w[1], w[2] - cross(pole(group), Vec2::new(w[0], w[1]))];
-        let gather = |wrenches: &[[f64; 3]]| {
-            let mut sums = vec![[0.0f64; 3]; count];
-            for (group, wrench) in groups.iter().zip(wrenches) {
-                if let Some(group) = *group {
-                    let [x, y, moment] = about(group, *wrench);
-                    for (sum, part) in sums[group].iter_mut().zip([x, y, moment / size]) {
-                        *sum += part;
-                    }
+        let poles = poles.into_iter().map(Option::unwrap_or_default).collect();
+        Groups { assembly, of_body, poles, size: assembly.size() }
+    }
+
+    /// Resultants of loads on each group about its pole, moments divided by the scene's size.
+    fn gather(&self, wrenches: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut sums = vec![[0.0f64; 3]; self.poles.len()];
+        for (group, [x, y, moment]) in self.of_body.iter().zip(wrenches) {
+            if let Some(group) = *group {
+                let about = moment - cross(self.poles[group], Vec2::new(*x, *y));
+                for (sum, part) in sums[group].iter_mut().zip([*x, *y, about / self.size]) {
+                    *sum += part;
                 }
             }
-            sums
-        };
-        let (fixed, varying) = (gather(&loads.fixed), gather(&loads.varying));
+        }
+        sums
+    }
+
+    /// Columns of N_0, N_1 and T of a joint.
+    fn columns(&self, joint: &Joint) -> [Vec<f64>; 3] {
+        let (n, t) = joint.frame();
+        [(joint.ends[0], n), (joint.ends[1], n), (joint.ends[0], t)].map(|(at, direction)| {
+            let mut column = vec![0.0; 3 * self.poles.len()];
+            for (body, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+                let Some(group) = self.of_body[body] else { continue };
+                let moment = cross(at - self.poles[group], direction) / self.size;
+                for (x, part) in [direction.x, direction.y, moment].into_iter().enumerate() {
+                    column[3 * group + x] += sign * part;
+                }
+            }
+            column
+        })
+    }
+
+    /// Rows of a joint's law over (N_0, N_1, T), and whether T is a variable: without friction T = 0 and slip is free.
+    fn rows(&self, index: usize, first: usize) -> Result<(Vec<Row>, bool), String> {
+        let joint = &self.assembly.joints[index];
+        let facets = self.assembly.law(joint).and_then(|law| law.facets()).unwrap_or_default();
+        let polygon = YieldPolygon::of(&facets);
+        if polygon.greatest_normal().is_finite() || polygon.least_normal() == f64::NEG_INFINITY {
+            return Err("joints that crush, or never open, have no linear rows".into());
+        }
+        let area = joint.height() * self.assembly.width;
+        let row = |normal, flow, bound, slot: i64| Row { code: 4 * index as i64 + slot, first, normal, flow, bound };
+        let tension = -polygon.least_normal() * area / 2.0;
+        let mut own = vec![
+            row([-1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], tension, 0),
+            row([0.0, -1.0, 0.0], [0.0, -1.0, 0.0], tension, 1),
+        ];
+        let sliding: Vec<&Facet> = facets.iter().filter(|f| f.normal[1] != 0.0).collect();
+        if !sliding.is_empty() && sliding.iter().all(|f| f.normal[0] == 0.0 && f.bound == 0.0) {
+            return Ok((own, false));
+        }
+        for (sense, slot) in [(1.0, 2), (-1.0, 3)] {
+            let over = |v: [f64; 2]| [v[0], v[0], v[1]];
+            match sliding.iter().filter(|f| f.normal[1] * sense > 0.0).collect::<Vec<_>>()[..] {
+                [] => {}
+                [f] => own.push(row(over(f.normal), over(f.flow), f.bound * area, slot)),
+                _ => return Err("several facets bound sliding in one sense".into()),
+            }
+        }
+        Ok((own, true))
+    }
+}
+
+impl Rows {
+    fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
+        let groups = Groups::new(assembly);
+        let (fixed, varying) = (groups.gather(&loads.fixed), groups.gather(&loads.varying));
         let sum = |w: &[[f64; 3]]| w.iter().flatten().map(|x| x.abs()).sum::<f64>();
         let (dead, live) = (sum(&fixed), sum(&varying));
         if live == 0.0 {
@@ -111,59 +172,19 @@ impl Rows {
         let unit = force / live;
         let (mut rows, mut forces, mut columns) = (Vec::new(), 0, Vec::new());
         for (index, joint) in assembly.joints.iter().enumerate() {
-            let (minus, plus) = (groups[joint.minus], groups[joint.plus]);
-            let Bond::Law(law) = joint.bond else { continue };
-            if minus == plus {
+            if joint.bond == Bond::Bonded || groups.of_body[joint.minus] == groups.of_body[joint.plus] {
                 continue;
             }
-            let facets = assembly.catalogue.laws[law].1.facets().unwrap_or_default();
-            let polygon = YieldPolygon::of(&facets);
-            if polygon.greatest_normal().is_finite() || polygon.least_normal() == f64::NEG_INFINITY {
-                return Err("joints that crush, or never open, have no linear rows".into());
-            }
-            let area = joint.height() * assembly.width;
-            let mut own = vec![([-1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], -polygon.least_normal() * area / 2.0, 0)];
-            own.push(([0.0, -1.0, 0.0], [0.0, -1.0, 0.0], own[0].2, 1));
-            let sliding: Vec<&Facet> = facets.iter().filter(|f| f.normal[1] != 0.0).collect();
-            for (sense, slot) in [(1.0, 2), (-1.0, 3)] {
-                let one_sense: Vec<&&Facet> = sliding.iter().filter(|f| f.normal[1] * sense > 0.0).collect();
-                match one_sense[..] {
-                    [] => {}
-                    [f] => {
-                        let over = |v: [f64; 2]| [v[0], v[0], v[1]];
-                        own.push((over(f.normal), over(f.flow), f.bound * area, slot));
-                    }
-                    _ => return Err("several facets bound sliding in one sense".into()),
-                }
-            }
-            // Without friction T = 0 and slip is free: neither is a variable.
-            let frictionless = !sliding.is_empty() && sliding.iter().all(|f| f.normal[0] == 0.0 && f.bound == 0.0);
-            let width = if frictionless { 2 } else { 3 };
-            let (n, t) = joint.frame();
-            for (at, direction) in [(joint.ends[0], n), (joint.ends[1], n), (joint.ends[0], t)].into_iter().take(width)
-            {
-                let mut column = vec![0.0; 3 * count];
-                for (group, sign) in [(plus, 1.0), (minus, -1.0)] {
-                    let Some(group) = group else { continue };
-                    let moment = cross(at - pole(group), direction) / size;
-                    for (x, part) in [direction.x, direction.y, moment].into_iter().enumerate() {
-                        column[3 * group + x] += sign * part;
-                    }
-                }
-                columns.push(column);
-            }
-            for (normal, flow, bound, slot) in own {
-                if slot < 2 || width == 3 {
-                    let code = 4 * index as i64 + slot;
-                    rows.push(Row { code, first: forces, normal, flow, bound: bound / force });
-                }
-            }
+            let (own, shear) = groups.rows(index, forces)?;
+            let width = if shear { 3 } else { 2 };
+            rows.extend(own.into_iter().map(|row| Row { bound: row.bound / force, ..row }));
+            columns.extend(groups.columns(joint).into_iter().take(width));
             forces += width;
         }
         let scaled = |w: &[[f64; 3]], by: f64| w.iter().flatten().map(|x| x * by).collect::<Vec<f64>>();
         columns.push(scaled(&varying, unit / force));
         columns.push(scaled(&fixed, 1.0 / force));
-        let balance = DMatrix::from_fn(3 * count, forces + 2, |i, j| columns[j][i]);
+        let balance = DMatrix::from_fn(3 * groups.poles.len(), forces + 2, |i, j| columns[j][i]);
         Ok(Rows { rows, forces, balance, unit, force })
     }
 

@@ -6,7 +6,7 @@
 
 use super::inelastic::{InelasticBody, Strains};
 use super::mesh::MeshDensity;
-use super::shape::{Place, Placement, Shape, agree, placed};
+use super::shape::{Placement, Response, Shape, agree, placed};
 use super::stress::{Recovered, recovered};
 use crate::law::{Elasticity, PlanarUpdate, Plane, PlaneElasticity};
 use crate::model::geometry::Vec2;
@@ -37,9 +37,6 @@ struct Known {
     /// Places of points and displacements of all nodes by forces there, by local points.
     responses: Vec<(Vec<Vec2>, Response)>,
 }
-
-/// Places of points, and the elastic displacements of all nodes by forces there.
-pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
 impl Known {
     /// C̃ of points given in the shape's frame.

@@ -25,15 +25,10 @@
 //! middle node's equilibrium asks for σ₋ = σ₊ only: one outer point may unload while the other softens and the middle one
 //! follows with half of its strain, and 13/18 of the element take part; so softening is for elements of order 1.
 
-mod linearisation;
-
-pub use linearisation::Linearisation;
-
-use super::Recovered;
-use super::condensation::Response;
 use super::element::strain_operators;
 use super::mesh::{Mesh, MeshDensity};
-use super::shape::{Place, Placement, Shape, at_places};
+use super::shape::{Place, Placement, Response, Shape, at_places};
+use super::stress::Recovered;
 use crate::law::{Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext, Voigt};
 use crate::model::geometry::{Vec2, area_and_centroid};
 use nalgebra::{DMatrix, Matrix2};
@@ -49,7 +44,7 @@ pub fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, 
 /// Strains at the quadrature points of a mesh of unit area.
 pub(super) struct Strains {
     /// B and weight of each point, element by element.
-    operators: Vec<Vec<(DMatrix<f64>, f64)>>,
+    pub(super) operators: Vec<Vec<(DMatrix<f64>, f64)>>,
     /// √A of each element.
     lengths: Vec<f64>,
 }
@@ -84,22 +79,22 @@ pub struct InelasticState {
 /// A body of a yielding material, seen from some of its points.
 #[derive(Clone)]
 pub struct InelasticBody {
-    shape: Arc<Shape>,
-    strains: Arc<Strains>,
-    places: Arc<Vec<Place>>,
+    pub(super) shape: Arc<Shape>,
+    pub(super) strains: Arc<Strains>,
+    pub(super) places: Arc<Vec<Place>>,
     /// X of the elastic body.
-    response: Arc<DMatrix<f64>>,
+    pub(super) response: Arc<DMatrix<f64>>,
     /// C of the elastic body, in the world \[m/N\].
-    flexibility: Arc<DMatrix<f64>>,
-    origin: Vec2,
-    rotation: Matrix2<f64>,
-    size: f64,
-    width: f64,
+    pub(super) flexibility: Arc<DMatrix<f64>>,
+    pub(super) origin: Vec2,
+    pub(super) rotation: Matrix2<f64>,
+    pub(super) size: f64,
+    pub(super) width: f64,
     /// E \[Pa\]: what the shape's elasticity is relative to.
-    modulus: f64,
+    pub(super) modulus: f64,
     /// C⁻¹ × E in space.
-    compliance: [Voigt; 6],
-    update: Arc<PlanarUpdate>,
+    pub(super) compliance: [Voigt; 6],
+    pub(super) update: Arc<PlanarUpdate>,
 }
 
 impl fmt::Debug for InelasticBody {
@@ -205,21 +200,10 @@ impl InelasticBody {
     }
 
     /// Forces (x, y per point) \[N\] in the body's axes as loads of the shape.
-    fn local_forces(&self, forces: &[f64]) -> Vec<f64> {
+    pub(super) fn local_forces(&self, forces: &[f64]) -> Vec<f64> {
         let scale = 1.0 / (self.modulus * self.width * self.size);
         let to_local = self.rotation.transpose() * scale;
         forces.chunks(2).flat_map(|f| <[f64; 2]>::from(to_local * Vec2::new(f[0], f[1]))).collect()
-    }
-
-    /// Displacements of the nodes by forces on the points, as the linearisation sees them.
-    pub fn displaced(&self, linear: &Linearisation, forces: &[f64]) -> Vec<f64> {
-        let mut all = linear.rest.clone();
-        for (f, column) in self.local_forces(forces).iter().zip(linear.response.column_iter()) {
-            if *f != 0.0 {
-                all.iter_mut().zip(column.iter()).for_each(|(x, c)| *x += c * f);
-            }
-        }
-        all
     }
 
     /// Displacements of the nodes of the elastic body.
@@ -239,7 +223,7 @@ impl InelasticBody {
     }
 
     /// Greatest force on a node that internal forces leave \[N\].
-    fn unbalanced(&self, internal: &[f64], forces: &[f64]) -> f64 {
+    pub(super) fn unbalanced(&self, internal: &[f64], forces: &[f64]) -> f64 {
         let mut rest = DMatrix::zeros(internal.len(), 1);
         for (place, f) in self.places.iter().zip(self.local_forces(forces).chunks(2)) {
             for &(node, value) in place {
@@ -252,12 +236,7 @@ impl InelasticBody {
         worst * self.modulus * self.width * self.size
     }
 
-    /// Greatest force on a node that the stresses at the linearisation's displacements leave \[N\].
-    pub fn residual(&self, linear: &Linearisation, forces: &[f64]) -> f64 {
-        self.unbalanced(&linear.internal, forces)
-    }
-
-    fn strains_at(&self, displacement: &[f64]) -> Vec<[f64; 3]> {
+    pub(super) fn strains_at(&self, displacement: &[f64]) -> Vec<[f64; 3]> {
         let mut strains = Vec::with_capacity(self.gauss_points());
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
             for (b, _) in operators {
@@ -274,7 +253,12 @@ impl InelasticBody {
         strains
     }
 
-    fn stresses(&self, strains: &[[f64; 3]], history: &[f64], new: &mut [f64]) -> Result<Vec<PlanarPoint>, String> {
+    pub(super) fn stresses(
+        &self,
+        strains: &[[f64; 3]],
+        history: &[f64],
+        new: &mut [f64],
+    ) -> Result<Vec<PlanarPoint>, String> {
         let context = |length: &f64| UpdateContext::of_length(length * self.size);
         let contexts: Vec<UpdateContext> = self
             .strains
@@ -291,7 +275,7 @@ impl InelasticBody {
     }
 
     /// f_int of stresses.
-    fn internal(&self, points: &[PlanarPoint]) -> Vec<f64> {
+    pub(super) fn internal(&self, points: &[PlanarPoint]) -> Vec<f64> {
         let mut internal = vec![0.0; 2 * self.nodes()];
         let mut next = points.iter();
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {

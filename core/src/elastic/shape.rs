@@ -7,6 +7,7 @@ use crate::law::{Plane, PlaneElasticity};
 use crate::linear::{Entries, SparseLdlt};
 use crate::model::geometry::{Vec2, area_and_centroid, bounding_box, turned};
 use nalgebra::{DMatrix, Matrix2};
+use std::sync::Arc;
 
 /// Shapes and points that differ by less than this share of the size are congruent.
 const CONGRUENT: f64 = 1e-9;
@@ -57,6 +58,9 @@ pub(super) fn agree(a: &[Vec2], b: &[Vec2]) -> bool {
 
 /// A point's place in the mesh: nodes with their shape functions.
 pub(super) type Place = Vec<(usize, f64)>;
+
+/// Places of points, and the elastic displacements of all nodes by forces there.
+pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
 /// A mesh with its factorisation, for modulus 1, width 1 and area 1, centroid at the origin.
 pub(super) struct Shape {

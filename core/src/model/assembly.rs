@@ -106,15 +106,24 @@ impl Assembly {
         }
     }
 
+    /// The material of a body.
+    pub fn material(&self, body: usize) -> &dyn BulkMaterial {
+        &*self.catalogue.materials[self.bodies[body].material].1
+    }
+
     /// Whether a body's material is rigid.
     pub fn is_rigid(&self, body: usize) -> bool {
-        self.catalogue.materials[self.bodies[body].material].1.elasticity().is_none()
+        self.material(body).elasticity().is_none()
+    }
+
+    /// Whether a body is free and its material deforms.
+    pub fn is_deformable(&self, body: usize) -> bool {
+        !self.bodies[body].fixed && !self.is_rigid(body)
     }
 
     /// Whether a body's material yields.
     pub fn yields(&self, body: usize) -> bool {
-        let material = &self.catalogue.materials[self.bodies[body].material].1;
-        material.inelastic().is_some()
+        self.material(body).inelastic().is_some()
     }
 
     /// Whether the elements of a body are small enough for its material to soften without snapping
@@ -135,8 +144,7 @@ impl Assembly {
 
     /// Whether some free block deforms or some joint is compliant.
     pub fn deforms(&self) -> bool {
-        let soft = |body: usize| !self.bodies[body].fixed && !self.is_rigid(body);
-        (0..self.bodies.len()).any(soft)
+        (0..self.bodies.len()).any(|body| self.is_deformable(body))
             || self.joints.iter().any(|j| self.law(j).is_some_and(|law| law.stiffness().is_some()))
     }
 

@@ -19,7 +19,7 @@ pub enum Gap {
     /// The same everywhere \[m\].
     Uniform(f64),
     /// Pairs \[s, gap\] \[m\], s ascending from the joint's end 0; linear between them, constant
-    /// before the first and behind the last.
+    /// before the first and after the last.
     Table(Vec<[f64; 2]>),
 }
 
@@ -36,8 +36,8 @@ impl Gap {
             Gap::Uniform(gap) => return *gap,
             Gap::Table(table) => table,
         };
-        let behind = table.partition_point(|row| row[0] <= s);
-        match (behind.checked_sub(1).map(|i| table[i]), table.get(behind)) {
+        let after = table.partition_point(|row| row[0] <= s);
+        match (after.checked_sub(1).map(|i| table[i]), table.get(after)) {
             (Some([a, from]), Some(&[b, to])) => from + (to - from) * (s - a) / (b - a),
             (Some([_, gap]), None) => gap,
             (None, first) => first.map_or(0.0, |row| row[1]),

@@ -1,5 +1,5 @@
 //! The path problem: bodies with their flexibility, contact points, loads in the order in which
-//! they come; and what a path solver is asked and answers.
+//! they come; the question to a path solver and its answer.
 //!
 //! One system for everything (small displacements; Gq exactly with finite ones):
 //!
@@ -9,20 +9,17 @@
 //! law           per contact point: facets, or a response
 //! ```
 
+mod build;
 mod continuation;
-mod displaced;
 mod point_law;
 mod problem;
-mod response;
 mod sliding;
 mod solver;
 mod state;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
-pub use self::displaced::Displaced;
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
-pub use self::response::{SoftensOver, coarse_joints};
 pub use self::sliding::Sliding;
 pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};

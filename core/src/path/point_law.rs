@@ -1,6 +1,5 @@
 //! The law of a contact point: what it can carry and how it moves.
 
-use super::problem::PathProblem;
 use crate::law::{Facet, InterfaceLaw, InterfaceResponse};
 use std::sync::Arc;
 
@@ -40,21 +39,5 @@ impl PointLaw {
     /// Whether the bodies are one there.
     pub fn is_bonded(&self) -> bool {
         matches!(self, PointLaw::Bonded)
-    }
-}
-
-impl PathProblem {
-    /// Laws of facets, each once in the order of the contact points, and for each point the index of its own.
-    pub fn shared_facets(&self) -> (Vec<&[Facet]>, Vec<Option<usize>>) {
-        let mut laws: Vec<&[Facet]> = Vec::new();
-        let of = self.contacts.iter().map(|contact| {
-            let own = contact.law.facets()?;
-            Some(laws.iter().position(|law| std::ptr::eq(*law, own)).unwrap_or_else(|| {
-                laws.push(own);
-                laws.len() - 1
-            }))
-        });
-        let of = of.collect();
-        (laws, of)
     }
 }

@@ -22,6 +22,7 @@
 //! ch. 4), of which β = 0 and 1 are the two passes.
 
 use crate::model::geometry::Vec2;
+use crate::model::{Assembly, Joint};
 
 /// Slip up to which a point is paired with β = ½, as a share of its joint.
 const LARGEST_SLIP: f64 = 0.05;
@@ -36,6 +37,15 @@ pub struct Sliding {
 }
 
 impl Sliding {
+    /// Of the point at a share `position` of a joint; corners of bodies that its ends hit to within `tolerance`
+    /// \[m\] are ends of the joint.
+    pub fn of(assembly: &Assembly, joint: &Joint, position: f64, tolerance: f64) -> Self {
+        let sides = [joint.minus, joint.plus];
+        let rigid = sides.iter().all(|side| !assembly.is_deformable(*side));
+        let faces = rigid.then(|| sides.map(|side| face(&assembly.bodies[side].vertices, joint.ends, tolerance)));
+        sliding(faces, joint.height(), position)
+    }
+
     /// Midway between the bodies, in a joint of this height \[m\]; without bounds where it has none.
     pub fn middle(height: f64) -> Self {
         let most = if height > 0.0 { LARGEST_SLIP * height } else { f64::INFINITY };
@@ -51,7 +61,7 @@ impl Sliding {
 /// Where the edge of a polygon on which a joint lies begins and ends, along the joint from its first
 /// end \[m\], with corners that the joint's ends hit to within `tolerance` set to them. `None` where no
 /// edge does.
-pub(super) fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option<[f64; 2]> {
+fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option<[f64; 2]> {
     let height = (ends[1] - ends[0]).norm();
     let along = (ends[1] - ends[0]) / height;
     let place = |p: Vec2| {
@@ -69,7 +79,7 @@ pub(super) fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option
 
 /// How a point at a share `position` of a joint slides; `faces` of (minus, plus), `None` where a body is
 /// elastic. An end belongs to the body whose corner it is, a point between to the nearer end.
-pub(super) fn sliding(faces: Option<[Option<[f64; 2]>; 2]>, height: f64, position: f64) -> Sliding {
+fn sliding(faces: Option<[Option<[f64; 2]>; 2]>, height: f64, position: f64) -> Sliding {
     let Some([Some(minus), Some(plus)]) = faces else { return Sliding::middle(height) };
     let end = usize::from(position > 0.5);
     let own = [0.0, height][end];

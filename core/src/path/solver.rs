@@ -18,7 +18,7 @@ pub struct PathAnswer {
     pub factor: Option<f64>,
     /// The state at that factor.
     pub state: PathState,
-    /// The last state, where the path went on behind a limit point.
+    /// The last state, where the path went on beyond a limit point.
     pub last: Option<PathState>,
     /// Velocity of every body about its pole at the end, p·q̇ = 1 for a mechanism.
     pub motion: Option<Vec<[f64; 3]>>,
@@ -41,7 +41,7 @@ pub struct PathSettings {
     pub finite: bool,
     /// Relative tolerance.
     pub tolerance: f64,
-    /// How far to go behind a peak: displacement of the load \[m\].
+    /// How far to go beyond a peak: displacement of the load \[m\].
     pub stop_displacement: Option<f64>,
     /// Where to stop a falling branch: a factor.
     pub stop_factor: Option<f64>,

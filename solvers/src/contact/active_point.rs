@@ -31,6 +31,14 @@ pub struct ActivePoint<'a> {
 }
 
 impl ActivePoint<'_> {
+    /// Whether the active facets of a law without strength meet at the apex of dry friction: opening, and slip in
+    /// both senses.
+    pub fn is_apex(facets: &[Facet], active: &[usize]) -> bool {
+        let bare = |own: &dyn Fn(&Facet) -> bool| active.iter().any(|i| facets[*i].bound <= 0.0 && own(&facets[*i]));
+        let slides = |sense: f64| bare(&|f| f.mode == FacetMode::Sliding && sense * f.normal[1] > 0.0);
+        bare(&|f| f.mode == FacetMode::Opening) && slides(1.0) && slides(-1.0)
+    }
+
     /// The modes it may take.
     pub fn candidates(&self) -> Vec<ContactMode> {
         if let Some(open) = self.open {

@@ -1,11 +1,10 @@
 //! Fields and mechanisms to rounding from the rows that are known to yield and to move.
 
-use super::driven;
+use super::equilibrium::Row;
+use super::scale::with_unit_power;
 use super::systems::Systems;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 use voussoir_core::linear::{Entries, SparseLdlt};
-
-type Row = Vec<(usize, f64)>;
 
 /// Regularisation of the least-norm steps, which are repeated until they no longer gain.
 const DELTA: f64 = 1e-8;
@@ -102,22 +101,18 @@ impl Systems {
         let (z, error) = nearest(&rows, &right, start)?;
         let violation = z[bodies..].iter().map(|g| -g).fold(error, f64::max);
         let motion = z[..bodies].chunks(3).map(|q| [q[0], q[1], q[2] / self.length]).collect();
-        Some((driven(&problem.varying, motion), violation / greatest))
+        Some((with_unit_power(&problem.varying, motion), violation / greatest))
     }
 
     /// Joint forces \[N\] of force variables.
     pub fn joint_forces(&self, z: &[f64]) -> Vec<JointForce> {
-        let force = |&(first, shear): &(usize, bool)| JointForce {
-            normal: [z[first] * self.force, z[first + 1] * self.force],
-            shear: if shear { z[first + 2] * self.force } else { 0.0 },
-        };
-        self.joints.iter().map(force).collect()
+        self.variables.joint_forces(z, self.force)
     }
 
     /// Force variables of joint forces \[N\].
     pub fn force_variables(&self, forces: &[JointForce]) -> Vec<f64> {
         let mut z = Vec::with_capacity(self.forces + 1);
-        for (force, &(_, shear)) in forces.iter().zip(&self.joints) {
+        for (force, &(_, shear)) in forces.iter().zip(&self.variables.joints) {
             z.extend(force.normal.map(|n| n / self.force));
             if shear {
                 z.push(force.shear / self.force);

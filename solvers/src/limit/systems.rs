@@ -4,9 +4,10 @@
 //! E r + p θ = −w and s = b − A r ≥ 0, 0 ≤ θ ≤ t; *kinematics* is Eᵀ q̇ + Dᵀ γ = 0, p·q̇ = 1,
 //! γ ≥ 0. A pair i is a row of a joint: s_i γ_i = 0.
 
-use super::{force_scale, force_unit};
+use super::equilibrium::ForceVariables;
+use super::scale::{force_scale, force_unit};
 use crate::optimise::dense_simplex::{Dictionary, Equations};
-use voussoir_core::law::{FacetMode, Tangential};
+use voussoir_core::law::FacetMode;
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::Wrenches;
 
@@ -47,8 +48,8 @@ impl Pair {
 pub struct Systems {
     /// All pairs.
     pub pairs: Vec<Pair>,
-    /// First force variable of each joint and whether T is one.
-    pub joints: Vec<(usize, bool)>,
+    /// The force variables of all joints.
+    pub variables: ForceVariables,
     /// Number of force variables.
     pub forces: usize,
     /// E row by row: three per group.
@@ -72,24 +73,11 @@ impl Systems {
         let force = force_scale(problem, fixed, varying);
         let unit = force / force_unit(problem, varying);
         let length = problem.length;
-        let (mut joints, mut forces, mut pairs) = (Vec::new(), 0, Vec::new());
-        let mut equilibrium = vec![Vec::new(); 3 * problem.groups];
-        for joint in &problem.joints {
-            let shear = joint.strength.tangential() != Tangential::Free;
-            let (first, count) = (forces, if shear { 3 } else { 2 });
-            joints.push((first, shear));
-            forces += count;
-            let wrenches = joint.wrenches(problem.pole);
-            for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
-                let Some(group) = group else { continue };
-                for (k, wrench) in wrenches.iter().enumerate().take(count) {
-                    for (i, scale) in [1.0, 1.0, 1.0 / length].into_iter().enumerate() {
-                        if wrench[i] != 0.0 {
-                            equilibrium[3 * group + i].push((first + k, sign * wrench[i] * scale));
-                        }
-                    }
-                }
-            }
+        let variables = ForceVariables::new(problem);
+        let equilibrium = variables.equilibrium(problem);
+        let mut pairs = Vec::new();
+        for (joint, &(first, shear)) in problem.joints.iter().zip(&variables.joints) {
+            let count = if shear { 3 } else { 2 };
             let (opens, before) = (|mode| mode == FacetMode::Opening, pairs.len());
             for row in &joint.strength.rows {
                 let entries = |a: &[f64; 3]| -> Vec<(usize, f64)> {
@@ -119,8 +107,8 @@ impl Systems {
         };
         Systems {
             pairs,
-            joints,
-            forces,
+            forces: variables.count,
+            variables,
             equilibrium,
             fixed: scaled(fixed, 1.0 / force),
             varying: scaled(varying, unit / force),
@@ -141,7 +129,7 @@ impl Systems {
     }
 
     /// Index of t − θ, of statics, and of t − (power), of kinematics.
-    pub fn room(&self) -> usize {
+    pub fn upper_slack(&self) -> usize {
         self.pairs.len() + 1
     }
 
@@ -175,7 +163,7 @@ impl Systems {
     }
 
     /// Index of (power) − a, of kinematics, where a ≤ θ.
-    pub fn excess(&self) -> usize {
+    pub fn lower_slack(&self) -> usize {
         self.pairs.len() + 2
     }
 
@@ -196,7 +184,7 @@ impl Systems {
         for i in moving() {
             self.pairs[i].flow.iter().for_each(|&(j, v)| rows[j][free + i] += v);
         }
-        let bounds = [(range[1], 1.0, 0, self.room()), (range[0], -1.0, 1, self.excess())];
+        let bounds = [(range[1], 1.0, 0, self.upper_slack()), (range[0], -1.0, 1, self.lower_slack())];
         for (bound, sign, side, variable) in bounds {
             if !bound.is_finite() || moving().any(|i| !dissipation[i][side].is_finite()) {
                 continue;

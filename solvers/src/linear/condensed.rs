@@ -61,6 +61,27 @@ pub fn pair(k: usize, value: f64) -> [f64; 2] {
     if k == 0 { [value, 0.0] } else { [0.0, value] }
 }
 
+/// A⁻¹ of the two rows of a point, where its own equations are strong enough.
+fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> Option<[[f64; 2]; 2]> {
+    let (mut own, mut other) = ([[0.0f64; 2]; 2], [0.0; 2]);
+    for (k, row) in rows.into_iter().enumerate() {
+        for (j, value) in row {
+            match j < forces {
+                true => own[k][j % 2] += value,
+                false => other[k] = f64::max(other[k], value.abs()),
+            }
+        }
+    }
+    let size = [0, 1].map(|k: usize| own[k][0].abs().max(own[k][1].abs()));
+    let determinant = own[0][0] * own[1][1] - own[0][1] * own[1][0];
+    let strong = (0..2).all(|k| size[k] >= STRONG * other[k])
+        && determinant.abs() >= STRONG * size[0] * size[1]
+        && determinant != 0.0;
+    strong.then(|| {
+        [[own[1][1] / determinant, -own[0][1] / determinant], [-own[1][0] / determinant, own[0][0] / determinant]]
+    })
+}
+
 impl Condensed {
     /// Condenses and factorises equations of `size` unknowns, the first of which belong to `contacts`
     /// points, with something added that refinement takes out again. `None` where they are singular in
@@ -82,25 +103,7 @@ impl Condensed {
         let mut points: Vec<Point> = Vec::new();
         let mut of = vec![None; contacts];
         for c in (0..contacts).filter(|c| alone[*c]) {
-            let (mut own, mut other) = ([[0.0; 2]; 2], [0.0; 2]);
-            for k in 0..2 {
-                for (j, value) in both(2 * c + k) {
-                    match j < forces {
-                        true => own[k][j % 2] += value,
-                        false => other[k] = f64::max(other[k], value.abs()),
-                    }
-                }
-            }
-            let size = [0, 1].map(|k: usize| own[k][0].abs().max(own[k][1].abs()));
-            let determinant = own[0][0] * own[1][1] - own[0][1] * own[1][0];
-            let strong = (0..2).all(|k| size[k] >= STRONG * other[k])
-                && determinant.abs() >= STRONG * size[0] * size[1]
-                && determinant != 0.0;
-            if strong {
-                let inverse = [
-                    [own[1][1] / determinant, -own[0][1] / determinant],
-                    [-own[1][0] / determinant, own[0][0] / determinant],
-                ];
+            if let Some(inverse) = own_inverse([0, 1].map(|k| both(2 * c + k)), forces) {
                 of[c] = Some(points.len());
                 points.push(Point { first: 2 * c, inverse, across: [0; 2] });
             }

@@ -3,4 +3,5 @@
 pub(crate) mod bordered;
 pub(crate) mod condensed;
 pub(crate) mod csr;
+pub(crate) mod updated;
 pub(crate) mod updated_inverse;

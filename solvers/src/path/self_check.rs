@@ -9,7 +9,7 @@
 //!   (`rising`).
 
 use super::energy::load_size;
-use voussoir_core::certificate::{PathChecker, flow_residual, power_residual, ray_residual, tolerance};
+use voussoir_core::certificate::{PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
@@ -82,7 +82,7 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     }
     small("path_flow", flow_residual(problem, &answer.state.force, motion))?;
     small("path_power", power_residual(problem, &problem.load_steps[answer.load_step].loading, motion))?;
-    small("path_forces", problem.leaves_forces(&answer.state, motion))?;
+    small("path_forces", leaves_forces(problem, &answer.state, motion))?;
     if answer.status == Status::NoEquilibrium && answer.state.factor >= 1.0 - 1e-9 {
         return Err("all of the dead load is carried".into());
     }

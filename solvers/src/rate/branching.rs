@@ -6,8 +6,9 @@
 //! flows with t = −λ̇ and Σ z ≥ 1 over these points.
 
 use super::active_set::active_set;
-use super::lcp::{PIVOTING, RateLcp, mechanism_proves, rate_lcp, solution};
+use super::lcp::{PIVOTING, RateLcp, gaps_of, mechanism_proves, modes_of_solution, rate_lcp};
 use super::problem::{RateOutcome, RateProblem};
+use crate::contact::mode::ContactMode;
 use crate::optimise::branching::{LcpAnswer, solve_by_branching};
 use crate::optimise::lcp::Lcp;
 use nalgebra::{DMatrix, DVector};
@@ -17,6 +18,38 @@ use voussoir_core::law::FacetMode;
 const MOST: usize = 160;
 /// Linear programs of one question.
 const PROGRAMS: u64 = 4000;
+
+/// What is known of rates with growing λ.
+pub enum RisingRate {
+    /// There is none: a limit point.
+    None,
+    /// ġ with λ̇ = 1 and the modes.
+    Found(Vec<[f64; 2]>, Vec<ContactMode>),
+    /// Not decided, and why.
+    Undecided(String),
+}
+
+/// The limit point test: whether there is a rate with λ growing, by at most so many linear programs, which are
+/// counted.
+pub fn rising_rate(problem: &RateProblem, most: u64, programs: &mut u64) -> RisingRate {
+    let Some(lcp) = rate_lcp(problem, false) else {
+        return RisingRate::Undecided("nothing holds the points that are open".into());
+    };
+    // Without a load on them the facets have nothing to do.
+    let Lcp { matrix, constant } = &lcp.lcp;
+    let size = if lcp.facets.is_empty() { 1.0 } else { constant.amax().max(1e-300) };
+    let scaled = Lcp { matrix: matrix.clone(), constant: constant / size };
+    let (answer, took) = solve_by_branching(&scaled, most);
+    *programs += took;
+    match answer {
+        LcpAnswer::NoSolution => RisingRate::None,
+        LcpAnswer::Undecided(why) => RisingRate::Undecided(why),
+        LcpAnswer::Solution(z) => {
+            let z: Vec<f64> = z.iter().map(|z| z * size).collect();
+            RisingRate::Found(gaps_of(problem, &lcp, &z, 1.0, false), modes_of_solution(problem, &lcp, &z))
+        }
+    }
+}
 
 /// What is known of a complementarity problem; `trials` counts linear programs.
 fn answer(matrix: DMatrix<f64>, constant: DVector<f64>, trials: &mut u64) -> LcpAnswer {
@@ -35,7 +68,7 @@ pub fn branching(problem: &RateProblem, trials: &mut u64) -> Option<RateOutcome>
     let q = &lcp.lcp.constant / size;
     match answer(lcp.lcp.matrix.clone(), q.clone(), trials) {
         LcpAnswer::Solution(z) => {
-            let rate = active_set(problem, solution(problem, &lcp, &z).0, trials);
+            let rate = active_set(problem, modes_of_solution(problem, &lcp, &z), trials);
             return rate.map(|rate| RateOutcome::Found(rate, None));
         }
         LcpAnswer::Undecided(_) => return None,
@@ -65,7 +98,8 @@ fn standing_or_falling(
     for counted in counted(problem, lcp, true, |_| true) {
         match answer(cone(1.0, &counted), least.clone(), trials) {
             LcpAnswer::Solution(z) => {
-                let (modes, gaps) = solution(problem, lcp, &z[..n]);
+                let (modes, gaps) =
+                    (modes_of_solution(problem, lcp, &z[..n]), gaps_of(problem, lcp, &z[..n], 0.0, false));
                 let rate = problem.mechanism_near(&modes, &gaps).filter(|_| z[n] <= PIVOTING)?;
                 return mechanism_proves(problem, trials).then_some(RateOutcome::Found(rate, None));
             }
@@ -77,7 +111,7 @@ fn standing_or_falling(
     for counted in counted(problem, lcp, false, |k| problem.points[k].hit) {
         match answer(cone(-1.0, &counted), least.clone(), trials) {
             LcpAnswer::Solution(z) => {
-                let rate = problem.exactly(solution(problem, lcp, &z[..n]).0, -1.0)?;
+                let rate = problem.exactly(modes_of_solution(problem, lcp, &z[..n]), -1.0)?;
                 return problem.goes_on(&rate).then_some(RateOutcome::Falling(rate));
             }
             LcpAnswer::Undecided(_) => return None,

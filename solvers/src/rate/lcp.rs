@@ -7,6 +7,7 @@
 //! Klarbring (1990), Ing.-Arch. 60.
 
 use super::problem::{Rate, RateProblem};
+use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcp::{Lcp, LemkeResult, lemke};
 use nalgebra::{DMatrix, DVector};
@@ -25,14 +26,23 @@ pub enum Pivoted {
     Ray(Rate),
 }
 
-/// The complementarity problem, each facet in its own scale.
+/// The complementarity problem, each facet in its own scale. Multipliers of opening facets that are open have any
+/// sign: they are eliminated.
 pub struct RateLcp {
-    /// (point, facet).
+    /// (point, facet) of each pair.
     pub facets: Vec<(usize, usize)>,
     /// Scale of each.
     pub unit: Vec<f64>,
     /// M and q.
     pub lcp: Lcp,
+    free: Free,
+}
+
+/// Multipliers that have been eliminated.
+struct Free {
+    facets: Vec<(usize, usize)>,
+    /// By the pairs' z and, last, by λ̇.
+    multipliers: DMatrix<f64>,
 }
 
 fn facet<'a>(problem: &RateProblem<'a>, (k, f): (usize, usize)) -> &'a Facet {
@@ -44,39 +54,55 @@ fn flow(problem: &RateProblem, at: (usize, usize), associated: bool) -> [f64; 2]
     if associated { facet.normal } else { facet.flow }
 }
 
-/// With the laws' own flow or an associated one. `None` where points are open with a strength: their
-/// multipliers have any sign.
+/// With the laws' own flow or an associated one. `None` where nothing holds points that are open with a strength.
 pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
-    if problem.points.iter().any(|p| p.open.is_some()) {
-        return None;
-    }
-    let facets: Vec<(usize, usize)> =
-        problem.points.iter().enumerate().flat_map(|(k, p)| p.active.iter().map(move |f| (k, *f))).collect();
-    let n = facets.len();
+    let points = || problem.points.iter().enumerate();
+    let pairs = |(k, p): (usize, &ActivePoint)| -> Vec<(usize, usize)> {
+        p.active.iter().filter(|f| Some(**f) != p.open).map(|f| (k, *f)).collect()
+    };
+    let facets: Vec<(usize, usize)> = points().flat_map(pairs).collect();
+    let opened: Vec<(usize, usize)> = points().filter_map(|(k, p)| p.open.map(|f| (k, f))).collect();
     let s = &problem.s;
-    let m = DMatrix::from_fn(n, n, |i, j| {
-        let (k, l) = (facets[i].0, facets[j].0);
-        let (a, d) = (facet(problem, facets[i]).normal, flow(problem, facets[j], associated));
+    let entry = |i: (usize, usize), j: (usize, usize)| {
+        let (k, l) = (i.0, j.0);
+        let (a, d) = (facet(problem, i).normal, flow(problem, j, associated));
         a[0] * (s[(2 * k, 2 * l)] * d[0] + s[(2 * k, 2 * l + 1)] * d[1])
             + a[1] * (s[(2 * k + 1, 2 * l)] * d[0] + s[(2 * k + 1, 2 * l + 1)] * d[1])
-    });
+    };
+    let by_load = |(k, f): (usize, usize)| {
+        let a = facet(problem, (k, f)).normal;
+        -(a[0] * problem.load_rate[2 * k] + a[1] * problem.load_rate[2 * k + 1])
+    };
+    let (n, o) = (facets.len(), opened.len());
+    let mut m = DMatrix::from_fn(n, n, |i, j| entry(facets[i], facets[j]));
+    let mut q = DVector::from_fn(n, |i, _| by_load(facets[i]));
+    let mut multipliers = DMatrix::zeros(0, n + 1);
+    if o > 0 {
+        let own = DMatrix::from_fn(o, o, |i, j| entry(opened[i], opened[j]));
+        let by = |i: usize, j: usize| if j < n { entry(opened[i], facets[j]) } else { by_load(opened[i]) };
+        multipliers = -own.lu().solve(&DMatrix::from_fn(o, n + 1, by))?;
+        let onto = DMatrix::from_fn(n, o, |i, j| entry(facets[i], opened[j]));
+        m += &onto * multipliers.columns(0, n);
+        q += &onto * multipliers.column(n);
+    }
     let largest = m.diagonal().amax();
     let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
-    let constant = DVector::from_fn(n, |i, _| {
-        let (k, a) = (facets[i].0, facet(problem, facets[i]).normal);
-        -(a[0] * problem.load_rate[2 * k] + a[1] * problem.load_rate[2 * k + 1]) / unit[i]
-    });
-    Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant } })
+    let constant = DVector::from_fn(n, |i, _| q[i] / unit[i]);
+    Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant }, free: Free { facets: opened, multipliers } })
 }
 
-/// ġ of multipliers.
-fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], associated: bool) -> Vec<[f64; 2]> {
+/// ġ of multipliers with a λ̇.
+pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64, associated: bool) -> Vec<[f64; 2]> {
     let mut gaps = vec![[0.0; 2]; problem.points.len()];
-    for ((at, unit), z) in lcp.facets.iter().zip(&lcp.unit).zip(z) {
-        let d = flow(problem, *at, associated);
-        (0..2).for_each(|i| gaps[at.0][i] -= z / unit * d[i]);
-    }
+    let mut add = |at: (usize, usize), multiplier: f64| {
+        let d = flow(problem, at, associated);
+        (0..2).for_each(|i| gaps[at.0][i] -= multiplier * d[i]);
+    };
+    let own: Vec<f64> = z.iter().zip(&lcp.unit).map(|(z, unit)| z / unit).chain([factor]).collect();
+    lcp.facets.iter().zip(&own).for_each(|(at, multiplier)| add(*at, *multiplier));
+    let free = &lcp.free.multipliers * DVector::from_vec(own);
+    lcp.free.facets.iter().zip(free.iter()).for_each(|(at, multiplier)| add(*at, *multiplier));
     gaps
 }
 
@@ -97,7 +123,7 @@ pub fn pivoting(problem: &RateProblem, associated: bool, trials: &mut u64) -> Op
         let flows = |i: usize| z[i] / z_size > (w[i] / w_size).max(1e-12);
         return Some(Pivoted::Guess(modes_of(problem, &rate.facets, flows)));
     }
-    let mut gaps = gaps_of(problem, &rate, &z, associated);
+    let mut gaps = gaps_of(problem, &rate, &z, 0.0, associated);
     let w = m * DVector::from_vec(z.clone());
     let moves = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let largest = rate.unit.iter().copied().fold(0.0, f64::max);
@@ -120,17 +146,17 @@ pub fn mechanism_proves(problem: &RateProblem, trials: &mut u64) -> bool {
     !problem.from_nothing || problem.is_associated() || matches!(pivoting(problem, true, trials), Some(Pivoted::Ray(_)))
 }
 
-/// Modes and ġ of multipliers that solve the problem.
-pub fn solution(problem: &RateProblem, lcp: &RateLcp, z: &[f64]) -> (Vec<ContactMode>, Vec<[f64; 2]>) {
+/// Modes of multipliers that solve the problem.
+pub fn modes_of_solution(problem: &RateProblem, lcp: &RateLcp, z: &[f64]) -> Vec<ContactMode> {
     let most = z.iter().copied().fold(1e-300, f64::max);
     let w = &lcp.lcp.matrix * DVector::from_column_slice(z);
-    let modes = modes_of(problem, &lcp.facets, |i| z[i] > 1e-9 * most && z[i] > 1e-9 * w[i]);
-    (modes, gaps_of(problem, lcp, z, false))
+    modes_of(problem, &lcp.facets, |i| z[i] > 1e-9 * most && z[i] > 1e-9 * w[i])
 }
 
 /// Modes from which facets (point, index) flow.
 fn modes_of(problem: &RateProblem, facets: &[(usize, usize)], flows: impl Fn(usize) -> bool) -> Vec<ContactMode> {
-    let mut modes = vec![ContactMode::Stick; problem.points.len()];
+    let open = |point: &ActivePoint| point.open.map_or(ContactMode::Stick, |f| ContactMode::Facet(f as u8));
+    let mut modes: Vec<ContactMode> = problem.points.iter().map(open).collect();
     for i in (0..facets.len()).filter(|i| flows(*i)) {
         let (k, f) = facets[i];
         let point = &problem.points[k];

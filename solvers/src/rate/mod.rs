@@ -5,10 +5,10 @@ pub(crate) mod active_set;
 pub(crate) mod branching;
 pub(crate) mod cone;
 pub(crate) mod enumerate;
-pub(crate) mod flow_rule;
 pub(crate) mod homotopy;
 pub(crate) mod lcp;
 pub(crate) mod line_search;
+pub(crate) mod mechanism;
 pub(crate) mod problem;
 pub(crate) mod solve;
 #[cfg(test)]

@@ -7,7 +7,6 @@
 use super::active_set::active_set;
 use super::branching::branching;
 use super::enumerate::enumerate_modes;
-use super::flow_rule::flow_rule_homotopy;
 use super::homotopy::homotopy;
 use super::lcp::{Pivoted, mechanism_proves, pivoting};
 use super::line_search::line_search;
@@ -39,8 +38,6 @@ pub enum Algorithm {
     LineSearch,
     /// Piecewise linear homotopy.
     Homotopy,
-    /// Flow turned from associated to its own.
-    FlowRuleHomotopy,
     /// Branching on the complementarity problem.
     Branching,
 }
@@ -63,7 +60,6 @@ impl Algorithm {
             Algorithm::Pivoting => "rates_by_pivoting",
             Algorithm::LineSearch => "rates_by_line_search",
             Algorithm::Homotopy => "rates_by_homotopy",
-            Algorithm::FlowRuleHomotopy => "rates_by_flow_rule_homotopy",
             Algorithm::Branching => "rates_by_branching",
         }
     }
@@ -141,11 +137,8 @@ fn by_large_scale(problem: &RateProblem, trials: &mut u64) -> Option<(RateOutcom
     let found = |rate: Rate, by: Algorithm| Some((RateOutcome::Found(rate, None), by));
     match pivoting(problem, false, trials) {
         Some(Pivoted::Guess(modes)) => {
-            if let Some(rate) = active_set(problem, modes.clone(), trials) {
+            if let Some(rate) = active_set(problem, modes, trials) {
                 return found(rate, Algorithm::Pivoting);
-            }
-            if let Some(rate) = line_search(problem, &modes, trials) {
-                return found(rate, Algorithm::LineSearch);
             }
         }
         Some(Pivoted::Ray(rate)) if mechanism_proves(problem, trials) => return found(rate, Algorithm::Pivoting),
@@ -157,9 +150,6 @@ fn by_large_scale(problem: &RateProblem, trials: &mut u64) -> Option<(RateOutcom
     }
     if let Some(rate) = by_homotopy(problem, STARTS[1], trials) {
         return found(rate, Algorithm::Homotopy);
-    }
-    if let Some(rate) = flow_rule_homotopy(problem, trials) {
-        return found(rate, Algorithm::FlowRuleHomotopy);
     }
     branching(problem, trials).map(|outcome| (outcome, Algorithm::Branching))
 }

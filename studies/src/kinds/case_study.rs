@@ -2,14 +2,15 @@
 //! all writers.
 
 use super::kind::{LoadedStudy, RunOutput, RunRequest, Verification, kind};
-use crate::results::{CaseResult, StudyResults};
+use crate::results::{CaseLabel, CaseResult, StudyResults};
 use crate::solve::Observer;
 use crate::solve::explain::explain;
-use crate::study::Study;
+use crate::study::{Case, Study};
 use crate::verify::verify;
 use crate::writers::comparison::comparison_table;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use voussoir_core::limit::Status;
 
@@ -23,6 +24,11 @@ fn finished([results, journal]: &[String; 2]) -> BTreeMap<usize, CaseResult> {
 }
 
 impl Study {
+    /// The case that a result belongs to, as the study's kind finds it.
+    pub fn case_of(&self, label: &CaseLabel) -> Option<Cow<'_, Case>> {
+        kind(&self.kind)?.case(self, label)
+    }
+
     /// Results of the study from those of its cases.
     pub fn results(&self, version: &str, cases: Vec<CaseResult>) -> StudyResults {
         let own = kind(&self.kind).map(|kind| kind.own_results(self, &cases)).unwrap_or_default();
@@ -58,7 +64,8 @@ impl LoadedStudy for Study {
             done.extend(solved.into_iter().map(|case| (case.label.id, case)));
         }
         let results = self.results(&request.version, done.into_values().collect());
-        let output = StudyOutput::new(self, &results);
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        let output = StudyOutput::new(self, &results, &cases);
         let files = written(&output);
         let mut table = results_table(&output);
         if let Some(comparison) = &results.comparison {

@@ -1,10 +1,11 @@
 //! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
 
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::results::{CaseResult, Comparison};
+use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, solve_cases};
-use crate::study::{Outline, Study, StudySource};
+use crate::study::{Case, Outline, Study, StudySource};
 use serde_json::{Map, Value as Json};
+use std::borrow::Cow;
 use voussoir_core::plugin::{Diagnostic, Parameter};
 
 /// A kind of study, chosen by `kind = …`. Instances register with
@@ -27,9 +28,15 @@ pub trait StudyKind: Sync {
 
     /// Solves the cases of a study whose ids are in `wanted`, in order of id. `jobs` cases side by
     /// side; the results do not depend on it. A kind that chooses values itself makes further cases
-    /// by [`Study::at`].
+    /// by [`Study::at`], gives them ids after those of the study, and finds them again by [`StudyKind::case`].
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         solve_cases(study, wanted, jobs, observer)
+    }
+
+    /// The case that a result belongs to: one of the study's, or one that this kind has made, which the result's
+    /// parameters describe. Without the solver, so that `verify` and writers can ask.
+    fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
+        study.cases.get(label.id).map(Cow::Borrowed)
     }
 
     /// What this kind adds to the results of the cases; a pure function of its arguments, so that

@@ -1,7 +1,7 @@
 //! What is proved of placed loads.
 
 use super::{LoadKind, LoadSite, Placed};
-use crate::scenes::tests::catalogue;
+use crate::scenes::test_catalogue::catalogue;
 use serde_json::{Value, json};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Scene};

@@ -1,9 +1,10 @@
 //! `arch`: a ring of voussoirs between two supports.
 #![doc = include_str!("arch.md")]
 
+use super::keys::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH};
+use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
-use super::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
@@ -175,7 +176,7 @@ voussoir_core::inventory::submit! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::tests::catalogue;
+    use crate::scenes::test_catalogue::catalogue;
     use serde_json::{Value, json};
 
     fn arch(extra: Value) -> Result<Assembly, Vec<Diagnostic>> {

@@ -1,10 +1,9 @@
 //! `blocks`: a free assembly of polygonal blocks.
 #![doc = include_str!("blocks.md")]
 
+use super::keys::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
+use super::lookup::{from_root, law, material, out_of_range, pairs_of, take, unknown};
 use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
-use super::{
-    JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take, unknown,
-};
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cross, crosses_itself};
 use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Interpenetration, Joint, Scene, find_joints};
@@ -392,7 +391,7 @@ voussoir_core::inventory::submit! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::tests::catalogue;
+    use crate::scenes::test_catalogue::catalogue;
     use serde_json::{Value, json};
 
     fn build(blocks: Value, extra: Value) -> Result<Assembly, Vec<Diagnostic>> {

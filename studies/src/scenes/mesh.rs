@@ -1,6 +1,6 @@
 //! `[scene.mesh]`: how deformable blocks are meshed, the same key in every scene.
 
-use super::out_of_range;
+use super::lookup::out_of_range;
 use serde::{Deserialize, Serialize};
 use voussoir_core::elastic::MeshDensity;
 use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape};

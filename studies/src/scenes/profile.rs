@@ -7,7 +7,7 @@
 //! Bernoulli, Huygens and Leibniz (1691).
 
 use super::curve::Curve;
-use super::out_of_range;
+use super::lookup::out_of_range;
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, crosses_itself};
 use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};

@@ -1,8 +1,9 @@
 //! `wall`: bricks in running bond on the ground.
 #![doc = include_str!("wall.md")]
 
+use super::keys::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
+use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
-use super::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH, from_root, law, material, out_of_range, pairs_of, take};
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Scene, find_joints};
@@ -290,7 +291,7 @@ voussoir_core::inventory::submit! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::tests::catalogue;
+    use crate::scenes::test_catalogue::catalogue;
     use serde_json::{Value, json};
 
     fn wall(extra: Value) -> Result<Assembly, Vec<Diagnostic>> {

@@ -9,6 +9,7 @@ use voussoir_core::law::Tangential;
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::{Bond, Target, stage_loads};
 use voussoir_core::path::{LoadStepEnd, PathProblem};
+use voussoir_core::plugin::{PluginKind, card};
 
 /// What will be solved, in words, for the first case; the others differ by their parameters only.
 pub fn explain(study: &Study) -> String {
@@ -64,12 +65,8 @@ fn explain_case(case: &Case, text: &mut String) {
                 writeln!(text, "  {tag}: stands up to factor {factor}? (left to the next stage where that starts here)")
             }
         };
-        if tag == "limit_chain" {
-            let _ = writeln!(
-                text,
-                "  chains of bodies: three redundants each and the factor, instead of {} equations",
-                3 * problem.groups
-            );
+        if let Some(card) = card(PluginKind::LimitSolver, &tag) {
+            let _ = writeln!(text, "  {tag}: {}", card.summary);
         }
     }
 }

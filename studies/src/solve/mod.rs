@@ -6,6 +6,7 @@
 pub mod auto;
 mod case;
 mod case_input;
+mod coarse_joints;
 pub mod explain;
 mod limit;
 mod limit_result;

@@ -9,13 +9,13 @@ use voussoir_core::path::{PathObserver, PathProblem, PathState};
 
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
-    watch: PathChecker,
+    checker: PathChecker,
     observer: &'a mut dyn PathObserver,
 }
 
 impl PathObserver for Watched<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
-        self.watch.state(problem, state) && self.observer.state(problem, state)
+        self.checker.state(problem, state) && self.observer.state(problem, state)
     }
 }
 
@@ -33,9 +33,13 @@ pub(super) fn solve_by_path(
         Ok(tagged) => tagged,
         Err((tag, why)) => return failed(&tag, format!("{tag}: {why}")),
     };
-    let mut watched = Watched { watch: PathChecker::new(input.settings.finite), observer };
+    let checker = match PathChecker::certifying(input.assembly, input.stages, input.settings.finite) {
+        Ok(checker) => checker,
+        Err(why) => return failed(tag, why),
+    };
+    let mut watched = Watched { checker, observer };
     let solved = solver.trace(&problem, input.settings, &mut watched);
-    path_result(input, tag, &problem, solved, watched.watch)
+    path_result(input, tag, &problem, solved, watched.checker)
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

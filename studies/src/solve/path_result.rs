@@ -1,6 +1,7 @@
 //! A path solver's answer in the form of a result, with its certificate.
 
 use super::case_input::CaseInput;
+use super::coarse_joints::coarse_joints;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
 use crate::results::path_state::{carried, mechanism_of, small};
@@ -13,18 +14,18 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, coarse_joints};
+use voussoir_core::path::{PathAnswer, PathEvent, PathProblem};
 
-/// The result of a path that `watch` has looked on.
+/// The result of a path that `checker` has looked on.
 pub(super) fn path_result(
     input: &CaseInput,
     tag: &str,
     problem: &PathProblem,
     solved: PathAnswer,
-    watch: PathChecker,
+    checker: PathChecker,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
-    let certificate = certificate(problem, &solved, &watch, finite);
+    let certificate = certificate(&solved, &checker, finite);
     let (mut status, mut notes) = (solved.status, solved.notes.clone());
     notes.extend(coarse_note(problem, assembly));
     if !certificate.passed && status != Status::Stalled {
@@ -55,7 +56,7 @@ pub(super) fn path_result(
     };
     let field = contact_forces(problem, &solved.state.force);
     let mut counters = solved.counters.clone();
-    counters.insert("states".into(), watch.states);
+    counters.insert("states".into(), checker.states);
     CaseResult {
         status,
         load_factor,
@@ -72,13 +73,13 @@ pub(super) fn path_result(
         counters,
         stages: stage_results(input.stages, load_step.stage, status, reached, hinges),
         notes,
-        path: path_record(input, problem, solved, watch),
+        path: path_record(input, problem, solved, checker),
         ..CaseResult::empty()
     }
 }
 
 /// What the state, the events and the curve of a path are written as.
-fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, watch: PathChecker) -> PathRecord {
+fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, checker: PathChecker) -> PathRecord {
     let assembly = input.assembly;
     let name = |body: usize| assembly.bodies[body].name.clone();
     let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
@@ -88,22 +89,22 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, wat
         yielded: inelastic_state::entries(assembly, problem, &solved.state),
         joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
         events: events(input.stages, problem, &solved.events),
-        curve: Some(watch.curve),
+        curve: Some(checker.curve),
     }
 }
 
 /// Residuals of all states and of the mechanism's flow, against their bounds.
-fn certificate(problem: &PathProblem, solved: &PathAnswer, watch: &PathChecker, finite: bool) -> Certificate {
+fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
-    for (name, value) in &watch.worst {
+    for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
         if !small(name, *value) {
             certificate.passed = false;
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
     }
-    if let (Some(motion), false) = (&solved.motion, finite) {
-        let flow = flow_residual(problem, &solved.state.force, motion);
+    if let (Some(structure), Some(motion), false) = (checker.structure(), &solved.motion, finite) {
+        let flow = flow_residual(&structure, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
         if !small("path_flow", flow) {
             certificate.passed = false;

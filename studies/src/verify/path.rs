@@ -8,22 +8,22 @@ use crate::results::inelastic_state;
 use crate::results::path_state::{mechanism_of, small};
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Mechanism, PathChecker, flow_residual, power_residual, ray_residual,
+    CentroidVelocity, Displaced, Mechanism, PathChecker, flow_residual, path_structure, power_residual, ray_residual,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::{Displaced, PathObserver, PathProblem, PathState};
+use voussoir_core::path::{PathObserver, PathProblem, PathState};
 
 /// Checks the result of a case that a path solver answered.
 pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
     let assembly = &case.assembly;
-    let problem = PathProblem::new(assembly, &case.stages)?;
+    let problem = path_structure(assembly, &case.stages)?;
     let finite = case.solver.settings.finite;
     let state = stored_state(assembly, &problem, result, finite)?;
-    let mut watch = PathChecker::new(finite);
-    watch.state(&problem, &state);
-    for (name, value) in &watch.worst {
+    let mut checker = PathChecker::new(finite);
+    checker.state(&problem, &state);
+    for (name, value) in &checker.worst {
         findings.expect(small(name, *value), &format!("{name} is {value:.2e}"));
     }
     if matches!(result.status, Status::Collapse | Status::LimitPoint) && result.load_factor.is_some() {

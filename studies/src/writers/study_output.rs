@@ -1,7 +1,8 @@
 //! What writers are given: the results and what they were computed from.
 
 use crate::results::StudyResults;
-use crate::study::{Output, Study};
+use crate::study::{Case, Output, Study};
+use std::borrow::Cow;
 use voussoir_core::model::{Assembly, Stage};
 
 /// A study with its results.
@@ -31,17 +32,19 @@ pub struct SceneOutput<'a> {
 }
 
 impl<'a> StudyOutput<'a> {
-    /// A study with results of some of its cases.
-    pub fn new(study: &'a Study, results: &'a StudyResults) -> Self {
-        let scene = |id: usize| {
-            let case = &study.cases[id];
-            SceneOutput { assembly: &case.assembly, stages: &case.stages, finite: case.solver.settings.finite }
+    /// A study with results of some of its cases; `cases` are those of the results, in their order.
+    pub fn new(study: &'a Study, results: &'a StudyResults, cases: &'a [Cow<'a, Case>]) -> Self {
+        let scene = |case: &'a Cow<'a, Case>| SceneOutput {
+            assembly: &case.assembly,
+            stages: &case.stages,
+            finite: case.solver.settings.finite,
         };
+        let swept = results.cases.first().map(|case| &case.label.parameters);
         StudyOutput {
             name: &study.name,
             results,
-            scenes: results.cases.iter().map(|case| scene(case.label.id)).collect(),
-            sweep_keys: study.cases.first().map(|case| case.parameters.keys().cloned().collect()).unwrap_or_default(),
+            scenes: cases.iter().map(scene).collect(),
+            sweep_keys: swept.map(|parameters| parameters.keys().cloned().collect()).unwrap_or_default(),
             output: study.output.clone(),
         }
     }

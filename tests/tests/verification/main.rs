@@ -13,6 +13,7 @@ mod flow_rule;
 mod force_method;
 mod newton;
 mod orthotropic;
+mod path_certificate;
 mod paths_read;
 mod plastic;
 mod semicircle;

@@ -193,7 +193,7 @@ fn shallow_arches_peak_where_their_energy_does() {
 /// peak has an error that falls with the step.
 #[test]
 fn paths_of_shallow_arches_end_for_a_reason() {
-    let reasons = ["to and fro", "unloading from there has come back", "are paired for less"];
+    let reasons = ["cycles between", "back and forth", "unloading from there has come back", "are paired for less"];
     for (rise, stiffness, loads, peak) in [
         (0.3, 1e9, &[0.5][..], 330.5285),
         (0.3, 1e10, &[0.25], 5894.61),

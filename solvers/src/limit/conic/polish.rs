@@ -5,7 +5,8 @@
 //! iterated, which converges to the solution nearest to where it starts.
 
 use super::interior_point::Pair;
-use super::system::{Row, System};
+use super::system::System;
+use crate::limit::equilibrium::Row;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Regularisation; the second is tried where the first leaves no pivot.

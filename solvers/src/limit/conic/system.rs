@@ -1,11 +1,9 @@
 //! The program of one optimisation in scaled, sparse form.
 
-use voussoir_core::law::{StressBlock, Tangential};
-use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+use crate::limit::equilibrium::{ForceVariables, Row};
+use voussoir_core::law::StressBlock;
+use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
-
-/// A sparse row of coefficients.
-pub type Row = Vec<(usize, f64)>;
 
 /// A joint's stress block as a constraint φ = u²/F − w ≤ 0, u = N_0 + N_1 + F_t, w = 2 N_end + F_t.
 #[derive(Debug, Clone)]
@@ -56,8 +54,7 @@ pub struct System {
     pub cap: Option<usize>,
     /// Crushing.
     pub blocks: Vec<Block>,
-    /// First variable of each joint and whether it has T.
-    joints: Vec<(usize, bool)>,
+    forces: ForceVariables,
     force: f64,
     length: f64,
 }
@@ -78,16 +75,45 @@ pub struct Loads<'a> {
     pub force: f64,
 }
 
+/// Rows and crushing of one joint from its first variable on.
+fn strength_rows(
+    joint: &LimitJoint,
+    first: usize,
+    shear: bool,
+    loads: &Loads,
+    (rows, bounds, blocks): (&mut Vec<Row>, &mut Vec<f64>, &mut Vec<Block>),
+) {
+    for row in &joint.strength.rows {
+        let entries: Row = (0..if shear { 3 } else { 2 })
+            .filter(|&k| row.normal[k] != 0.0)
+            .map(|k| (first + k, row.normal[k]))
+            .collect();
+        if !entries.is_empty() {
+            rows.push(entries);
+            bounds.push(if loads.strengths { row.bound / loads.force } else { 0.0 });
+        }
+    }
+    match joint.strength.block {
+        Some(block) if loads.strengths => {
+            let strength = StressBlock { tension: block.tension / loads.force, total: block.total / loads.force };
+            blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
+        }
+        Some(_) => {
+            // A bounded normal force has no direction to grow in.
+            for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                rows.push(vec![(first + k, sign)]);
+                bounds.push(0.0);
+            }
+        }
+        None => {}
+    }
+}
+
 impl System {
     /// Builds and scales.
     pub fn new(problem: &LimitProblem, loads: &Loads) -> Self {
-        let mut joints = Vec::with_capacity(problem.joints.len());
-        let mut variables = 0;
-        for joint in &problem.joints {
-            let shear = joint.strength.tangential() != Tangential::Free;
-            joints.push((variables, shear));
-            variables += if shear { 3 } else { 2 };
-        }
+        let forces = ForceVariables::new(problem);
+        let mut variables = forces.count;
         let free = loads.free.map(|f| {
             variables += 1;
             (variables - 1, f)
@@ -96,45 +122,11 @@ impl System {
         variables += 1;
         let (force, length) = (loads.force, problem.length);
         let scale = [1.0, 1.0, 1.0 / length];
-        let mut equations: Vec<Row> = vec![Row::new(); 3 * problem.groups];
+        let mut equations = forces.equilibrium(problem);
         let mut right = vec![0.0; 3 * problem.groups];
         let (mut rows, mut bounds, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
-        for (joint, &(first, shear)) in problem.joints.iter().zip(&joints) {
-            let wrenches = joint.wrenches(problem.pole);
-            for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
-                let Some(group) = group else { continue };
-                for (k, wrench) in wrenches.iter().enumerate().take(if shear { 3 } else { 2 }) {
-                    for i in 0..3 {
-                        if wrench[i] != 0.0 {
-                            equations[3 * group + i].push((first + k, sign * wrench[i] * scale[i]));
-                        }
-                    }
-                }
-            }
-            for row in &joint.strength.rows {
-                let entries: Row = (0..if shear { 3 } else { 2 })
-                    .filter(|&k| row.normal[k] != 0.0)
-                    .map(|k| (first + k, row.normal[k]))
-                    .collect();
-                if !entries.is_empty() {
-                    rows.push(entries);
-                    bounds.push(if loads.strengths { row.bound / force } else { 0.0 });
-                }
-            }
-            match joint.strength.block {
-                Some(block) if loads.strengths => {
-                    let strength = StressBlock { tension: block.tension / force, total: block.total / force };
-                    blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
-                }
-                Some(_) => {
-                    // A bounded normal force has no direction to grow in.
-                    for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
-                        rows.push(vec![(first + k, sign)]);
-                        bounds.push(0.0);
-                    }
-                }
-                None => {}
-            }
+        for (joint, &(first, shear)) in problem.joints.iter().zip(&forces.joints) {
+            strength_rows(joint, first, shear, loads, (&mut rows, &mut bounds, &mut blocks));
         }
         for group in 0..problem.groups {
             for i in 0..3 {
@@ -159,16 +151,12 @@ impl System {
             bounds.push(cap);
             rows.len() - 1
         });
-        System { variables, theta, equations, right, rows, bounds, cap, blocks, joints, force, length }
+        System { variables, theta, equations, right, rows, bounds, cap, blocks, forces, force, length }
     }
 
     /// Joint forces \[N\].
     pub fn forces(&self, x: &[f64]) -> Vec<JointForce> {
-        let force = |&(first, shear): &(usize, bool)| JointForce {
-            normal: [x[first] * self.force, x[first + 1] * self.force],
-            shear: if shear { x[first + 2] * self.force } else { 0.0 },
-        };
-        self.joints.iter().map(force).collect()
+        self.forces.joint_forces(x, self.force)
     }
 
     /// Velocities about the pole from the multipliers of equilibrium, up to a common factor.

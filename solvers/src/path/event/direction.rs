@@ -1,7 +1,7 @@
 //! The direction of the next piece of the path: the rate problem over the active set on one factorisation for many
 //! events, or an active set on the whole system.
 
-use super::factorisation::UpdatedFactorisation;
+use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
 use super::rates::{Direction, Rates, direction_of, leaving, motion_alone, residual};
 use super::schur::SchurComplement;
@@ -82,7 +82,7 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
 
 fn factorise(trace: &mut Trace, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
     trace.log.counts.factorisations += 1;
-    trace.factors.present = UpdatedFactorisation::new(&trace.system, modes, refine_columns);
+    trace.factors.present = FactorisedModes::new(&trace.system, modes, refine_columns);
     trace.factors.present.is_some()
 }
 
@@ -99,7 +99,7 @@ fn present_modes(trace: &Trace) -> Vec<ContactMode> {
 /// Factorises anew where the present factorisation does not serve to open some points in these modes.
 fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool {
     let refine_columns = trace.factors.refine_columns;
-    let stale = |factors: &UpdatedFactorisation| {
+    let stale = |factors: &FactorisedModes| {
         (!factors.refine_columns && refine_columns)
             || factors.responses() > UPDATES.max(2 * open.len())
             || modes.iter().zip(&factors.modes).filter(|(now, then)| now != then).count() > 2 * UPDATES
@@ -167,7 +167,7 @@ fn take(trace: &mut Trace, modes: Vec<ContactMode>, rates: Rates, load: &Load) -
 /// Refined rates of all unknowns of a solution over the open points, whose modes are put among all.
 fn rates_of(
     local: &SchurComplement,
-    base: &mut UpdatedFactorisation,
+    base: &mut FactorisedModes,
     at: (usize, &Load),
     rate: &Rate,
     (open, modes): (&[usize], &mut [ContactMode]),
@@ -231,7 +231,7 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
 /// and close to a collapse they cancel.
 fn refined(
     local: &SchurComplement,
-    base: &UpdatedFactorisation,
+    base: &FactorisedModes,
     mut rates: Rates,
     load: &Load,
     modes: &[ContactMode],
@@ -269,7 +269,7 @@ fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMod
     }
     trace.log.counts.factorisations += 1;
     let system = &trace.system;
-    let Some(mut base) = UpdatedFactorisation::new(system, modes.to_vec(), trace.factors.refine_columns) else {
+    let Some(mut base) = FactorisedModes::new(system, modes.to_vec(), trace.factors.refine_columns) else {
         return rates;
     };
     let Some(direct) = base.load_rate(system, trace.state.load_step, load) else { return rates };
@@ -291,7 +291,7 @@ fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<D
     for round in 0..ROUNDS[0] {
         trace.log.counts.factorisations += 1;
         let system = &trace.system;
-        let mut base = UpdatedFactorisation::new(system, modes.clone(), trace.factors.refine_columns)?;
+        let mut base = FactorisedModes::new(system, modes.clone(), trace.factors.refine_columns)?;
         let x = base.load_rate(system, trace.state.load_step, load)?.clone();
         let rates = Rates::new(system, x, 1.0, load);
         let mut changes = leaving((system, &trace.state.points), &rates, active, &modes)?;

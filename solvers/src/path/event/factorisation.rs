@@ -13,8 +13,8 @@ use super::system::{Load, System};
 use crate::contact::facet::across;
 use crate::contact::mode::ContactMode;
 use crate::linear::condensed::Condensed;
+use crate::linear::updated::UpdatedFactorisation;
 use nalgebra::DMatrix;
-use std::collections::BTreeMap;
 use voussoir_core::linear::Entries;
 
 /// Added to the flexibility of stuck points, relative to its mean, and taken out again by
@@ -23,26 +23,17 @@ const REGULARISATION: f64 = 1e-11;
 /// Steps of refinement of the response to a load.
 const REFINEMENTS: usize = 3;
 
-/// Response to ε of a row of a point.
-struct Column {
-    /// Kept unknowns.
-    y: Vec<f64>,
-    /// All unknowns, refined.
-    x: Option<Vec<f64>>,
-}
-
-/// A factorised system.
-pub struct UpdatedFactorisation {
-    /// ContactMode of each contact point in the matrix.
+/// The equations in given modes, factorised.
+pub struct FactorisedModes {
+    /// Mode of each contact point in the matrix.
     pub modes: Vec<ContactMode>,
     /// Whether responses to single points are refined, as what is claimed of the rate problem needs.
     pub refine_columns: bool,
-    equations: Condensed,
-    columns: BTreeMap<usize, [Column; 2]>,
+    updated: UpdatedFactorisation<Condensed>,
     load_rate: Option<(usize, Vec<f64>)>,
 }
 
-impl UpdatedFactorisation {
+impl FactorisedModes {
     /// Assembles and factorises. `None` where the system is singular.
     pub fn new(system: &System, modes: Vec<ContactMode>, refine_columns: bool) -> Option<Self> {
         let nc = system.contacts;
@@ -76,14 +67,15 @@ impl UpdatedFactorisation {
             entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
         let equations = Condensed::new(system.size(), nc, &entries, &regularisation)?;
-        Some(UpdatedFactorisation { modes, refine_columns, equations, columns: BTreeMap::new(), load_rate: None })
+        let updated = UpdatedFactorisation::new(equations);
+        Some(FactorisedModes { modes, refine_columns, updated, load_rate: None })
     }
 
     /// x for λ̇ = 1 with every mode as factorised.
     pub fn load_rate(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
         if self.load_rate.as_ref().is_none_or(|(i, _)| *i != index) {
             let right = self.right(system, load);
-            self.load_rate = Some((index, self.equations.solve(&right, REFINEMENTS)?));
+            self.load_rate = Some((index, self.updated.factors.solve(&right, REFINEMENTS)?));
         }
         self.load_rate.as_ref().map(|(_, x)| x)
     }
@@ -115,41 +107,21 @@ impl UpdatedFactorisation {
 
     /// Kept unknowns for any right-hand side with every mode as factorised, not refined.
     pub fn kept(&self, right: &[f64]) -> Option<Vec<f64>> {
-        Some(self.equations.condense(&[right.to_vec()])?.swap_remove(0))
+        Some(self.updated.factors.condense(&[right.to_vec()])?.swap_remove(0))
     }
 
     /// Makes sure that the responses to the rows of these points are known. `solves` counts.
-    pub fn respond(&mut self, system: &System, points: &[usize], solves: &mut u64) -> Option<()> {
-        let new: Vec<usize> = points.iter().copied().filter(|c| !self.columns.contains_key(c)).collect();
-        if new.is_empty() {
-            return Some(());
-        }
-        let unit = |row: usize| {
-            let mut right = vec![0.0; system.size()];
-            right[row] = 1.0;
-            right
-        };
-        let right: Vec<Vec<f64>> = new.iter().flat_map(|c| [unit(2 * c), unit(2 * c + 1)]).collect();
-        *solves += right.len() as u64;
-        let mut columns: Vec<Column> = Vec::with_capacity(right.len());
-        if self.refine_columns {
-            for right in &right {
-                let x = self.equations.solve(right, REFINEMENTS)?;
-                columns.push(Column { y: self.equations.kept_of(&x), x: Some(x) });
-            }
-        } else {
-            columns.extend(self.equations.condense(&right)?.into_iter().map(|y| Column { y, x: None }));
-        }
-        let mut columns = columns.into_iter();
-        for c in new {
-            self.columns.insert(c, [columns.next()?, columns.next()?]);
+    pub fn respond(&mut self, points: &[usize], solves: &mut u64) -> Option<()> {
+        let refinements = if self.refine_columns { REFINEMENTS } else { 0 };
+        for c in points {
+            *solves += self.updated.respond(*c, refinements)?;
         }
         Some(())
     }
 
     /// Number of points whose responses are known.
     pub fn responses(&self) -> usize {
-        self.columns.len()
+        self.updated.responses()
     }
 
     /// (ṙ, ġ) at `points`, 4 rows each, per ε of `points` (2 columns each) and, last, per λ̇.
@@ -162,7 +134,7 @@ impl UpdatedFactorisation {
         };
         let at = |x: &[f64], c: usize| [x[2 * c], x[2 * c + 1], gap(2 * c, x), gap(2 * c + 1, x)];
         for (k, own) in points.iter().enumerate() {
-            let Some(columns) = self.columns.get(own) else { continue };
+            let Some(columns) = self.updated.columns(*own) else { continue };
             for (i, column) in columns.iter().enumerate() {
                 let epsilon = [[1.0, 0.0], [0.0, 1.0]][i];
                 let right = |c: usize| if c == *own { epsilon } else { [0.0; 2] };
@@ -193,17 +165,15 @@ impl UpdatedFactorisation {
         right: impl Fn(usize) -> [f64; 2],
         y: &[f64],
     ) -> Vec<[f64; 4]> {
-        let force = |c: usize| self.equations.force(c, right(c), y);
         let forces = 2 * system.contacts;
         let at = |&c: &usize| {
-            let here = force(c);
+            let own = (c, self.updated.factors.force(c, right(c), y));
             let gap = |row: usize| {
-                let by_force = |&(j, v): &(usize, f64)| v * if j / 2 == c { here[j % 2] } else { force(j / 2)[j % 2] };
-                let by_motion = |&(j, v): &(usize, f64)| v * self.equations.other(forces + j, y);
-                system.flexibility.row(row).iter().map(by_force).sum::<f64>()
-                    + system.kinematics.row(row).iter().map(by_motion).sum::<f64>()
+                let by_force = system.flexibility.row(row).iter().copied();
+                let by_motion = system.kinematics.row(row).iter().map(|&(j, v)| (forces + j, v));
+                self.updated.row_dot(by_force, own, &right, y) + self.updated.row_dot(by_motion, own, &right, y)
             };
-            [here[0], here[1], gap(2 * c), gap(2 * c + 1)]
+            [own.1[0], own.1[1], gap(2 * c), gap(2 * c + 1)]
         };
         points.iter().map(at).collect()
     }
@@ -211,19 +181,15 @@ impl UpdatedFactorisation {
     /// x for ε at `points`, on top of right-hand sides of all rows with their kept unknowns.
     pub fn combine(&self, points: &[usize], epsilon: &[f64], onto: (Vec<f64>, Vec<f64>)) -> Vec<f64> {
         let (mut right, mut y) = onto;
-        for (k, c) in points.iter().enumerate() {
-            let Some(columns) = self.columns.get(c) else { continue };
-            for (i, column) in columns.iter().enumerate() {
-                let epsilon = epsilon[2 * k + i];
-                right[2 * c + i] += epsilon;
-                y.iter_mut().zip(&column.y).for_each(|(y, v)| *y += epsilon * v);
-            }
+        for (c, epsilon) in points.iter().zip(epsilon.chunks_exact(2)) {
+            (0..2).for_each(|k| right[2 * c + k] += epsilon[k]);
+            self.updated.add(*c, [epsilon[0], epsilon[1]], &mut y);
         }
-        self.equations.expand(&right, &y)
+        self.updated.factors.expand(&right, &y)
     }
 
     /// Nothing on the right-hand side, and its kept unknowns.
     pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
-        self.equations.nothing()
+        self.updated.factors.nothing()
     }
 }

@@ -7,6 +7,7 @@ use super::rates::Direction;
 use super::system::Load;
 use super::trace::Trace;
 use super::unique::unique;
+use crate::path::outcome::{Outcome, PathRecord};
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
@@ -25,7 +26,7 @@ enum End {
     /// Not followed further, and why.
     Stalled(String),
     /// A direction without end under a load, and the sense of λ.
-    Ray(Direction, Load, f64),
+    Ray(Box<Direction>, Box<Load>, f64),
 }
 
 /// One load step while it is followed.
@@ -130,7 +131,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
-        return Err(End::Ray(direction, run.load.clone(), run.sense));
+        return Err(End::Ray(Box::new(direction), Box::new(run.load.clone()), run.sense));
     }
     advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
     if whole && direction.factor > 0.0 {
@@ -210,34 +211,30 @@ fn lost(follower: &mut Follower, why: String) -> End {
 }
 
 /// The answer of an end.
-fn finish(follower: Follower, end: End) -> PathAnswer {
-    match end {
-        End::Stands => {
-            let reached = follower.trace.state.factor;
-            answer(follower, Status::Stands, Some(reached))
-        }
-        End::LimitPoint => answer(follower, Status::LimitPoint, None),
+fn finish(mut follower: Follower, end: End) -> PathAnswer {
+    let outcome = match end {
+        End::Stands => Outcome::at(Status::Stands, Some(follower.trace.state.factor)),
+        End::LimitPoint => Outcome::at(Status::LimitPoint, None),
         End::Stalled(why) => {
-            let mut answer = answer(follower, Status::Stalled, None);
-            answer.notes.push(why);
-            answer
+            follower.trace.log.notes.push(why);
+            Outcome::at(Status::Stalled, None)
         }
-        End::Ray(direction, load, sense) => finish_ray(follower, &direction, &load, sense),
-    }
+        End::Ray(direction, load, sense) => ray_outcome(&mut follower, &direction, &load, sense),
+    };
+    answer(follower, outcome)
 }
 
 /// A direction without end: a mechanism where λ stands still, else a ray that carries any load.
-fn finish_ray(mut follower: Follower, direction: &Direction, load: &Load, sense: f64) -> PathAnswer {
+fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sense: f64) -> Outcome {
     let trace = &mut follower.trace;
     let (contacts, force_unit) = (trace.system.contacts, trace.system.force_unit);
     if direction.factor > 0.0 {
         let of = |c: usize| [0, 1].map(|i| direction.x[2 * c + i] * force_unit / direction.factor * sense);
-        let ray = (0..contacts).map(of).collect();
-        return PathAnswer { ray: Some(ray), ..answer(follower, Status::Unbounded, None) };
+        return Outcome::at(Status::Unbounded, None).carried_by(Some((0..contacts).map(of).collect()));
     }
     if direction.factor < 0.0 {
         trace.log.notes.push("beyond the limit point λ falls without end".into());
-        return answer(follower, Status::LimitPoint, None);
+        return Outcome::at(Status::LimitPoint, None);
     }
     let q = &direction.x[2 * contacts..];
     let power: f64 = load.wrench.iter().flatten().zip(q).map(|(w, q)| w * q).sum();
@@ -246,28 +243,26 @@ fn finish_ray(mut follower: Follower, direction: &Direction, load: &Load, sense:
     let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
     let motion: Vec<[f64; 3]> = trace.bodies(&direction.x).into_iter().map(|b| b.map(|v| v * scale)).collect();
     let gravity = trace.problem.load_steps[trace.state.load_step].gravity;
-    let (status, factor) = match (&follower.limit_point, gravity) {
-        (Some(_), _) => (Status::LimitPoint, None),
-        (None, true) => (Status::NoEquilibrium, None),
-        (None, false) => (Status::Collapse, Some(trace.state.factor)),
+    let outcome = match (&follower.limit_point, gravity) {
+        (Some(_), _) => {
+            trace.log.notes.push("beyond the limit point the path ends in a mechanism".into());
+            Outcome::at(Status::LimitPoint, None)
+        }
+        (None, true) => Outcome::at(Status::NoEquilibrium, None),
+        (None, false) => Outcome::at(Status::Collapse, Some(trace.state.factor)),
     };
     let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
     // The mechanism belongs to the last state; the one at the limit point may not allow it.
     let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SAME_MECHANISM;
     let allowed = follower.limit_point.as_ref().is_none_or(allowed);
-    let mut answer = answer(follower, status, factor);
-    answer.motion = allowed.then_some(motion);
-    if status == Status::LimitPoint {
-        answer.notes.push("beyond the limit point the path ends in a mechanism".into());
-    }
-    answer.unique = unique;
-    answer
+    Outcome { unique, ..outcome.moving(allowed.then_some(motion)) }
 }
 
 /// The answer at the present state, or at the limit point with the present state as its last one.
-fn answer(follower: Follower, status: Status, factor: Option<f64>) -> PathAnswer {
+fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     let Follower { trace, limit_point, .. } = follower;
     let present = trace.present();
+    let problem = trace.problem;
     let log = trace.log;
     let mut counters = Counters::new();
     for (name, count) in [
@@ -283,22 +278,14 @@ fn answer(follower: Follower, status: Status, factor: Option<f64>) -> PathAnswer
         counters.insert(name.into(), count);
     }
     counters.extend(log.counts.rates.decided.iter().map(|(by, count)| (by.name().to_string(), *count)));
-    counters.extend(trace.problem.counters.iter().map(|(name, count)| (name.clone(), *count)));
-    let (state, last) = match (status, limit_point) {
+    counters.extend(problem.counters.iter().map(|(name, count)| (name.clone(), *count)));
+    let (state, last) = match (outcome.status, limit_point) {
         (Status::LimitPoint, Some(limit)) => (limit, Some(present)),
         _ => (present, None),
     };
-    PathAnswer {
-        status,
-        load_step: state.load_step,
-        factor: if status == Status::LimitPoint { Some(state.factor) } else { factor },
-        state,
-        last,
-        motion: None,
-        unique: None,
-        ray: None,
-        events: log.events,
-        counters,
-        notes: log.notes,
+    if outcome.status == Status::LimitPoint {
+        outcome.factor = Some(state.factor);
     }
+    let (load_step, events, notes) = (state.load_step, log.events, log.notes);
+    outcome.answer(problem, false, PathRecord { load_step, state, last, events, counters, notes })
 }

@@ -4,6 +4,7 @@ use super::rates::{Direction, MECHANISM};
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
+use crate::path::events::{ContactStatus, transition};
 use voussoir_core::law::FacetMode;
 use voussoir_core::path::{ContactEvent, PathEvent};
 
@@ -71,7 +72,7 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
     let unit = trace.system.force_unit * trace.system.displacement_unit;
     let openings: Vec<f64> = (0..trace.state.points.len()).map(|c| opening_rate(trace, c, direction.gaps[c])).collect();
-    let mut dissipated = trace.state.dissipated;
+    let mut dissipated = trace.state.energy.dissipated;
     for (c, point) in trace.state.points.iter().enumerate() {
         if matches!(point.mode, ContactMode::Stick | ContactMode::Open) {
             continue;
@@ -80,7 +81,7 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
         let flow = irreversible(trace, c, direction.gaps[c], openings[c]);
         dissipated -= dot(mean, flow) * step * unit;
     }
-    trace.state.dissipated = dissipated;
+    trace.state.energy.dissipated = dissipated;
     let before = trace.state.factor;
     for (x, rate) in trace.state.x.iter_mut().zip(&direction.x) {
         *x += step * rate;
@@ -114,13 +115,8 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     if let ContactMode::Facet(f) = point.mode
         && was_hit
     {
-        let facet = &facets[f as usize];
-        happened.extend(match facet.mode {
-            FacetMode::Sliding if facet.flow[1] > 0.0 => Some(ContactEvent::SlipsBackward),
-            FacetMode::Sliding => Some(ContactEvent::SlipsForward),
-            FacetMode::Crushing => Some(ContactEvent::Crushes),
-            FacetMode::Opening => None,
-        });
+        let status = ContactStatus::of_facet(&facets[f as usize]);
+        happened.extend(transition(ContactStatus::Sticks, status).filter(|_| status != ContactStatus::Open));
     }
     // Facets that this direction leaves are active no more.
     if !(point.open() && point.apex) {

@@ -44,11 +44,8 @@ impl Point {
         };
         let Some(facets) = &system.facets[c] else { return closed };
         let opening_facet = facets.iter().position(|f| f.mode == FacetMode::Opening);
-        let bare = |f: &Facet| f.bound <= 0.0;
-        let slides =
-            |sense: f64| facets.iter().any(|f| f.mode == FacetMode::Sliding && f.normal[1] * sense > 0.0 && bare(f));
-        let apex = opening_facet.is_some_and(|f| bare(&facets[f])) && slides(1.0) && slides(-1.0);
-        let active: Vec<usize> = (0..facets.len()).filter(|f| bare(&facets[*f])).collect();
+        let active: Vec<usize> = (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
+        let apex = ActivePoint::is_apex(facets, &active);
         let opening = system.gap[c].max(0.0);
         let mode = if opening > 0.0 && apex { ContactMode::Open } else { ContactMode::Stick };
         Point { active, opening, mode, hit: true, apex, opening_facet, ..closed }

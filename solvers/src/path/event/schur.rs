@@ -1,7 +1,7 @@
 //! The Schur complement of a factorisation on some contact points: ṙ = S ġ + s λ̇ over those whose mode is open,
 //! while all others keep theirs, whichever the factorised matrix has for them.
 
-use super::factorisation::UpdatedFactorisation;
+use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
 use super::system::{Load, System};
 use crate::contact::mode::ContactMode;
@@ -36,7 +36,7 @@ impl<'a> SchurComplement<'a> {
     /// Reduces to the `open` points; all others keep their `modes`. `None` where linear algebra fails.
     pub fn new(
         (system, all): (&'a System, &[Point]),
-        base: &mut UpdatedFactorisation,
+        base: &mut FactorisedModes,
         (load_step, load): (usize, &Load),
         open: &[usize],
         modes: &[ContactMode],
@@ -46,7 +46,7 @@ impl<'a> SchurComplement<'a> {
         let changed = (0..modes.len()).filter(|c| modes[*c] != base.modes[*c]);
         points.extend(changed.filter(|c| !open.contains(c)));
         let (n, m) = (points.len(), open.len());
-        base.respond(system, &points, solves)?;
+        base.respond(&points, solves)?;
         base.load_rate(system, load_step, load)?;
         let response = base.local(system, &points, load);
         // Rows that fix ε: ġ of the open points, the mode of the others.
@@ -74,7 +74,7 @@ impl<'a> SchurComplement<'a> {
     /// All unknowns of a solution. `None` where the response to the load is not known.
     pub fn combine(
         &self,
-        base: &mut UpdatedFactorisation,
+        base: &mut FactorisedModes,
         (load_step, load): (usize, &Load),
         rate: &Rate,
     ) -> Option<Vec<f64>> {
@@ -96,7 +96,7 @@ impl<'a> SchurComplement<'a> {
     /// of the open points held. `None` where linear algebra fails.
     pub fn refinement(
         &self,
-        base: &UpdatedFactorisation,
+        base: &FactorisedModes,
         modes: &[ContactMode],
         still: bool,
         left: &[f64],

@@ -1,13 +1,14 @@
 //! What a path is made of: the problem in its units, the present state, the factorisation that serves many events,
 //! and what was noted on the way.
 
-use super::energy::{Snapshot, load_displacement, snapshot, work};
-use super::factorisation::UpdatedFactorisation;
+use super::energy::{energies, rigid};
+use super::factorisation::FactorisedModes;
 use super::point::Point;
 use super::system::System;
 use crate::contact::facet::dot;
+use crate::path::energy::{EnergyBalance, WorkState, load_displacement};
 use crate::rate::solve::RateCounts;
-use voussoir_core::path::{PathEvent, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
 /// The present state in scaled units.
 pub struct State {
@@ -19,10 +20,8 @@ pub struct State {
     pub load_step: usize,
     /// λ.
     pub factor: f64,
-    /// Work of loads and supports \[J\].
-    pub work: f64,
-    /// Energy dissipated \[J\].
-    pub dissipated: f64,
+    /// Work of loads and supports, and what dissipated \[J\].
+    pub energy: EnergyBalance,
 }
 
 impl State {
@@ -36,7 +35,7 @@ impl State {
 #[derive(Default)]
 pub struct Factors {
     /// None before the first event.
-    pub present: Option<UpdatedFactorisation>,
+    pub present: Option<FactorisedModes>,
     /// Whether responses are refined one by one: close to a collapse.
     pub refine_columns: bool,
 }
@@ -91,8 +90,8 @@ pub struct Trace<'a> {
     pub factors: Factors,
     /// Events, notes, counts.
     pub log: Log,
-    /// Energies and factors of the last record.
-    pub last: Option<(Snapshot, Vec<f64>)>,
+    /// What work needs of the last record, and the energy stored there.
+    pub last: Option<(WorkState, f64)>,
 }
 
 impl<'a> Trace<'a> {
@@ -111,7 +110,7 @@ impl<'a> Trace<'a> {
             observer,
             associated: problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated),
             loading_gaps: problem.load_steps.iter().map(opened).collect(),
-            state: State { x, points, load_step: 0, factor: 0.0, work: 0.0, dissipated: 0.0 },
+            state: State { x, points, load_step: 0, factor: 0.0, energy: EnergyBalance::default() },
             system,
             factors: Factors::default(),
             log: Log::default(),
@@ -139,7 +138,12 @@ impl<'a> Trace<'a> {
 
     /// Displacement at the load \[m\].
     pub fn displacement(&self) -> f64 {
-        load_displacement(self.problem, &self.problem.load_steps[self.state.load_step].loading, &self.motion())
+        self.displacement_of(&self.motion())
+    }
+
+    fn displacement_of(&self, motion: &[[f64; 3]]) -> f64 {
+        let loading = &self.problem.load_steps[self.state.load_step].loading;
+        load_displacement(self.problem, loading, motion, |body, point| rigid(self.problem, motion, body, point))
     }
 
     /// Gaps at the present state \[m\].
@@ -166,10 +170,10 @@ impl<'a> Trace<'a> {
             factor: state.factor,
             force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.force_unit)).collect(),
             gap: self.gaps(),
-            stored: self.last.as_ref().map_or(0.0, |(s, _)| s.stored),
-            dissipated: state.dissipated,
-            work: state.work,
-            displacement: load_displacement(self.problem, &self.problem.load_steps[state.load_step].loading, &motion),
+            stored: self.last.as_ref().map_or(0.0, |(_, stored)| *stored),
+            dissipated: state.energy.dissipated,
+            work: state.energy.work,
+            displacement: self.displacement_of(&motion),
             motion,
             memory: Vec::new(),
             yielded: Vec::new(),
@@ -191,14 +195,14 @@ impl<'a> Trace<'a> {
     /// Energy balance and observer. Returns whether to go on.
     pub fn record(&mut self) -> bool {
         let mut state = self.present();
-        let mut now = snapshot(self.problem, &state);
-        now.stored += self.stored_by_opening();
-        let applied = self.problem.applied(self.state.load_step, self.state.factor);
-        if let Some((before, earlier)) = &self.last {
-            self.state.work += work(before, &now, [earlier, &applied]);
+        let (now, stored) = energies(self.problem, &state);
+        let stored = stored + self.stored_by_opening();
+        if let Some((before, _)) = &self.last {
+            let loadings: Vec<&Loading> = self.problem.load_steps.iter().map(|step| &step.loading).collect();
+            self.state.energy.add_work(self.problem, &loadings, before, &now);
         }
-        (state.work, state.stored) = (self.state.work, now.stored);
-        self.last = Some((now, applied));
+        (state.work, state.stored) = (self.state.energy.work, stored);
+        self.last = Some((now, stored));
         self.observer.state(self.problem, &state)
     }
 }

@@ -16,8 +16,9 @@ use super::point::Point;
 use super::system::{Load, System};
 use crate::contact::facet::{dilatancy, dot, multipliers};
 use crate::contact::mode::ContactMode;
-use crate::optimise::dense_simplex::{Equations, Feasibility};
+use crate::optimise::dense_simplex::Feasibility;
 use crate::optimise::lcg::Lcg;
+use crate::rate::mechanism::mechanisms;
 use nalgebra::DMatrix;
 
 /// Freedoms of motion above which it is not examined.
@@ -96,36 +97,22 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
 /// Whether the mechanisms N y with a power of 1 are one only.
 fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]) -> Option<bool> {
     let k = all.ncols();
-    // (contact point, direction of ġ) of every variable γ.
+    // (contact point, flow) of every variable γ.
     let mut flows: Vec<(usize, [f64; 2])> = Vec::new();
     for (c, point) in points.iter().enumerate() {
         let Some(facets) = system.facets[c].as_ref().filter(|_| !(point.open() && point.apex)) else { continue };
         let opening = point.opening_facet.filter(|_| point.open());
-        flows.extend(point.active.iter().copied().chain(opening).map(|f| (c, facets[f].flow.map(|d| -d))));
-        flows.extend(opening.map(|f| (c, facets[f].flow)));
+        flows.extend(point.active.iter().copied().chain(opening).map(|f| (c, facets[f].flow)));
+        flows.extend(opening.map(|f| (c, facets[f].flow.map(|d| -d))));
     }
     let moves = |row: &[(usize, f64)]| -> Vec<f64> {
         (0..k).map(|j| row.iter().map(|&(i, v)| v * all[(i, j)]).sum()).collect()
     };
-    // Variables: y as differences of two, then γ.
-    let equation = |y: Vec<f64>, own: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        let flowing = (0..flows.len()).map(own);
-        y.iter().copied().chain(y.iter().map(|v| -v)).chain(flowing).collect()
-    };
-    let (mut rows, mut right) = (Vec::new(), Vec::new());
     let mut at: Vec<usize> = flows.iter().map(|f| f.0).collect();
     at.dedup();
-    for &c in &at {
-        for i in 0..2 {
-            let own = |f: usize| if flows[f].0 == c { -flows[f].1[i] } else { 0.0 };
-            rows.push(equation(moves(system.kinematics.row(2 * c + i)), &own));
-            right.push(0.0);
-        }
-    }
+    let rows: Vec<_> = at.iter().map(|&c| (c, [0, 1].map(|i| moves(system.kinematics.row(2 * c + i))))).collect();
     let whole: Vec<(usize, f64)> = power.iter().copied().enumerate().collect();
-    rows.push(equation(moves(&whole), &|_| 0.0));
-    right.push(1.0);
-    let mut program = Equations { free: 0, variables: 2 * k + flows.len(), rows, right }.dictionary()?;
+    let mut program = mechanisms(&rows, &flows, &moves(&whole))?;
     if program.feasible() != Feasibility::Point {
         return None;
     }

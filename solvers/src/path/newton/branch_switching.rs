@@ -1,17 +1,17 @@
-//! Where a path of finite displacements leads from a state at which no step converges.
+//! Branch switching: where a path leads from a state at which no step converges.
 //!
 //! There some contact points are active. The modes that the last rate asks for are one
 //! candidate; it is a solution of the rate problem only if it asks for the same modes itself (a point
 //! that slides goes on sliding in its sense, one that opens opens). Where it is not, the linear
-//! complementarity problem of the rates ([`rising`](super::rising)) is searched to its end for a rate on
+//! complementarity problem of the rates ([`limit_point_test`](super::limit_point_test)) is searched to its end for a rate on
 //! which λ goes on in its sense. If there is none the path folds: what is left is to unload, which friction
 //! always allows. Other points may then slide, and the path goes on at another place; if it comes back to
 //! the same fold it ends there.
 
 use super::control::Control;
 use super::inelastic::{plastic_power, update_blocks};
+use super::limit_point_test::{LimitPointTest, limit_point_test};
 use super::measure::motion_size;
-use super::rising::{Rising, limit_point_test};
 use super::state::Tangent;
 use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
 use super::tracer::{Tracer, moved_along};
@@ -69,17 +69,19 @@ pub(super) fn branch_beyond_fold(
     let state = tracer.state.clone();
     match limit_point_test(&mut tracer.system, &state, rate.factor.signum()) {
         // Where the load falls anyway, unloading is a rate of the same sense: one of several, and none that is wanted.
-        Rising::Tangent(other, modes)
+        LimitPointTest::Tangent(other, modes)
             if modes != state.mode && forwards(rate, &other) && agrees(tracer, &other, &modes, share) =>
         {
             tracer.system.count("branches", 1);
             Ok(Some((other, modes)))
         }
-        Rising::Tangent(..) | Rising::Unknown(_) => Ok(own),
-        Rising::None if !tracer.post_peak.cycles.folds_again([tracer.record.state.displacement, state.factor]) => {
+        LimitPointTest::Tangent(..) | LimitPointTest::Unknown(_) => Ok(own),
+        LimitPointTest::None
+            if !tracer.post_peak.cycles.folds_again([tracer.record.state.displacement, state.factor]) =>
+        {
             Ok(own)
         }
-        Rising::None => {
+        LimitPointTest::None => {
             let sense = if rate.factor > 0.0 { "growing" } else { "falling" };
             Err(format!(
                 "at factor {} no rate of equilibrium goes on with a {sense} factor: all modes of the active contact points are excluded; unloading from there has come back to this place",

@@ -1,11 +1,10 @@
-//! Corners of the path (small displacements, laws of facets): which way it goes on where several points
-//! change at once, and steps that only seem to follow it.
+//! Steps that only seem to follow the path (small displacements, laws of facets): they creep.
 //!
 //! With flow that is not associated the modes that a step asks for at a corner may be those of no solution: whatever
 //! its length, a point slips against its friction. A step so short that this is below the tolerance of the law
 //! would still pass for converged, and the next, as short, again: the path would creep along what is no solution
 //! of its rates. Such a step is refused: what it violates grows in proportion to it. Where a guess of the modes at
-//! a corner is followed by no step, the rates are searched to their end instead (`rising`).
+//! a corner is followed by no step, the rates are searched to their end instead ([`limit_point_test`](super::limit_point_test)).
 
 use super::control::Control;
 use super::measure::{increment_along, increment_between};

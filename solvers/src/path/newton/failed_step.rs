@@ -116,11 +116,11 @@ fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failur
     if no_peak && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
         return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
     }
-    if unsearched && tracer.limit.doubt.take().is_some() {
+    if unsearched && tracer.limit.unproven.take().is_some() {
         // Not decided: shorter steps may still find the way.
         return AfterFailure::CutBack(length);
     }
-    AfterFailure::Ended(if linear && tracer.limit.doubt.is_none() {
+    AfterFailure::Ended(if linear && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &failure.why);
         end_path(tracer, Status::LimitPoint, why)
     } else {

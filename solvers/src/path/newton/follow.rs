@@ -223,7 +223,7 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
 
 /// The end of a path that takes too many steps.
 fn out_of_steps(tracer: &mut Tracer, linear: bool) -> LoadStepEnding {
-    if linear && tracer.limit.peak.is_some() && tracer.limit.doubt.is_none() {
+    if linear && tracer.limit.peak.is_some() && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
         return end_path(tracer, Status::LimitPoint, why);
     }

@@ -1,6 +1,6 @@
 //! Whether a limit point is one: no rate with a growing factor leaves it.
 
-use super::rising::{Rising, limit_point_test};
+use super::limit_point_test::{LimitPointTest, limit_point_test};
 use super::state::{State, Tangent};
 use super::tracer::Tracer;
 use crate::contact::mode::ContactMode;
@@ -20,13 +20,13 @@ pub(super) fn test_limit_point(
         return None;
     }
     match limit_point_test(&mut tracer.system, state, direction) {
-        Rising::None => {
-            tracer.limit.doubt = None;
+        LimitPointTest::None => {
+            tracer.limit.unproven = None;
             tracer.limit.proven = Some(state.factor);
         }
-        Rising::Unknown(why) => tracer.limit.doubt = Some(why),
-        Rising::Tangent(rate, modes) => {
-            tracer.limit.doubt = Some("there is a rate on which the load grows".into());
+        LimitPointTest::Unknown(why) => tracer.limit.unproven = Some(why),
+        LimitPointTest::Tangent(rate, modes) => {
+            tracer.limit.unproven = Some("there is a rate on which the load grows".into());
             return Some((rate, modes));
         }
     }
@@ -46,7 +46,7 @@ pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) 
         return None;
     }
     tracer.limit.rose = Some((state.factor, times));
-    tracer.limit.doubt = None;
+    tracer.limit.unproven = None;
     tracer.system.count("branches", 1);
     Some(other)
 }

@@ -79,7 +79,7 @@ pub(super) fn advanced(
     update_blocks(system, &mut next)?;
     let gradient = system.gradient(&next);
     next.gap = gradient.gap.clone();
-    update_tractions(system, start, &mut next).map_err(|why| StepFailure::new(why))?;
+    update_tractions(system, start, &mut next).map_err(StepFailure::new)?;
     Ok((next, gradient))
 }
 

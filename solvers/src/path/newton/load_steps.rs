@@ -91,7 +91,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
 
 /// The answer of a trace that has ended.
 fn answer(mut tracer: Tracer) -> PathAnswer {
-    if let (Status::LimitPoint, Some(why)) = (tracer.ending.status, tracer.limit.doubt.take()) {
+    if let (Status::LimitPoint, Some(why)) = (tracer.ending.status, tracer.limit.unproven.take()) {
         tracer.limit.peak = None;
         end_path(&mut tracer, Status::Stalled, format!("the limit point on the path is not proven: {why}"));
     }

@@ -1,13 +1,13 @@
 //! Load steps to a factor: in one step where that is exact, from nothing by a mixed control, else in equal steps.
 
 use super::control::Control;
-use super::flow::{by_flow_rule_homotopy, take_associated};
+use super::flow_rule_homotopy::{by_flow_rule_homotopy, take_associated};
 use super::follow::follow;
 use super::following::mixed_weight;
+use super::homotopy::by_homotopy;
 use super::iteration::iterate;
 use super::measure::motion_size;
 use super::peak::scaled_motion;
-use super::pivot::by_homotopy;
 use super::response::tractions_dissipate;
 use super::state::{State, Tangent, in_proportion};
 use super::step::solve_step;

@@ -2,20 +2,16 @@
 //!
 //! Blocks that slide side by side move independently of each other. The rate of their modes is then one
 //! of many, and the one that linear algebra picks may close a point that is open: it does not go on for ever,
-//! and steps along it end nowhere. Every rigid motion with
-//!
-//! ```text
-//! G q̇ = −Σ γ_i d_i over the facets without slack,   γ ≥ 0,   p·q̇ > 0
-//! ```
-//!
-//! is a rate of solution with forces that stand still (the flow of limit analysis at a given field: Livesley
-//! 1978, Int. J. Numer. Meth. Engng 12): a linear program finds one where there is one.
+//! and steps along it end nowhere. A linear program finds a mechanism where there is one
+//! ([`rate::mechanism`](crate::rate::mechanism)).
 
 use super::measure::load_displacement;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
-use crate::optimise::dense_simplex::{Equations, Feasibility};
+use crate::contact::facet::slack;
+use crate::optimise::dense_simplex::Feasibility;
+use crate::rate::mechanism::mechanisms;
 
 /// Slack, relative to the greatest force, up to which a facet may yield.
 const YIELDING: f64 = 1e-9;
@@ -34,33 +30,26 @@ pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<T
         let Some(law) = system.law(c) else { continue };
         let (r, area) = (state.force[c], system.problem.contacts[c].area);
         for f in &law.facets {
-            if f.bound * area - f.normal[0] * r[0] - f.normal[1] * r[1] <= YIELDING * largest {
+            if slack(f, r, area) <= YIELDING * largest {
                 flows.push((c, f.flow));
             }
         }
     }
-    // Motions forwards and backwards, then multipliers, in the units of the unknowns.
-    let width = 2 * bodies + flows.len();
-    let mut rows = vec![vec![0.0; width]; 2 * points + 1];
+    // Rows of G in the units of the unknowns.
+    let mut rows: Vec<(usize, [Vec<f64>; 2])> =
+        (0..points).map(|c| (c, [vec![0.0; bodies], vec![0.0; bodies]])).collect();
     for &(i, j, value) in hessian.entries.iter().filter(|e| e.0 < 2 * points && e.1 >= 2 * points) {
         if let Some((column, unit)) = system.column(j) {
-            let value = value * unit / system.units().displacement;
-            rows[i][column - 2 * points] += value;
-            rows[i][column - 2 * points + bodies] -= value;
+            rows[i / 2].1[i % 2][column - 2 * points] += value * unit / system.units().displacement;
         }
     }
-    for (k, (c, flow)) in flows.iter().enumerate() {
-        (0..2).for_each(|i| rows[2 * c + i][2 * bodies + k] += flow[i]);
-    }
-    for j in 0..bodies {
+    let works = |j: usize| {
         let mut motion = vec![0.0; bodies];
         motion[j] = 1.0;
-        let works = load_displacement(system, &motion_of(system, &motion)) / system.units().displacement;
-        (rows[2 * points][j], rows[2 * points][j + bodies]) = (works, -works);
-    }
-    let mut right = vec![0.0; 2 * points + 1];
-    right[2 * points] = 1.0;
-    let mut program = Equations { free: 0, variables: width, rows, right }.dictionary()?;
+        load_displacement(system, &motion_of(system, &motion)) / system.units().displacement
+    };
+    let power: Vec<f64> = (0..bodies).map(works).collect();
+    let mut program = mechanisms(&rows, &flows, &power)?;
     system.count("rate_programs", 1);
     if program.feasible() != Feasibility::Point {
         return None;

@@ -1,14 +1,4 @@
-//! Contact points with laws of tractions from gaps: r = A t(g, history).
-//!
-//! Two rows a point, with K = −A ∂t/∂g of the update itself and each row in its own scale,
-//!
-//! ```text
-//! σ (r − A t(g)) = 0,    σ (dr + K dg) = −σ (r − A t(g)),    σ = 1 / (F + U max|K|)
-//! ```
-//!
-//! where the joint is stiff against the rest this is g − c r = 0, where it has lost its stiffness
-//! r = A t: both are conditioned like the other rows. The history is that of the last converged state
-//! until the step is accepted.
+//! Rows, residuals, energies and local controls of contact points with laws of tractions from gaps.
 
 use super::control::LocalControl;
 use super::state::{State, Tangent};

@@ -1,9 +1,9 @@
 //! A step: Newton's method, then a line search, then the homotopy.
 
 use super::control::Control;
+use super::homotopy::by_homotopy;
 use super::iteration::iterate;
 use super::line_search::NOTHING;
-use super::pivot::by_homotopy;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
 use crate::optimise::line_search::LineSearch;

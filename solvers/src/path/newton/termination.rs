@@ -45,7 +45,7 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
         end_path(tracer, Status::LimitPoint, format!("{why}; the path goes on with a factor that does not grow"))
     } else {
         let ended = end_path(tracer, Status::Stalled, why);
-        tracer.record.notes.extend(tracer.limit.doubt.take().map(|doubt| format!("at its last state {doubt}")));
+        tracer.record.notes.extend(tracer.limit.unproven.take().map(|why| format!("at its last state {why}")));
         ended
     }
 }

@@ -53,7 +53,7 @@ pub(super) struct Ending {
 pub(super) struct LimitPoint {
     pub peak: Option<Peak>,
     /// Why it is not proven to be one.
-    pub doubt: Option<String>,
+    pub unproven: Option<String>,
     /// Factor at which it is proven that no rate has growing λ.
     pub proven: Option<f64>,
     /// Factor at which a branch with growing λ was taken last, and how often there.

@@ -46,7 +46,7 @@ pub fn examine(run: &mut Run, trace: &mut Trace, e: usize, twist: Vector3<f64>, 
     let joint = &mut run.joints[e];
     let h = |k: usize| (section.places[k].rows * twist).amax();
     let size = (0..section.places.len()).map(h).fold(0.0, f64::max);
-    joint.slips = None;
+    joint.quiet.slips = None;
     let mut allowed = NEIGHBOURHOOD * size;
     let rates: Vec<_> = section
         .places
@@ -69,8 +69,8 @@ pub fn examine(run: &mut Run, trace: &mut Trace, e: usize, twist: Vector3<f64>, 
         let most = rate + sensitivity * allowed;
         if most > 0.0 { distance.max(0.0) / most } else { f64::INFINITY }
     };
-    joint.deadline = run.progress.arc() + near.ahead.into_iter().map(earliest).fold(f64::INFINITY, f64::min);
-    (joint.seen, joint.allowed) = (twist, allowed);
+    joint.quiet.deadline = run.progress.arc() + near.ahead.into_iter().map(earliest).fold(f64::INFINITY, f64::min);
+    (joint.quiet.twist, joint.quiet.allowed) = (twist, allowed);
     let next = near.hits.iter().map(|hit| hit.0).fold(f64::INFINITY, f64::min);
     run.examined.push((e, near.hits));
     next
@@ -111,7 +111,7 @@ fn examine_point(
     if point.mode == ContactMode::Open {
         joint.turn(k, gap[1]);
         if dilatancy(facets) > 0.0 && section.slip.is_some() {
-            joint.slips = Some(if gap[1] < 0.0 { -1.0 } else { 1.0 });
+            joint.quiet.slips = Some(if gap[1] < 0.0 { -1.0 } else { 1.0 });
         } else if dilatancy(facets) > 0.0 {
             allowed = allowed.min(0.5 * gap[1].abs());
         }

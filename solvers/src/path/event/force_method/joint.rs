@@ -21,6 +21,20 @@ const WEAK: f64 = 1e5;
 /// d⊥·C t below this share of its factors: the point has no rate of its own.
 const PARALLEL: f64 = 1e-9;
 
+/// In which neighbourhood of a rate, and until when, nothing happens in a section.
+#[derive(Default)]
+pub struct Quiet {
+    /// ξ̇ when it was last examined.
+    pub twist: Vector3<f64>,
+    /// How far ξ̇ may leave it.
+    pub allowed: f64,
+    /// The arc until which nothing happens then.
+    pub deadline: f64,
+    /// Sense of the slip of open points that dilate, where it is the same for all of them: a section is examined
+    /// when it turns.
+    pub slips: Option<f64>,
+}
+
 /// A section's state.
 pub struct Joint {
     /// S of each point.
@@ -37,22 +51,15 @@ pub struct Joint {
     stamp: (Vector3<f64>, Matrix3<f64>),
     /// Sense of the slip of open points, which dilatancy follows.
     senses: Vec<f64>,
-    /// ξ̇ when it was last looked at, how far ξ̇ may leave it, and until which arc nothing happens then.
-    pub seen: Vector3<f64>,
-    /// See `seen`.
-    pub allowed: f64,
-    /// See `seen`.
-    pub deadline: f64,
-    /// Sense of the slip of open points that dilate, where it is the same for all of them: a section is looked
-    /// at when it turns.
-    pub slips: Option<f64>,
+    /// What holds of it while nothing happens.
+    pub quiet: Quiet,
     /// Whether a point has changed its mode since the tangent was found.
     pub stale: bool,
     /// Whether points stand at facets that they may leave at any time.
     pub may_leave: bool,
     /// Number of points of the active set.
     pub active: usize,
-    /// ṙ of each point when it was last looked at.
+    /// ṙ of each point when it was last examined.
     pub rates: Vec<[f64; 2]>,
 }
 
@@ -96,10 +103,7 @@ impl Joint {
             twist: Vector3::zeros(),
             stamp: (Vector3::zeros(), Matrix3::zeros()),
             senses: vec![0.0; n],
-            seen: Vector3::zeros(),
-            allowed: 0.0,
-            deadline: 0.0,
-            slips: None,
+            quiet: Quiet::default(),
             stale: true,
             may_leave: true,
             active: 0,

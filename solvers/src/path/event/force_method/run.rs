@@ -99,7 +99,7 @@ fn refresh(run: &mut Run, trace: &mut Trace) -> Option<()> {
         }
         run.fresh.push(e);
         run.joints[e].refresh(&run.sections.all[e], &trace.system.facets, &trace.state.points)?;
-        run.joints[e].deadline = f64::NEG_INFINITY;
+        run.joints[e].quiet.deadline = f64::NEG_INFINITY;
         run.equations.changed(e);
     }
     Some(())
@@ -162,13 +162,14 @@ fn examine_all(
     run.sizes[1] = twists.iter().enumerate().map(|(e, twist)| size(e, twist)).fold(0.0, f64::max);
     for (e, twist) in twists.iter().enumerate() {
         let (joint, section) = (&run.joints[e], &sections.all[e]);
-        let turned = |slip: &Vector3<f64>| joint.slips.is_some_and(|sense| sense * slip.dot(twist) < 0.0);
+        let turned = |slip: &Vector3<f64>| joint.quiet.slips.is_some_and(|sense| sense * slip.dot(twist) < 0.0);
         let weak = joint.flexibility.is_none();
-        let left = size(e, &(twist - joint.seen)) > joint.allowed || section.slip.as_ref().is_some_and(turned);
-        if left || weak || joint.may_leave || joint.deadline == f64::NEG_INFINITY {
+        let left =
+            size(e, &(twist - joint.quiet.twist)) > joint.quiet.allowed || section.slip.as_ref().is_some_and(turned);
+        if left || weak || joint.may_leave || joint.quiet.deadline == f64::NEG_INFINITY {
             best = best.min(examine(run, trace, e, *twist, changes));
         } else {
-            waiting.push((joint.deadline - run.progress.arc(), e));
+            waiting.push((joint.quiet.deadline - run.progress.arc(), e));
         }
     }
     if changes.is_empty() {
@@ -211,7 +212,7 @@ fn advance(run: &mut Run, trace: &mut Trace, solution: &Solution, (step, sense):
         }
         let joint = &mut run.joints[e];
         joint.count(&run.sections.all[e], &trace.state.points);
-        joint.deadline = f64::NEG_INFINITY;
+        joint.quiet.deadline = f64::NEG_INFINITY;
     }
     for hit in hits {
         let e = run.sections.of[hit.2];
@@ -234,7 +235,7 @@ fn record(run: &mut Run, trace: &mut Trace) -> bool {
     }
     let [work, moved, factor] = run.since;
     let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
-    trace.state.work += (work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
+    trace.state.energy.work += (work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
     run.since = [0.0, 0.0, trace.state.factor];
     trace.record()
 }

@@ -67,7 +67,7 @@ impl<'s> Run<'s> {
         let section = &self.sections.all[e];
         let gained = self.joints[e].update(section, state, &self.progress, step, &trace.state.x);
         for (place, change) in section.places.iter().zip(&gained) {
-            trace.state.dissipated += change.dissipated * unit;
+            trace.state.energy.dissipated += change.dissipated * unit;
             (0..2).for_each(|i| trace.state.x[2 * place.contact + i] += change.force[i]);
         }
         gained.into_iter().map(|change| change.opening).collect()

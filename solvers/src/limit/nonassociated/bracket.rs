@@ -4,7 +4,7 @@
 //! cannot yield, and bound the dissipation on the others, by which kinematics refuses mechanisms
 //! that are too cheap or too dear for the range. What is left is searched.
 
-use super::search::{Ending, Search};
+use super::conflict_search::{Ending, Search};
 use crate::limit::systems::Systems;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 

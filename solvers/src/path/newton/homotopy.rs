@@ -19,12 +19,12 @@
 
 use super::control::Control;
 use super::control_row::{control_row, control_value};
-use super::frame::Frame;
 use super::iteration::iterate;
 use super::linearised::residual_of;
 use super::state::{State, Tangent};
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_without_gaps;
+use super::updated_equations::UpdatedEquations;
 use crate::contact::mode::ContactMode;
 use crate::contact::piecewise_path::{PathEnd, PiecewiseLinear, PointInCell, follow};
 use crate::optimise::lcg::Lcg;
@@ -44,7 +44,7 @@ struct Place {
 /// The path of a step: where it is and where it goes.
 struct StepPath<'m, 'a> {
     system: &'m mut StepSystem<'a>,
-    frame: Frame,
+    equations: UpdatedEquations,
     place: Place,
     rate: Tangent,
     /// Rates of Δg \[m\].
@@ -52,7 +52,7 @@ struct StepPath<'m, 'a> {
 }
 
 impl StepPath<'_, '_> {
-    /// Puts a contact point's equations in its present mode into the frame. On the right-hand side stands what is
+    /// Puts a contact point's equations in its present mode among all. On the right-hand side stands what is
     /// left of its residual of the gaps.
     fn set_equations(&mut self, c: usize) {
         let e = self.place.offset[c].map(|e| e / self.system.units().displacement);
@@ -65,7 +65,7 @@ impl StepPath<'_, '_> {
             (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => [0.0; 2],
             _ => [-e[0], -e[1]],
         };
-        self.frame.set(self.system, c, mode, right);
+        self.equations.set(self.system, c, mode, right);
     }
 
     /// The mode of a contact point's cell.
@@ -94,7 +94,7 @@ impl PiecewiseLinear for StepPath<'_, '_> {
 
     fn solve_rates(&mut self) -> Result<(), String> {
         self.system.count("pivots", 1);
-        let solved = self.frame.solve(self.system);
+        let solved = self.equations.solve(self.system);
         let (x, factorisations) = solved.ok_or("a combination of cells has no direction")?;
         self.system.count("factorisations", factorisations);
         if x.iter().any(|x| !x.is_finite()) {
@@ -106,7 +106,7 @@ impl PiecewiseLinear for StepPath<'_, '_> {
             *rate = match self.place.state.mode[c] {
                 ContactMode::Stick => [0.0; 2],
                 _ => {
-                    let (own, offset) = (self.frame.gap(c, &x), self.place.offset[c]);
+                    let (own, offset) = (self.equations.gap(c, &x), self.place.offset[c]);
                     [0, 1].map(|k| own[k] * self.system.units().displacement + offset[k])
                 }
             };
@@ -217,10 +217,10 @@ fn followed_from(
     let row = control_row(system, start, &place.state, control, &constraint, &hessian);
     let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
     right[row.len() - 1] = -left;
-    let mut frame = Frame::new(hessian.rows(&system.unknowns).clone(), points, row);
-    frame.load_rate(&right);
+    let mut equations = UpdatedEquations::new(hessian.rows(&system.unknowns).clone(), points, row);
+    equations.load_rate(&right);
     let rate = tangent_without_gaps(system, &vec![0.0; right.len()]);
-    let mut path = StepPath { system, frame, place, rate, gap_rate: vec![[0.0; 2]; points] };
+    let mut path = StepPath { system, equations, place, rate, gap_rate: vec![[0.0; 2]; points] };
     for c in 0..points {
         path.place.state.mode[c] = path.mode(c);
         path.set_equations(c);

@@ -5,7 +5,7 @@ use super::control::Control;
 use super::state::State;
 use super::step::solve_step;
 use super::system::StepSystem;
-use crate::contact::facet::with_flow_between;
+use crate::contact::facet::{FLOW_SHARES, with_flow_between};
 use crate::contact::yield_polygon::YieldPolygon;
 
 /// Takes slip to be associated; the laws as they were.
@@ -27,7 +27,7 @@ pub(super) fn by_flow_rule_homotopy(system: &mut StepSystem, start: &State, fact
     let own = system.laws.polygons.clone();
     let mut guess = start.clone();
     let mut found = None;
-    for share in [0.0, 0.3, 0.55, 0.75, 0.9, 1.0] {
+    for share in FLOW_SHARES {
         blend(system, &own, share);
         guess.factor = factor;
         found = solve_step(system, start, guess.clone(), &Control::Factor(factor)).ok().map(|(state, _)| state);

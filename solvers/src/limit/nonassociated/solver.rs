@@ -1,20 +1,17 @@
-//! `limit_least`: the least load with the laws' own flow, with a proved lower bound.
-#![doc = include_str!("limit_least.md")]
+//! The solver `limit_least`: local search for the least state, then a proof that nothing lies below.
 
-mod bracket;
-mod descent;
-mod products;
-mod search;
-
-use super::sequential::{FlowState, Sequence, associated_bound, greatest_shares, sequence, settled_by_association};
-use super::systems::{LARGEST, Systems};
-use super::{associated, combined};
+use super::bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
+use super::descent::{Descent, State};
+use super::products::{Bound, lower_bound};
+use crate::limit::associated::{associated, associated_bound, settled_by_association};
+use crate::limit::scale::combined;
+use crate::limit::sequential::{FlowState, Sequence, greatest_shares, sequence};
+use crate::limit::systems::{LARGEST, Systems};
 use crate::optimise::dense_simplex::Feasibility;
-use bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
-use descent::{Descent, State};
-use products::Bound;
 use serde::{Deserialize, Serialize};
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, Status};
+use voussoir_core::limit::{
+    LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated, Status,
+};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
@@ -32,7 +29,7 @@ const ADMISSIBLE: f64 = 1e-10;
 /// The least load with the laws' own flow.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct LimitLeast {
+pub struct LimitNonassociated {
     /// Work that the proof may take, in 10⁹ matrix entries swept.
     #[serde(default = "search_limit")]
     pub search_limit: f64,
@@ -49,9 +46,9 @@ fn product_rows() -> usize {
     PRODUCT_ROWS
 }
 
-impl Default for LimitLeast {
+impl Default for LimitNonassociated {
     fn default() -> Self {
-        LimitLeast { search_limit: SEARCH_LIMIT, product_rows: PRODUCT_ROWS }
+        LimitNonassociated { search_limit: SEARCH_LIMIT, product_rows: PRODUCT_ROWS }
     }
 }
 
@@ -194,8 +191,8 @@ impl Least<'_> {
             {
                 if present.is_finite() && state.theta < present {
                     let next = state.theta * (1.0 - 1e-7);
-                    statics.shift(self.systems.room(), next - present);
-                    kinematics.shift(self.systems.room(), next - present);
+                    statics.shift(self.systems.upper_slack(), next - present);
+                    kinematics.shift(self.systems.upper_slack(), next - present);
                     present = next;
                 }
                 best = Some(state);
@@ -207,7 +204,7 @@ impl Least<'_> {
 }
 
 #[typetag::serde(name = "limit_least")]
-impl LimitSolver for LimitLeast {
+impl LimitSolver for LimitNonassociated {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
         let mut answer = associated(problem, question);
         let mut own = associated_bound(&answer);
@@ -304,7 +301,7 @@ impl Least<'_> {
     }
 
     /// Raises the lower bound as far as the limits allow, taking lesser states on the way.
-    fn prove(&mut self, limits: &LimitLeast, most: f64, best: &mut Option<(f64, FlowState)>) -> Lower {
+    fn prove(&mut self, limits: &LimitNonassociated, most: f64, best: &mut Option<(f64, FlowState)>) -> Lower {
         let entries = (limits.search_limit * 1e9).min(1e18) as u64;
         let (mut lower, mut gap) = (Lower { theta: 0.0, products: None, searched: 0.0 }, GAP);
         let mut whole = true;
@@ -359,7 +356,7 @@ impl Least<'_> {
     }
 
     fn products(&mut self, known: f64, most: usize, widest_only: bool) -> Option<Bound> {
-        let (bound, iterations) = products::lower_bound(&self.systems, self.problem, known, most, widest_only);
+        let (bound, iterations) = lower_bound(&self.systems, self.problem, known, most, widest_only);
         self.work.iterations += iterations;
         bound
     }
@@ -405,7 +402,7 @@ impl Lower {
 /// The answer with the best state and the proved bound.
 fn finish(
     mut answer: LimitAnswer,
-    mut own: voussoir_core::limit::NonAssociated,
+    mut own: NonAssociated,
     best: Option<(f64, FlowState)>,
     lower: f64,
     (start, max, unit): (f64, f64, f64),

@@ -1,9 +1,9 @@
 //! A body of a yielding material linearised at displacements of its nodes: stresses, energies, tangent, and the
-//! condensation of the tangent on its points. The equations are those of the module above.
+//! condensation of the tangent on its points. The equations are those of the module `inelastic`.
 
-use super::super::element::stiffness_of_strains;
-use super::super::shape::{SPRINGS, at_places, placed};
-use super::{InelasticBody, InelasticState};
+use super::element::stiffness_of_strains;
+use super::inelastic::{InelasticBody, InelasticState};
+use super::shape::{SPRINGS, at_places, placed};
 use crate::law::{Effect, PlanarPoint};
 use crate::linear::{Entries, SparseLu};
 use crate::model::geometry::Vec2;
@@ -27,11 +27,11 @@ pub struct Linearisation {
     /// c (x, y per point) \[m\].
     pub offset: Vec<f64>,
     /// X and x.
-    pub(super) response: Arc<DMatrix<f64>>,
-    pub(super) rest: Vec<f64>,
+    response: Arc<DMatrix<f64>>,
+    rest: Vec<f64>,
     /// Where: displacements of the nodes (x, y) in the shape's frame, in units of its size.
     pub displacement: Arc<Vec<f64>>,
-    pub(super) internal: Vec<f64>,
+    internal: Vec<f64>,
     /// What a step that ends here remembers.
     pub end: Arc<InelasticState>,
     /// Elastic energy \[J\].
@@ -45,6 +45,22 @@ pub struct Linearisation {
 }
 
 impl InelasticBody {
+    /// Displacements of the nodes by forces on the points, as the linearisation sees them.
+    pub fn displaced(&self, linear: &Linearisation, forces: &[f64]) -> Vec<f64> {
+        let mut all = linear.rest.clone();
+        for (f, column) in self.local_forces(forces).iter().zip(linear.response.column_iter()) {
+            if *f != 0.0 {
+                all.iter_mut().zip(column.iter()).for_each(|(x, c)| *x += c * f);
+            }
+        }
+        all
+    }
+
+    /// Greatest force on a node that the stresses at the linearisation's displacements leave \[N\].
+    pub fn residual(&self, linear: &Linearisation, forces: &[f64]) -> f64 {
+        self.unbalanced(&linear.internal, forces)
+    }
+
     /// C⁻¹ σ of a point: the elastic part of (ε_xx, ε_yy, ε_zz, γ_xy).
     fn elastic_strain(&self, stress: [f64; 4]) -> [f64; 4] {
         let entry = |i: usize| (0..4).map(|j| self.compliance[i][j] * stress[j]).sum::<f64>() / self.modulus;

@@ -29,7 +29,7 @@ const SUPPORTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
 /// Regularisations of the interior-point method, tried in turn.
 const REGULARISATIONS: [f64; 2] = [1e-7, 1e-6];
 /// The bound of θ in the program lies so far above the known state.
-const ROOM: f64 = 0.05;
+const MARGIN_ABOVE: f64 = 0.05;
 /// The largest neighbourhood tried first.
 const NEAREST: usize = 3;
 
@@ -54,7 +54,7 @@ enum Kind {
     /// γ_i θ.
     GammaTheta(usize),
     /// γ_i (t − θ).
-    GammaRoom(usize),
+    GammaUpperSlack(usize),
     /// θ.
     Theta,
     /// s_j.
@@ -81,8 +81,8 @@ impl Bound {
         let code = |i: usize| {
             let pair = &systems.pairs[i];
             let force = pair.normal[0].0;
-            let joint = systems.joints.partition_point(|&(first, _)| first <= force) - 1;
-            let first = systems.joints[joint].0;
+            let joint = systems.variables.joints.partition_point(|&(first, _)| first <= force) - 1;
+            let first = systems.variables.joints[joint].0;
             let shear = pair.normal.iter().find(|&&(j, _)| j == first + 2).map(|&(_, v)| v);
             let slot = match shear {
                 Some(v) if v > 0.0 => 2,
@@ -102,7 +102,7 @@ impl Bound {
                     add(code(i), LAST, share);
                 }
                 Kind::GammaTheta(i) => add(code(i), FIRST, z * force / unit),
-                Kind::GammaRoom(i) => add(code(i), LAST, z * force / unit),
+                Kind::GammaUpperSlack(i) => add(code(i), LAST, z * force / unit),
                 Kind::Theta => add(FIRST, FIRST, z),
                 Kind::Slack(j) => add(FIRST, code(j), z * unit / force),
                 Kind::Product(i, j) => add(code(i), code(j), z),
@@ -209,117 +209,183 @@ impl Columns {
     }
 }
 
-impl Program {
-    /// The rows for θ ≤ t with products up to `reach`; `None` where they are more than `most`.
-    fn new(systems: &Systems, problem: &LimitProblem, t: f64, reach: usize, most: usize) -> Option<Self> {
-        let kept = Kept::new(problem, reach);
-        let (pairs, forces, groups) = (systems.pairs.len(), systems.forces, problem.groups);
-        // Second factors: forces, then θ and 1. First factors: 1, then γ_i, then q̇.
-        let (theta, one) = (forces, forces + 1);
-        let (gamma, velocity) = (|i: usize| 1 + i, |q: usize| 1 + pairs + q);
-        let mut joint_of = vec![0; forces];
-        for (k, &(first, shear)) in systems.joints.iter().enumerate() {
-            (first..first + if shear { 3 } else { 2 }).for_each(|j| joint_of[j] = k);
-        }
-        let joint_of_pair = |i: usize| joint_of[systems.pairs[i].normal[0].0];
-        let mut columns = Columns { of: HashMap::from([((0, theta), 0)]), one: (0, one) };
-        let mut program = Program {
-            columns: 0,
-            equations: Vec::new(),
-            rows: Vec::new(),
-            kinds: Vec::new(),
-            idle: Vec::new(),
-            most: t,
-        };
+/// A program in the making. Second factors are forces, then θ and 1; first factors are 1, then γ_i, then q̇.
+struct Builder<'a> {
+    systems: &'a Systems,
+    kept: Kept,
+    columns: Columns,
+    program: Program,
+    /// Joint of each force variable.
+    joint_of: Vec<usize>,
+}
 
-        // Equilibrium of each group and of all above each cut, with the joints it needs.
+impl Builder<'_> {
+    /// Index of θ among the second factors; 1 comes after it.
+    fn theta(&self) -> usize {
+        self.systems.forces
+    }
+
+    fn one(&self) -> usize {
+        self.systems.forces + 1
+    }
+
+    /// Index of γ_i among the first factors.
+    fn gamma(&self, i: usize) -> usize {
+        1 + i
+    }
+
+    /// Index of a component of q̇ among the first factors.
+    fn velocity(&self, q: usize) -> usize {
+        1 + self.systems.pairs.len() + q
+    }
+
+    fn joint_of_pair(&self, i: usize) -> usize {
+        self.joint_of[self.systems.pairs[i].normal[0].0]
+    }
+
+    /// Equilibrium of each group and of all above each cut, with the joints it needs.
+    fn balances(&self) -> Vec<(Form, Vec<usize>)> {
+        let (systems, theta, one) = (self.systems, self.theta(), self.one());
         let mut balances: Vec<(Form, Vec<usize>)> = Vec::new();
-        for q in 0..3 * groups {
-            let mut form = systems.equilibrium[q].clone();
-            let joints = form.iter().map(|&(j, _)| joint_of[j]).collect();
+        for (q, own) in systems.equilibrium.iter().enumerate() {
+            let mut form = own.clone();
+            let joints = form.iter().map(|&(j, _)| self.joint_of[j]).collect();
             form.extend([(theta, systems.varying[q]), (one, systems.fixed[q])]);
             balances.push((form, joints));
         }
-        for (above, cut) in &kept.cuts {
+        for (above, cut) in &self.kept.cuts {
             for x in 0..3 {
-                let mut sum = vec![0.0f64; forces + 2];
+                let mut sum = vec![0.0f64; systems.forces + 2];
                 for &group in above {
                     systems.equilibrium[3 * group + x].iter().for_each(|&(j, v)| sum[j] += v);
                     sum[theta] += systems.varying[3 * group + x];
                     sum[one] += systems.fixed[3 * group + x];
                 }
                 // What acts between two groups above the cut cancels, but for rounding.
-                (0..forces).filter(|&j| !cut.contains(&joint_of[j])).for_each(|j| sum[j] = 0.0);
+                (0..systems.forces).filter(|&j| !cut.contains(&self.joint_of[j])).for_each(|j| sum[j] = 0.0);
                 balances.push((sum.into_iter().enumerate().collect(), cut.clone()));
             }
         }
-        for (index, (form, joints)) in balances.iter_mut().enumerate() {
-            form.retain(|&(_, v)| v != 0.0);
+        balances.iter_mut().for_each(|(form, _)| form.retain(|&(_, v)| v != 0.0));
+        balances
+    }
+
+    /// Equilibrium times 1, γ_i and q̇; `None` where equations are more than `most`.
+    fn equilibrium(&mut self, most: usize) -> Option<()> {
+        let (pairs, rows) = (self.systems.pairs.len(), self.systems.equilibrium.len());
+        for (index, (form, joints)) in self.balances().iter().enumerate() {
             let times = |first: usize| form.iter().map(move |&(l, v)| ((first, l), v));
-            if index < 3 * groups {
-                program.equations.push(columns.row(times(0)));
+            if index < rows {
+                self.program.equations.push(self.columns.row(times(0)));
             }
-            for i in (0..pairs).filter(|&i| joints.iter().all(|&k| kept.joints[joint_of_pair(i)][k])) {
-                program.equations.push(columns.row(times(gamma(i))));
+            for i in 0..pairs {
+                let near = &self.kept.joints[self.joint_of_pair(i)];
+                if joints.iter().all(|&k| near[k]) {
+                    self.program.equations.push(self.columns.row(times(self.gamma(i))));
+                }
             }
-            for q in (0..3 * groups).filter(|&q| joints.iter().all(|&k| kept.groups[q / 3][k])) {
-                program.equations.push(columns.row(times(velocity(q))));
+            for q in 0..rows {
+                if joints.iter().all(|&k| self.kept.groups[q / 3][k]) {
+                    self.program.equations.push(self.columns.row(times(self.velocity(q))));
+                }
             }
-            if program.equations.len() > most {
+            if self.program.equations.len() > most {
                 return None;
             }
         }
-        for i in 0..pairs {
-            program.rows.push(columns.row([((gamma(i), one), 1.0)]));
-            program.rows.push(columns.row([((gamma(i), theta), 1.0)]));
-            program.rows.push(columns.row([((gamma(i), one), t), ((gamma(i), theta), -1.0)]));
-            program.kinds.extend([Kind::Gamma(i), Kind::GammaTheta(i), Kind::GammaRoom(i)]);
+        Some(())
+    }
+
+    /// γ_i, γ_i θ, γ_i (t − θ) and θ are not negative.
+    fn signs(&mut self) {
+        let (theta, one, t) = (self.theta(), self.one(), self.program.most);
+        for i in 0..self.systems.pairs.len() {
+            let gamma = self.gamma(i);
+            let program = &mut self.program;
+            program.rows.push(self.columns.row([((gamma, one), 1.0)]));
+            program.rows.push(self.columns.row([((gamma, theta), 1.0)]));
+            program.rows.push(self.columns.row([((gamma, one), t), ((gamma, theta), -1.0)]));
+            program.kinds.extend([Kind::Gamma(i), Kind::GammaTheta(i), Kind::GammaUpperSlack(i)]);
         }
-        program.rows.push(columns.row([((0, theta), 1.0)]));
-        program.kinds.push(Kind::Theta);
-        for (j, pair) in systems.pairs.iter().enumerate() {
+        self.program.rows.push(self.columns.row([((0, theta), 1.0)]));
+        self.program.kinds.push(Kind::Theta);
+    }
+
+    /// s_j and γ_i s_j are not negative, γ_i s_i is zero.
+    fn slacks(&mut self) {
+        let one = self.one();
+        for (j, pair) in self.systems.pairs.iter().enumerate() {
             let slack = |first: usize| {
                 let forces = pair.normal.iter().map(move |&(l, v)| ((first, l), -v));
                 forces.chain((pair.bound != 0.0).then_some(((first, one), pair.bound)))
             };
-            program.rows.push(columns.row(slack(0)));
-            program.kinds.push(Kind::Slack(j));
-            for i in (0..pairs).filter(|&i| kept.joints[joint_of_pair(i)][joint_of_pair(j)]) {
-                let row = columns.row(slack(gamma(i)));
+            self.program.rows.push(self.columns.row(slack(0)));
+            self.program.kinds.push(Kind::Slack(j));
+            for i in 0..self.systems.pairs.len() {
+                if !self.kept.joints[self.joint_of_pair(i)][self.joint_of_pair(j)] {
+                    continue;
+                }
+                let row = self.columns.row(slack(self.gamma(i)));
                 if i == j {
-                    program.idle.push((program.equations.len(), i));
-                    program.equations.push(row);
+                    self.program.idle.push((self.program.equations.len(), i));
+                    self.program.equations.push(row);
                 } else {
-                    program.rows.push(row);
-                    program.kinds.push(Kind::Product(i, j));
+                    self.program.rows.push(row);
+                    self.program.kinds.push(Kind::Product(i, j));
                 }
             }
         }
-        // The flow rule of each force variable, Eᵀ q̇ + Dᵀ γ = 0.
-        let mut flow: Vec<(Form, usize)> = (0..forces).map(|j| (Form::new(), joint_of[j])).collect();
+    }
+
+    /// The flow rule of each force variable, Eᵀ q̇ + Dᵀ γ = 0, and p·q̇ = 1, each times forces, θ and 1; `None` where
+    /// equations and rows are more than `most`.
+    fn flow_rule(&mut self, most: usize) -> Option<()> {
+        let systems = self.systems;
+        let mut flow: Vec<(Form, usize)> = self.joint_of.iter().map(|&joint| (Form::new(), joint)).collect();
         for (q, entries) in systems.equilibrium.iter().enumerate() {
-            entries.iter().for_each(|&(j, v)| flow[j].0.push((velocity(q), v)));
+            entries.iter().for_each(|&(j, v)| flow[j].0.push((self.velocity(q), v)));
         }
         for (i, pair) in systems.pairs.iter().enumerate() {
-            pair.flow.iter().for_each(|&(j, v)| flow[j].0.push((gamma(i), v)));
+            pair.flow.iter().for_each(|&(j, v)| flow[j].0.push((self.gamma(i), v)));
         }
-        for l in 0..forces + 2 {
+        let loaded: Vec<usize> = (0..systems.varying.len()).filter(|&q| systems.varying[q] != 0.0).collect();
+        for l in 0..systems.forces + 2 {
             // θ and 1 belong to no joint.
-            let at = joint_of.get(l);
+            let at = self.joint_of.get(l).copied();
             for (form, k) in &flow {
-                if at.is_none_or(|&at| kept.joints[*k][at]) {
-                    program.equations.push(columns.row(form.iter().map(|&(first, v)| ((first, l), v))));
+                if at.is_none_or(|at| self.kept.joints[*k][at]) {
+                    self.program.equations.push(self.columns.row(form.iter().map(|&(first, v)| ((first, l), v))));
                 }
             }
-            let driven: Vec<usize> = (0..3 * groups).filter(|&q| systems.varying[q] != 0.0).collect();
-            if at.is_none_or(|&at| driven.iter().all(|&q| kept.groups[q / 3][at])) {
-                let power = driven.iter().map(|&q| ((velocity(q), l), systems.varying[q]));
-                program.equations.push(columns.row(power.chain([((0, l), -1.0)])));
+            if at.is_none_or(|at| loaded.iter().all(|&q| self.kept.groups[q / 3][at])) {
+                let power: Vec<_> = loaded.iter().map(|&q| ((self.velocity(q), l), systems.varying[q])).collect();
+                self.program.equations.push(self.columns.row(power.into_iter().chain([((0, l), -1.0)])));
             }
-            if program.equations.len() + program.rows.len() > most {
+            if self.program.equations.len() + self.program.rows.len() > most {
                 return None;
             }
         }
+        Some(())
+    }
+}
+
+impl Program {
+    /// The rows for θ ≤ t with products up to `reach`; `None` where they are more than `most`.
+    fn new(systems: &Systems, problem: &LimitProblem, t: f64, reach: usize, most: usize) -> Option<Self> {
+        let mut joint_of = vec![0; systems.forces];
+        for (k, &(first, shear)) in systems.variables.joints.iter().enumerate() {
+            (first..first + if shear { 3 } else { 2 }).for_each(|j| joint_of[j] = k);
+        }
+        let (theta, one) = (systems.forces, systems.forces + 1);
+        let columns = Columns { of: HashMap::from([((0, theta), 0)]), one: (0, one) };
+        let (equations, rows, kinds, idle) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let program = Program { columns: 0, equations, rows, kinds, idle, most: t };
+        let mut builder = Builder { systems, kept: Kept::new(problem, reach), columns, program, joint_of };
+        builder.equilibrium(most)?;
+        builder.signs();
+        builder.slacks();
+        builder.flow_rule(most)?;
+        let Builder { columns, mut program, .. } = builder;
         program.columns = columns.of.len();
         Some(program)
     }
@@ -434,8 +500,8 @@ pub fn lower_bound(
     widest_only: bool,
 ) -> (Option<Bound>, u64) {
     // With room above the known state the program has an interior, which its method needs.
-    let room = t * (1.0 + ROOM);
-    let fits = |reach: usize| Program::new(systems, problem, room, reach, most);
+    let above = t * (1.0 + MARGIN_ABOVE);
+    let fits = |reach: usize| Program::new(systems, problem, above, reach, most);
     let least = if widest_only { NEAREST } else { 0 };
     let Some(program) = (least..=NEAREST).rev().find_map(fits) else { return (None, 0) };
     let mut work = 0;

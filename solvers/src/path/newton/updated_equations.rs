@@ -9,7 +9,7 @@
 //! B: rows of the modes that were factorised, D: what the rows i of changed points are more than
 //! those of B. x_0 and the columns of Y are kept without the forces that [`condensed`](crate::linear::condensed)
 //! takes out, and x_0 follows every change of f by Y: a pivot solves for two columns at most, all else
-//! are products. Rows that have not changed hold as exactly as B is solved; those that have are checked.
+//! are products. CsrMatrix that have not changed hold as exactly as B is solved; those that have are checked.
 //!
 //! The matrix is the shifted one of [`super::system`]: strictly monotone where flow is associated, so
 //! that no combination of modes is without a direction.
@@ -18,15 +18,15 @@ use super::equations::Equations;
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::condensed::Condensed;
+use crate::linear::condensed::pair;
 use crate::linear::csr::CsrMatrix;
+use crate::linear::updated::UpdatedFactorisation;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 use voussoir_core::linear::Analysis;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
-
 /// Relative residual above which it is.
 const RESIDUAL: f64 = 1e-9;
 
@@ -36,22 +36,20 @@ type Row = Vec<(usize, f64)>;
 /// A contact point whose rows are no longer those of B.
 struct Change {
     contact: usize,
-    /// Columns of Y of its rows.
-    columns: [Vec<f64>; 2],
     /// Its present rows and those of B.
     rows: [[Row; 2]; 2],
 }
 
 /// A factorisation with what has changed since.
 struct Base {
-    factors: BorderedSystem,
-    /// x_0.
+    updated: UpdatedFactorisation<BorderedSystem>,
+    /// x_0: right-hand sides, kept unknowns.
     from: Vec<f64>,
     changes: Vec<Change>,
 }
 
 /// Equations of all points and bodies, in units, with a right-hand side and a factorisation.
-pub(super) struct Frame {
+pub(super) struct UpdatedEquations {
     points: usize,
     equations: Rc<Equations>,
     control: Vec<f64>,
@@ -65,25 +63,12 @@ fn norm(v: &[f64]) -> f64 {
     v.iter().fold(0.0, |a: f64, b| if b.is_nan() { f64::NAN } else { a.max(b.abs()) })
 }
 
-/// A contact point's row times a solution of which the condensed unknowns and the right-hand sides of
-/// the points are given.
-fn along(row: &Row, contact: usize, factors: &Condensed, y: &[f64], right: &impl Fn(usize) -> [f64; 2]) -> f64 {
-    let own = factors.force(contact, right(contact), y);
-    let forces = 2 * factors.contacts();
-    let value = |j: usize| match j {
-        j if j / 2 == contact => own[j % 2],
-        j if j < forces => factors.force(j / 2, right(j / 2), y)[j % 2],
-        j => factors.other(j, y),
-    };
-    row.iter().map(|&(j, v)| v * value(j)).sum()
-}
-
-impl Frame {
+impl UpdatedEquations {
     /// Equations with a control, all points stuck, nothing on the right-hand side.
-    pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> Frame {
+    pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> UpdatedEquations {
         let right = vec![0.0; control.len()];
         let modes = vec![ContactMode::Stick; points];
-        Frame { points, equations, control, modes, right, base: None, analysis: Analysis::default() }
+        UpdatedEquations { points, equations, control, modes, right, base: None, analysis: Analysis::default() }
     }
 
     /// Right-hand sides of the rows that belong to no contact point.
@@ -102,15 +87,14 @@ impl Frame {
             if base.changes.len() >= FRESH {
                 return;
             }
-            let Some(columns) = base.factors.units(contact) else { return };
-            let rows = self.rows_of(system, contact, old);
-            base.changes.push(Change { contact, columns, rows: [rows.clone(), rows] });
-        }
-        for change in base.changes.iter_mut().filter(|change| change.contact == contact) {
-            for (k, column) in change.columns.iter().enumerate() {
-                let by = right[k] - before[k];
-                base.from.iter_mut().zip(column).for_each(|(x, y)| *x += by * y);
+            if base.updated.respond(contact, 0).is_none() {
+                return;
             }
+            let rows = self.rows_of(system, contact, old);
+            base.changes.push(Change { contact, rows: [rows.clone(), rows] });
+        }
+        base.updated.add(contact, [right[0] - before[0], right[1] - before[1]], &mut base.from);
+        for change in base.changes.iter_mut().filter(|change| change.contact == contact) {
             change.rows[0] = self.rows_of(system, contact, mode);
         }
         self.base = Some(base);
@@ -153,35 +137,33 @@ impl Frame {
         let step = factors.apply(&factors.left(&self.right, &x).0)?;
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let from = factors.equations().kept_of(&x);
-        self.base = Some(Base { factors, from, changes: Vec::new() });
+        self.base = Some(Base { updated: UpdatedFactorisation::new(factors), from, changes: Vec::new() });
         Some((x, 1))
     }
 
     /// By the changed rows; `None` where there is no factorisation, or that leaves residuals.
     fn updated(&self) -> Option<Vec<f64>> {
-        let Base { factors, from, changes } = self.base.as_ref()?;
-        let equations = factors.equations();
+        let Base { updated, from, changes } = self.base.as_ref()?;
+        let equations = updated.factors.equations();
         let n = 2 * changes.len();
         let present = |c: usize| [self.right[2 * c], self.right[2 * c + 1]];
         let row = |i: usize, which: usize, y: &[f64], right: &dyn Fn(usize) -> [f64; 2]| {
-            along(&changes[i / 2].rows[which][i % 2], changes[i / 2].contact, equations, y, &right)
+            let (contact, row) = (changes[i / 2].contact, &changes[i / 2].rows[which][i % 2]);
+            let own = (contact, equations.force(contact, right(contact), y));
+            updated.row_dot(row.iter().copied(), own, &right, y)
         };
         let difference =
             |i: usize, y: &[f64], right: &dyn Fn(usize) -> [f64; 2]| row(i, 0, y, right) - row(i, 1, y, right);
+        let columns: Vec<_> = changes.iter().map(|change| updated.columns(change.contact)).collect::<Option<_>>()?;
         let small = DMatrix::from_fn(n, n, |i, j| {
-            let change = &changes[j / 2];
-            let unit = |c: usize| match c == change.contact {
-                true => [f64::from(u8::from(j % 2 == 0)), f64::from(u8::from(j % 2 == 1))],
-                false => [0.0; 2],
-            };
-            f64::from(u8::from(i == j)) + difference(i, &change.columns[j % 2], &unit)
+            let unit = |c: usize| if c == changes[j / 2].contact { pair(j % 2, 1.0) } else { [0.0; 2] };
+            f64::from(u8::from(i == j)) + difference(i, &columns[j / 2][j % 2].y, &unit)
         });
         let by = small.lu().solve(&DVector::from_fn(n, |i, _| difference(i, from, &present)))?;
         let (mut y, mut right) = (from.clone(), self.right.clone());
-        for (i, w) in by.iter().enumerate() {
-            let change = &changes[i / 2];
-            y.iter_mut().zip(&change.columns[i % 2]).for_each(|(y, column)| *y -= w * column);
-            right[2 * change.contact + i % 2] -= w;
+        for (change, w) in changes.iter().zip(by.as_slice().chunks_exact(2)) {
+            (0..2).for_each(|k| right[2 * change.contact + k] -= w[k]);
+            updated.add(change.contact, [-w[0], -w[1]], &mut y);
         }
         let changed = |c: usize| [right[2 * c], right[2 * c + 1]];
         let bound = RESIDUAL * norm(&self.right);
@@ -192,7 +174,7 @@ impl Frame {
         ((0..n).all(holds) && norm(&y).is_finite()).then(|| equations.expand(&right, &y))
     }
 
-    /// Tangent of a contact point's gap in a solution, in units.
+    /// Rate of a contact point's gap in a solution, in units.
     pub fn gap(&self, contact: usize, x: &[f64]) -> [f64; 2] {
         [0, 1].map(|k| self.equations.gaps.row_dot(2 * contact + k, x))
     }

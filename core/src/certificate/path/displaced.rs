@@ -5,11 +5,10 @@
 //! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
 //! axes. A contact's n and t turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are those of x⁺ − x⁻ in them, and its force
 //! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
-//! ([`Sliding`](super::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
+//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
 
-use super::problem::{Attachment, Contact, PathProblem};
-use super::state::PathState;
 use crate::model::geometry::{Vec2, cross, turned};
+use crate::path::{Attachment, Contact, PathProblem, PathState};
 use nalgebra::DVector;
 
 /// A state with the deformations of its bodies.
@@ -17,6 +16,8 @@ pub struct Displaced<'a> {
     problem: &'a PathProblem,
     state: &'a PathState,
     finite: bool,
+    /// Forces on every body's points in its axes \[N\].
+    forces: Vec<Vec<Vec2>>,
     /// Deformation of every body's points in its axes \[m\].
     deformation: Vec<Vec<Vec2>>,
 }
@@ -41,7 +42,8 @@ impl<'a> Displaced<'a> {
                     of((&**flexibility * flat).as_slice())
                 }
             });
-        Displaced { problem, state, finite, deformation: deformation.collect() }
+        let deformation = deformation.collect();
+        Displaced { problem, state, finite, forces, deformation }
     }
 
     /// Displacement of a point of a body \[m\].
@@ -75,6 +77,19 @@ impl<'a> Displaced<'a> {
             ]
         };
         self.problem.contacts.iter().zip(&self.state.force).map(gap).collect()
+    }
+
+    /// Elastic energy of blocks and joints \[J\] (Clapeyron); `None` where a block has yielded or a joint has a law of
+    /// tractions from gaps, whose energy is no function of forces.
+    pub fn stored(&self) -> Option<f64> {
+        let contacts = &self.problem.contacts;
+        if self.state.yielded.iter().any(Option::is_some) || contacts.iter().any(|c| c.law.response().is_some()) {
+            return None;
+        }
+        let points = self.forces.iter().flatten().zip(self.deformation.iter().flatten());
+        let of_joint = |(c, r): (&Contact, &[f64; 2])| c.compliance[0] * r[0] * r[0] + c.compliance[1] * r[1] * r[1];
+        let joints: f64 = contacts.iter().zip(&self.state.force).map(of_joint).sum();
+        Some(0.5 * (points.map(|(f, u)| f.dot(u)).sum::<f64>() + joints))
     }
 
     /// What loads and contact forces leave on each body, about its pole \[N, N m\].

@@ -1,0 +1,225 @@
+//! Checks every state of a path and keeps the worst of each residual.
+
+use super::displaced::Displaced;
+use super::response::law_residual;
+use super::structure::path_structure;
+use crate::law::{Facet, FacetMode};
+use crate::model::{Assembly, Stage};
+use crate::path::{PathObserver, PathProblem, PathState, PointLaw};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Share of the greatest forces of a path below which forces are not compared with themselves: a structure
+/// that has come apart carries rounding.
+const NOTHING: f64 = 1e-6;
+
+/// Sees the states of a path and keeps the worst of each residual.
+#[derive(Debug, Default)]
+pub struct PathChecker {
+    /// Name → worst value.
+    pub worst: BTreeMap<&'static str, f64>,
+    /// Number of states seen.
+    pub states: u64,
+    /// (displacement \[m\], λ) of the states of the last load step.
+    pub curve: Vec<[f64; 2]>,
+    /// Whether equilibrium holds in displaced positions.
+    pub finite: bool,
+    structure: Option<Arc<PathProblem>>,
+    last: Option<(usize, f64)>,
+    memory: Option<Vec<f64>>,
+    greatest: f64,
+}
+
+/// Keeps the worse of two residuals; a NaN stays.
+fn worsen(worst: &mut f64, value: f64) {
+    if value.is_nan() || value > *worst {
+        *worst = value;
+    }
+}
+
+/// Which checks the facets of a law ask for.
+#[derive(Clone, Copy)]
+struct Asks {
+    penetration: bool,
+    complementarity: bool,
+}
+
+impl Asks {
+    fn of(facets: &[Facet]) -> Asks {
+        let has = |mode: FacetMode| facets.iter().any(|f| f.mode == mode);
+        let dry = facets.iter().any(|f| f.mode == FacetMode::Opening && f.bound == 0.0);
+        let dilates = facets.iter().any(|f| f.mode == FacetMode::Sliding && f.flow[0] != 0.0);
+        let penetration = dry && !has(FacetMode::Crushing);
+        Asks { penetration, complementarity: penetration && !dilates }
+    }
+}
+
+/// What residuals of a state are compared with.
+struct Scale {
+    /// Sum of all forces \[N\].
+    force: f64,
+    /// Greatest gap or displacement \[m\].
+    deformation: f64,
+    /// Rounding of a gap \[m\].
+    rounding: f64,
+}
+
+impl PathChecker {
+    /// Checks states over small or `finite` displacements against the problem that they come with: the self-check of a
+    /// solver, no certificate.
+    pub fn new(finite: bool) -> Self {
+        PathChecker { finite, ..PathChecker::default() }
+    }
+
+    /// Checks states against the structure that the assembly and the stages describe, whatever problem they come with.
+    pub fn certifying(assembly: &Assembly, stages: &[Stage], finite: bool) -> Result<Self, String> {
+        Ok(PathChecker {
+            finite,
+            structure: Some(Arc::new(path_structure(assembly, stages)?)),
+            ..PathChecker::default()
+        })
+    }
+
+    /// The structure that states are checked against, where it comes from an assembly.
+    pub fn structure(&self) -> Option<Arc<PathProblem>> {
+        self.structure.clone()
+    }
+
+    fn note(&mut self, name: &'static str, value: f64) {
+        worsen(self.worst.entry(name).or_insert(0.0), value);
+    }
+
+    /// Checks one state.
+    fn check(&mut self, problem: &PathProblem, state: &PathState) {
+        if state.force.len() != problem.contacts.len() || state.motion.len() != problem.bodies.len() {
+            return self.note("path_equilibrium", f64::NAN);
+        }
+        let loads: f64 = problem
+            .load_steps
+            .iter()
+            .zip(problem.applied(state.load_step, state.factor))
+            .map(|(step, factor)| {
+                let sizes = problem.wrenches(&step.loading).into_iter().map(|[x, y, _]| (factor * x.hypot(y)).abs());
+                sizes.sum::<f64>()
+            })
+            .sum();
+        let forces: f64 = state.force.iter().map(|f| (f[0] * f[0] + f[1] * f[1]).sqrt()).sum();
+        // Where everything has come apart the forces are rounding of what they were.
+        self.greatest = self.greatest.max(loads + forces);
+        let gaps = state.gap.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
+        let moves = state.motion.iter().fold(gaps, |a: f64, u| a.max(u[0].abs()).max(u[1].abs()));
+        let scale = Scale {
+            force: (loads + forces).max(NOTHING * self.greatest).max(1e-300),
+            deformation: moves.max(1e-300),
+            // Gaps of finite displacements are differences of positions.
+            rounding: if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 },
+        };
+        let displaced = Displaced::new(problem, state, self.finite);
+        self.check_bodies(problem, &displaced, state, &scale);
+        self.check_blocks(problem, state);
+        self.check_points(problem, state, &scale);
+        // The history is that of the states seen, where all of them were.
+        let before = self.memory.as_deref().unwrap_or(&state.memory);
+        let least = NOTHING * self.greatest;
+        if let Some((worst, after)) = law_residual(problem, state, before, scale.deformation, self.finite, least) {
+            self.note("path_law", worst);
+            self.memory = Some(after);
+        }
+        let stored = displaced.stored().unwrap_or(state.stored);
+        let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());
+        self.note("path_energy", (state.work - stored - state.dissipated).abs() / energy.max(1e-300));
+        let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
+        self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
+        self.last = Some((state.load_step, state.dissipated));
+    }
+
+    /// Checks that bodies balance and that gaps are those of their motions.
+    fn check_bodies(&mut self, problem: &PathProblem, displaced: &Displaced, state: &PathState, scale: &Scale) {
+        let mut unbalanced = 0.0;
+        for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
+            worsen(&mut unbalanced, w[0].hypot(w[1]));
+            worsen(&mut unbalanced, w[2].abs() / problem.length);
+        }
+        self.note("path_equilibrium", unbalanced / scale.force);
+        let mut apart = 0.0;
+        for (g, own) in displaced.gaps().iter().zip(&state.gap) {
+            (0..2).for_each(|i| worsen(&mut apart, (g[i] - own[i]).abs() - scale.rounding));
+        }
+        self.note("path_kinematics", apart / scale.deformation);
+    }
+
+    /// Checks contact points with facets, and bonded ones.
+    fn check_points(&mut self, problem: &PathProblem, state: &PathState, scale: &Scale) {
+        let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs())).max(1e-300);
+        let [mut bonded, mut strength, mut penetration, mut complementarity] = [None; 4];
+        let note = |worst: &mut Option<f64>, value: f64| worsen(worst.get_or_insert(0.0), value);
+        for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
+            let facets = match &contact.law {
+                PointLaw::Bonded => {
+                    (0..2).for_each(|i| note(&mut bonded, gap[i].abs() - scale.rounding));
+                    continue;
+                }
+                PointLaw::Response(_) => continue,
+                PointLaw::Facets(facets) => facets,
+            };
+            let asks = Asks::of(facets);
+            for facet in facets.iter() {
+                let excess = facet.normal[0] * force[0] + facet.normal[1] * force[1] - facet.bound * contact.area;
+                note(&mut strength, excess);
+            }
+            if asks.penetration {
+                note(&mut penetration, -gap[0] - scale.rounding);
+            }
+            if asks.complementarity {
+                let open = ((gap[0] - scale.rounding) / scale.deformation).max(0.0);
+                note(&mut complementarity, (force[0] / largest).max(0.0).min(open));
+            }
+        }
+        for (name, worst, scale) in [
+            ("path_kinematics", bonded, scale.deformation),
+            ("path_strength", strength, largest),
+            ("path_penetration", penetration, scale.deformation),
+            ("path_complementarity", complementarity, 1.0),
+        ] {
+            if let Some(worst) = worst {
+                self.note(name, worst / scale);
+            }
+        }
+    }
+
+    /// Checks the blocks whose material yields.
+    fn check_blocks(&mut self, problem: &PathProblem, state: &PathState) {
+        if !problem.yields() {
+            return;
+        }
+        let forces = problem.forces_on_points(state, self.finite);
+        for (index, (body, forces)) in problem.bodies.iter().zip(&forces).enumerate() {
+            let Some(inelastic) = &body.inelastic else { continue };
+            let flat: Vec<f64> = forces.iter().flat_map(|f| [f.x, f.y]).collect();
+            let size = forces.iter().map(|f| f.norm()).sum::<f64>();
+            if size == 0.0 && state.inelastic(index).is_none() {
+                continue;
+            }
+            let found = match state.inelastic(index) {
+                Some(own) => inelastic.check(&own.displacement, &own.state.history, &flat),
+                None => inelastic.check(&inelastic.elastic_displacement(&flat), &inelastic.initial().history, &flat),
+            };
+            let [unbalanced, drift] = found.unwrap_or([f64::NAN; 2]);
+            self.note("path_inner_equilibrium", unbalanced / size.max(1e-300));
+            self.note("path_yield", drift);
+        }
+    }
+}
+
+impl PathObserver for PathChecker {
+    fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.states += 1;
+        let structure = self.structure.clone();
+        let problem = structure.as_deref().unwrap_or(problem);
+        self.check(problem, state);
+        if state.load_step + 1 == problem.load_steps.len() {
+            self.curve.push([state.displacement, state.factor]);
+        }
+        true
+    }
+}

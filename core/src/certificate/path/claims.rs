@@ -1,0 +1,97 @@
+//! What is claimed at the end of a path: mechanisms and rays.
+
+use crate::path::{Loading, PathProblem, PointLaw};
+
+/// `path_power`: |p·q̇ − 1|, p the loading and q̇ the velocities of all bodies about their poles.
+pub fn power_residual(problem: &PathProblem, loading: &Loading, motion: &[[f64; 3]]) -> f64 {
+    let load = problem.wrenches(loading);
+    let power: f64 = load.iter().flatten().zip(motion.iter().flatten()).map(|(p, v)| p * v).sum();
+    (power - 1.0).abs()
+}
+
+/// `path_ray`: whether rates of contact forces carry any amount of a loading: what they leave of it
+/// on a free body (moments divided by the scene's length), or their greatest excess over a facet of
+/// the recession cone, relative to the sum of all of them; NaN where there are none.
+pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) -> f64 {
+    let mut sum = problem.wrenches(loading);
+    let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
+    let mut worst: f64 = 0.0;
+    for (contact, r) in problem.contacts.iter().zip(ray) {
+        for plus in [false, true] {
+            let rows = problem.kinematics(contact, plus);
+            let body = if plus { contact.plus.body } else { contact.minus.body };
+            (0..3).for_each(|i| sum[body][i] += rows[0][i] * r[0] + rows[1][i] * r[1]);
+        }
+        for facet in contact.law.facets().unwrap_or_default() {
+            worst = worst.max(facet.normal[0] * r[0] + facet.normal[1] * r[1]);
+        }
+    }
+    for (w, _) in sum.iter().zip(&problem.bodies).filter(|(_, body)| !body.held) {
+        worst = worst.max(w[0].hypot(w[1])).max(w[2].abs() / problem.length);
+    }
+    if size.is_finite() { worst / size } else { f64::NAN }
+}
+
+/// Checks a mechanism against a field: how far the jumps leave the flow of the facets that yield,
+/// relative to the greatest jump. Every contact point with slack in all facets must not move. Laws of
+/// tractions from gaps have no flow: see [`leaves_forces`](super::leaves_forces).
+pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]]) -> f64 {
+    let largest = force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
+    let jumps: Vec<[f64; 2]> = problem
+        .contacts
+        .iter()
+        .map(|contact| {
+            let mut jump = [0.0; 2];
+            for plus in [false, true] {
+                let rows = problem.kinematics(contact, plus);
+                let body = if plus { contact.plus.body } else { contact.minus.body };
+                (0..2).for_each(|i| jump[i] += (0..3).map(|k| rows[i][k] * motion[body][k]).sum::<f64>());
+            }
+            jump
+        })
+        .collect();
+    let size = jumps.iter().map(|j| j[0].hypot(j[1])).fold(1e-300, f64::max);
+    let mut worst: f64 = 0.0;
+    for ((contact, force), jump) in problem.contacts.iter().zip(force).zip(&jumps) {
+        let facets = match &contact.law {
+            PointLaw::Bonded => {
+                worst = worst.max(jump[0].hypot(jump[1]) / size);
+                continue;
+            }
+            PointLaw::Response(_) => continue,
+            PointLaw::Facets(facets) => facets,
+        };
+        let yielding: Vec<[f64; 2]> = facets
+            .iter()
+            .filter(|f| {
+                let slack = f.bound * contact.area - f.normal[0] * force[0] - f.normal[1] * force[1];
+                slack <= YIELDING * largest
+            })
+            .map(|f| f.flow.map(|d| -d))
+            .collect();
+        worst = worst.max(outside(*jump, &yielding) / size);
+    }
+    worst
+}
+
+/// Slack, relative to the greatest contact force, up to which a facet counts as yielding.
+const YIELDING: f64 = 1e-9;
+
+/// Distance of v from the cone of some directions in the plane.
+fn outside(v: [f64; 2], cone: &[[f64; 2]]) -> f64 {
+    let mut least = v[0].hypot(v[1]);
+    for (k, a) in cone.iter().enumerate() {
+        let along = ((v[0] * a[0] + v[1] * a[1]) / (a[0] * a[0] + a[1] * a[1])).max(0.0);
+        least = least.min((v[0] - along * a[0]).hypot(v[1] - along * a[1]));
+        for b in &cone[k + 1..] {
+            let determinant = a[0] * b[1] - a[1] * b[0];
+            if determinant != 0.0 {
+                let shares = [(v[0] * b[1] - v[1] * b[0]) / determinant, (a[0] * v[1] - a[1] * v[0]) / determinant];
+                if shares.iter().all(|s| *s >= 0.0) {
+                    return 0.0;
+                }
+            }
+        }
+    }
+    least
+}

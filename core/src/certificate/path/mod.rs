@@ -1,0 +1,41 @@
+//! Certificates of paths: every state that an observer sees is checked against the [structure](path_structure) that the assembly and
+//! the stages describe, not against the problem that the solver was given.
+//!
+//! - `path_equilibrium`: resultants of loads and contact forces on each free body, relative to the
+//!   sum of all forces (moments divided by the scene's length), in displaced positions where
+//!   displacements are finite ([`Displaced`]);
+//! - `path_kinematics`: gaps recomputed from motions, forces and loads, relative to the greatest gap or
+//!   displacement; where displacements are finite the rounding of positions is granted;
+//! - `path_strength`: greatest excess of a facet over its bound, relative to the greatest contact force;
+//! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
+//! - `path_complementarity`: greatest force × gap of open contact points, relative to both;
+//! - `path_law`: difference between the force of a contact point and what its law of tractions from
+//!   gaps gives for the recorded gap and the history of gaps, relative to the greatest contact force.
+//!   Such a law has its own compliance: strength, penetration and complementarity say nothing there;
+//! - `path_dissipation`: energy that friction would have created, relative to the work;
+//! - `path_inner_equilibrium`: of blocks whose material yields, forces on the nodes that stresses leave,
+//!   relative to the sum of the forces on the block; stresses are those that the law itself gives at the
+//!   recorded displacements and history;
+//! - `path_yield`: how much the law would still change that history, relative to the greatest strain: 0
+//!   where no stress lies beyond the yield surface (a block recorded as elastic yields nowhere);
+//! - `path_energy`: |work − stored − dissipated|, relative to the work (a step's error: no bound);
+//!
+//! and of what is claimed at a path's end:
+//!
+//! - `path_flow`: how far a mechanism's jumps leave the flow of the facets that yield;
+//! - `path_power`: |p·q̇ − 1| of a mechanism;
+//! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
+
+mod checker;
+mod claims;
+mod displaced;
+mod response;
+mod structure;
+mod tolerance;
+
+pub use self::checker::PathChecker;
+pub use self::claims::{flow_residual, power_residual, ray_residual};
+pub use self::displaced::Displaced;
+pub use self::response::leaves_forces;
+pub use self::structure::path_structure;
+pub use self::tolerance::{TOLERANCES, Tolerance, tolerance};

@@ -1,0 +1,97 @@
+//! Laws of tractions from gaps, recomputed from recorded states: the forces they give, and motions that
+//! leave those alone.
+
+use crate::law::TractionPoint;
+use crate::path::{PathProblem, PathState};
+
+/// Contact points with their answers, and the states of all laws after them.
+type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
+
+/// One update of every contact point with a law of tractions from gaps, from `before`: contact
+/// point, answer and the states after it. `None` where `before` has the wrong length or an update fails.
+fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) -> Option<Updated> {
+    let (mut after, mut points) = (before.to_vec(), Vec::new());
+    if before.len() != problem.memory_size() {
+        return None;
+    }
+    let mut at = 0;
+    for (contact, gap) in gaps.iter().enumerate().take(problem.contacts.len()) {
+        let Some(law) = problem.response(contact) else { continue };
+        let place = at..at + law.state_size();
+        at = place.end;
+        let point = law.respond_point(*gap, &before[place.clone()], &mut after[place]).ok()?;
+        points.push((contact, point));
+    }
+    Some((points, after))
+}
+
+/// How far forces are from what laws of tractions from gaps give, relative to the greatest contact
+/// force, and the laws' states afterwards. `None` where there is no such law. Granted is the rounding
+/// of a gap, a difference of displacements (of positions, where they are `finite`), times the
+/// law's stiffness. `least` is the least force \[N\] that anything is
+/// compared with. A `before` that does not fit is that of untouched joints.
+pub fn law_residual(
+    problem: &PathProblem,
+    state: &PathState,
+    before: &[f64],
+    deformation: f64,
+    finite: bool,
+    least: f64,
+) -> Option<(f64, Vec<f64>)> {
+    let size = problem.memory_size();
+    if !(0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
+        return None;
+    }
+    let untouched = problem.untouched();
+    let before = if before.len() == size { before } else { &untouched };
+    let Some((points, after)) = updated(problem, &state.gap, before) else { return Some((f64::INFINITY, untouched)) };
+    let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
+    let rounding = f64::EPSILON * if finite { 512.0 * problem.length } else { 64.0 * deformation };
+    let mut scale = largest.max(least);
+    let mut worst: f64 = 0.0;
+    for (contact, point) in points {
+        let area = problem.contacts[contact].area;
+        for k in 0..2 {
+            let stiffness = point.tangent[k][0].abs() + point.tangent[k][1].abs();
+            let off = (state.force[contact][k] - area * point.traction[k]).abs() - rounding * area * stiffness;
+            scale = scale.max(area * point.traction[k].abs());
+            worst = if off.is_nan() { f64::INFINITY } else { worst.max(off) };
+        }
+    }
+    Some((if worst <= 0.0 { 0.0 } else { worst / scale.max(1e-300) }, after))
+}
+
+/// How much a motion that goes on far (up to the scene's length) changes the forces of laws of
+/// tractions from gaps, relative to the greatest contact force: 0 for a mechanism.
+pub fn leaves_forces(problem: &PathProblem, state: &PathState, motion: &[[f64; 3]]) -> f64 {
+    let jump = |contact: usize| {
+        let mut jump = [0.0; 2];
+        let point = &problem.contacts[contact];
+        for plus in [false, true] {
+            let rows = problem.kinematics(point, plus);
+            let body = if plus { point.plus.body } else { point.minus.body };
+            (0..2).for_each(|i| jump[i] += (0..3).map(|k| rows[i][k] * motion[body][k]).sum::<f64>());
+        }
+        jump
+    };
+    let mut jumps: Vec<[f64; 2]> = (0..problem.contacts.len()).map(jump).collect();
+    let size = jumps.iter().map(|j| j[0].hypot(j[1])).fold(0.0, f64::max);
+    // Rounding of the motion is no movement.
+    jumps.iter_mut().flatten().filter(|j| j.abs() <= 1e-7 * size).for_each(|j| *j = 0.0);
+    let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
+    let Some((_, after)) = updated(problem, &state.gap, &state.memory) else { return 0.0 };
+    let mut worst: f64 = 0.0;
+    for distance in [1e-9, 1e-6, 1e-3, 1.0] {
+        let share = distance * problem.length / size.max(1e-300);
+        let far = |(g, j): (&[f64; 2], &[f64; 2])| [g[0] + share * j[0], g[1] + share * j[1]];
+        let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&jumps).map(far).collect();
+        let Some((points, _)) = updated(problem, &gaps, &after) else { return f64::INFINITY };
+        for (contact, point) in points {
+            for k in 0..2 {
+                let off = state.force[contact][k] - problem.contacts[contact].area * point.traction[k];
+                worst = worst.max(off.abs() / largest.max(1e-300));
+            }
+        }
+    }
+    worst
+}

@@ -1,0 +1,254 @@
+//! The structure that a path is checked against, read from the assembly and the stages alone: areas, initial
+//! gaps, laws, compliances, masses, loads and settlements.
+//!
+//! Nothing here is shared with the building of a solver's problem. Both use the elastic library (element boundaries
+//! on a joint, bodies condensed on their points) and the rule by which a contact point slides ([`Sliding`]).
+//! Order is the convention between the two: bodies by their first block, contact points joint by joint along each.
+
+use crate::elastic::{Condenser, breaks_on_joint, union_breaks};
+use crate::law::PlanarUpdate;
+use crate::limit::Counters;
+use crate::model::geometry::{Vec2, turned};
+use crate::model::{Assembly, Bond, Joint, Stage, Target};
+use crate::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding};
+use std::sync::Arc;
+
+/// Gauss–Lobatto rules on \[0, 1\] by order of the elements: places and shares, exact for degree 2 × order − 1.
+fn rule(order: usize) -> (Vec<f64>, Vec<f64>) {
+    let inner = (1.0 - 0.2f64.sqrt()) / 2.0;
+    match order {
+        1 => (vec![0.0, 1.0], vec![0.5, 0.5]),
+        2 => (vec![0.0, 0.5, 1.0], vec![1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]),
+        _ => (vec![0.0, inner, 1.0 - inner, 1.0], vec![1.0 / 12.0, 5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0]),
+    }
+}
+
+/// How many times stiffer than a block as high as the joint are springs between meshes that do not match.
+const REGULARISATION: f64 = 1e5;
+
+/// The structure and its load steps. An error says what cannot be read.
+pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProblem, String> {
+    let (bodies, body_of) = bodies(assembly, stages);
+    let (contacts, load_steps, counters) = (Vec::new(), Vec::new(), Counters::new());
+    let mut read = PathProblem { bodies, body_of, contacts, load_steps, length: assembly.size(), counters };
+    for (index, joint) in assembly.joints.iter().enumerate() {
+        if read.body_of[joint.minus] != read.body_of[joint.plus] {
+            let points = contact_points(&mut read, assembly, index, joint)?;
+            read.contacts.extend(points);
+        }
+    }
+    stiffen_shared_places(&mut read, assembly)?;
+    read.load_steps = load_steps_of(&mut read, assembly, stages);
+    condense(&mut read, assembly)?;
+    Ok(read)
+}
+
+/// Rigid blocks that are bonded have the label of the first of them; every label is a body. A support that moves has
+/// its pole where it first turns about, any other body at the centroid of its mass.
+fn bodies(assembly: &Assembly, stages: &[Stage]) -> (Vec<PathBody>, Vec<usize>) {
+    let rigid = |block: usize| !assembly.is_deformable(block);
+    let mut label: Vec<usize> = (0..assembly.bodies.len()).collect();
+    loop {
+        let mut changed = false;
+        for joint in assembly.joints.iter().filter(|j| j.bond == Bond::Bonded && rigid(j.minus) && rigid(j.plus)) {
+            let least = label[joint.minus].min(label[joint.plus]);
+            for side in [joint.minus, joint.plus] {
+                changed |= label[side] != least;
+                label[side] = least;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    let firsts: Vec<usize> = (0..label.len()).filter(|&block| label[block] == block).collect();
+    let body_of: Vec<usize> = label.iter().map(|first| firsts.partition_point(|f| f < first)).collect();
+    let bodies = firsts.iter().map(|first| {
+        let members: Vec<usize> = (0..label.len()).filter(|&block| label[block] == *first).collect();
+        let [mut mass, mut x, mut y] = [0.0; 3];
+        for inertia in members.iter().map(|&block| assembly.inertia(block)) {
+            mass += inertia.mass;
+            x += inertia.mass * inertia.centroid.x;
+            y += inertia.mass * inertia.centroid.y;
+        }
+        let settles = stages.iter().flat_map(|stage| &stage.settlements).find(|s| label[s.body] == *first);
+        let centroid = if mass > 0.0 { Vec2::new(x / mass, y / mass) } else { Vec2::zeros() };
+        let held = members.iter().any(|&block| assembly.bodies[block].fixed);
+        PathBody { members, pole: settles.map_or(centroid, |s| s.about), held, mass, ..PathBody::default() }
+    });
+    (bodies.collect(), body_of)
+}
+
+/// Where on a joint contact points are, as shares of its height, each with its share of the area: a rule on every
+/// segment between element boundaries. A rigid joint without compliance has its two ends.
+fn places(assembly: &Assembly, joint: &Joint) -> Result<Vec<(f64, f64)>, String> {
+    let compliant = assembly.law(joint).is_some_and(|law| law.stiffness().is_some());
+    let deformable = [joint.minus, joint.plus].into_iter().filter(|side| assembly.is_deformable(*side));
+    let sides = deformable.map(|side| breaks_on_joint(&assembly.bodies[side].vertices, &assembly.mesh, joint.ends));
+    let sides = sides.collect::<Result<Vec<_>, String>>()?;
+    let parts = assembly.mesh.elements[1];
+    let (breaks, order) = match sides.as_slice() {
+        [] if compliant => ((0..=parts).map(|i| i as f64 / parts as f64).collect(), assembly.mesh.order.max(2)),
+        [] => (vec![0.0, 1.0], 1),
+        [one] => (one.clone(), assembly.mesh.order),
+        [one, other, ..] => (union_breaks(one, other), assembly.mesh.order),
+    };
+    let (at, share) = rule(order);
+    let mut found: Vec<(f64, f64)> = vec![(breaks[0], 0.0)];
+    for segment in breaks.windows(2) {
+        let length = segment[1] - segment[0];
+        if let Some(last) = found.last_mut() {
+            last.1 += share[0] * length;
+        }
+        let inner = at.iter().zip(&share).take(order).skip(1);
+        found.extend(inner.map(|(at, share)| (segment[0] + at * length, share * length)));
+        found.push((segment[1], share[order] * length));
+    }
+    Ok(found)
+}
+
+/// The contact points of one joint; those on deformable blocks become points of their bodies.
+fn contact_points(
+    read: &mut PathProblem,
+    assembly: &Assembly,
+    index: usize,
+    joint: &Joint,
+) -> Result<Vec<Contact>, String> {
+    let (normal, tangent) = joint.frame();
+    let law = match assembly.law(joint).map(|law| (law.facets(), law.response())) {
+        None => PointLaw::Bonded,
+        Some((Some(facets), _)) => PointLaw::Facets(facets.into()),
+        Some((None, Some(response))) => PointLaw::Response(response),
+        Some((None, None)) => return Err("a joint law gives neither facets nor tractions from gaps".into()),
+    };
+    let stiffness = assembly.law(joint).filter(|_| law.facets().is_some()).and_then(|law| law.stiffness());
+    let mut found = Vec::new();
+    for (place, share) in places(assembly, joint)? {
+        let position = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * place;
+        let area = share * joint.height() * assembly.width;
+        let [minus, plus] = [joint.minus, joint.plus].map(|block| {
+            let points = &mut read.bodies[read.body_of[block]].points;
+            let slot = assembly.is_deformable(block).then(|| {
+                points.push(position);
+                points.len() - 1
+            });
+            Attachment { body: read.body_of[block], slot }
+        });
+        found.push(Contact {
+            joint: index,
+            position,
+            normal,
+            tangent,
+            minus,
+            plus,
+            area,
+            gap: joint.gap.at(place * joint.height()),
+            law: law.clone(),
+            compliance: stiffness.map_or([0.0; 2], |[normal, shear]| [1.0 / (normal * area), 1.0 / (shear * area)]),
+            sliding: Sliding::of(assembly, joint, place, 1e-9 * read.length),
+        });
+    }
+    Ok(found)
+}
+
+/// Springs between the bodies of joints on which two meshes do not match, or which meet another joint in a point:
+/// such points are more than there are nodes.
+fn stiffen_shared_places(read: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
+    let grid = 1e-7 * read.length;
+    let place = |c: &Contact| ((c.position.x / grid).round() as i64, (c.position.y / grid).round() as i64);
+    let mut all: Vec<_> = read.contacts.iter().map(|c| (place(c), c.joint)).collect();
+    all.sort_unstable();
+    let mut shared = vec![false; assembly.joints.len()];
+    for pair in all.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1) {
+        pair.iter().for_each(|(_, joint)| shared[*joint] = true);
+    }
+    for (index, joint) in assembly.joints.iter().enumerate() {
+        let blocks = [joint.minus, joint.plus].map(|side| (side, assembly.is_deformable(side)));
+        if let [(minus, true), (plus, true)] = blocks {
+            let on = |side: usize| breaks_on_joint(&assembly.bodies[side].vertices, &assembly.mesh, joint.ends);
+            let (one, other) = (on(minus)?, on(plus)?);
+            let both = union_breaks(&one, &other).len();
+            shared[index] |= one.len() != both || other.len() != both;
+        }
+    }
+    let stiff = |c: &Contact| c.compliance == [0.0; 2] && c.law.response().is_none();
+    for contact in read.contacts.iter_mut().filter(|c| shared[c.joint] && stiff(c)) {
+        let joint = &assembly.joints[contact.joint];
+        let moduli = [joint.minus, joint.plus].map(|side| {
+            let elasticity = assembly.material(side).elasticity().filter(|_| assembly.is_deformable(side));
+            elasticity.map_or(f64::INFINITY, |elasticity| elasticity.modulus)
+        });
+        contact.compliance = [joint.height() / (REGULARISATION * moduli[0].min(moduli[1]) * contact.area); 2];
+    }
+    Ok(())
+}
+
+/// Of each stage its change of gravity, then its loads, where there are any.
+fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Vec<LoadStep> {
+    let mut steps: Vec<LoadStep> = Vec::new();
+    let mut before = Vec2::zeros();
+    for (stage, own) in stages.iter().enumerate() {
+        let now = own.gravity.unwrap_or(before);
+        if now != before {
+            let loading = Loading { acceleration: now - before, ..Loading::default() };
+            steps.push(LoadStep { stage, gravity: true, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) });
+        }
+        before = now;
+        let mut loading = Loading { acceleration: own.accelerations.iter().sum(), ..Loading::default() };
+        for load in &own.forces {
+            let body = read.body_of[load.body];
+            let slot = assembly.is_deformable(load.body).then(|| {
+                read.bodies[body].points.push(load.point);
+                read.bodies[body].points.len() - 1
+            });
+            loading.forces.push((body, slot, load.point, load.force));
+        }
+        for moved in &own.settlements {
+            let body = read.body_of[moved.body];
+            let swing = turned(read.bodies[body].pole - moved.about) * moved.rotation;
+            let [x, y]: [f64; 2] = (moved.displacement + swing).into();
+            loading.settlements.push((body, [x, y, moved.rotation]));
+        }
+        let zero = Vec2::zeros();
+        let moves = loading.settlements.iter().any(|(_, motion)| *motion != [0.0; 3]);
+        if !moves && loading.acceleration == zero && loading.forces.iter().all(|load| load.3 == zero) {
+            continue;
+        }
+        let ends: Vec<(f64, LoadStepEnd)> = match own.target {
+            Target::Factor(factor) => vec![(0.0, LoadStepEnd::Factor(factor))],
+            Target::Collapse => {
+                let start = own.factor_min.max(0.0f64.min(own.factor_max));
+                let to_start = (start != 0.0).then_some((0.0, LoadStepEnd::Factor(start)));
+                to_start.into_iter().chain([(start, LoadStepEnd::Collapse(own.factor_max))]).collect()
+            }
+        };
+        let step = |(start, end)| LoadStep { stage, gravity: false, loading: loading.clone(), start, end };
+        steps.extend(ends.into_iter().map(step));
+    }
+    steps
+}
+
+/// What deformable blocks do under forces on their points.
+fn condense(read: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
+    let mut condenser = Condenser::new(assembly.plane, assembly.width);
+    let mut laws: Vec<(usize, Arc<PlanarUpdate>)> = Vec::new();
+    for (block, shape) in assembly.bodies.iter().enumerate().filter(|(block, _)| assembly.is_deformable(*block)) {
+        let Some(elasticity) = assembly.material(block).elasticity() else { continue };
+        let body = &mut read.bodies[read.body_of[block]];
+        let Some(yielding) = assembly.material(block).inelastic() else {
+            let condensed = condenser.condense(&shape.vertices, &elasticity, &assembly.mesh, &body.points)?;
+            body.flexibility = Some(Arc::new(condensed.flexibility));
+            continue;
+        };
+        if !laws.iter().any(|(material, _)| *material == shape.material) {
+            let law = PlanarUpdate::new(yielding, assembly.plane).map_err(|why| why.to_string())?;
+            laws.push((shape.material, Arc::new(law)));
+        }
+        let law = laws.iter().find(|(material, _)| *material == shape.material).map(|(_, law)| law.clone());
+        let law = law.ok_or("a material that yields has no stresses")?;
+        let inelastic = condenser.inelastic(&shape.vertices, &elasticity, law, &assembly.mesh, &body.points)?;
+        body.flexibility = Some(inelastic.flexibility());
+        body.inelastic = Some(Arc::new(inelastic));
+    }
+    Ok(())
+}

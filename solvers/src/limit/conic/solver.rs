@@ -1,0 +1,191 @@
+//! The solver `limit_conic` and its engine.
+
+use super::interior_point::{Pair, Word, solve};
+use super::polish::{balanced, polish};
+use super::system::{Loads, System};
+use crate::limit::engine::{Engine, Equilibrium, Greatest};
+use crate::limit::question::answer_by;
+use crate::limit::scale::{force_scale, force_unit, with_unit_power};
+use serde::{Deserialize, Serialize};
+use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
+use voussoir_core::model::Wrenches;
+use voussoir_core::plugin::{Capability, Card, PluginKind};
+
+/// Error of the polished optimality system, in scaled units, up to which an answer counts.
+const POLISHED: f64 = 1e-9;
+
+/// Limit analysis of any scene.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitConic {}
+
+#[typetag::serde(name = "limit_conic")]
+impl LimitSolver for LimitConic {
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+        answer_by(problem, question, &mut ConicEngine { problem, work: Counters::new() })
+    }
+
+    fn refuses(&self, _: &LimitProblem) -> Option<String> {
+        None
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "limit_conic",
+        summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
+        parameters: &[],
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(30),
+        sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
+        file: file!(),
+        page: include_str!("limit_conic.md"),
+        ..Card::BLANK
+    }
+}
+
+/// The conic programs of a problem.
+pub fn engine(problem: &LimitProblem) -> impl Engine + '_ {
+    ConicEngine { problem, work: Counters::new() }
+}
+
+struct ConicEngine<'a> {
+    problem: &'a LimitProblem,
+    work: Counters,
+}
+
+enum Optimum {
+    Found {
+        pair: Pair,
+        unique: bool,
+    },
+    /// An interior point in equilibrium whose polish did not settle.
+    Unsettled(Pair),
+    Unbounded,
+    Failed(String),
+}
+
+impl ConicEngine<'_> {
+    fn count(&mut self, name: &str, by: u64) {
+        *self.work.entry(name.into()).or_default() += by;
+    }
+
+    fn optimum(&mut self, system: &System) -> Optimum {
+        self.count("programs", 1);
+        match solve(system) {
+            Word::Pair(pair, iterations) => {
+                self.count("interior_point_iterations", iterations);
+                self.count("factorisations", iterations);
+                let Some(polished) = polish(system, &pair) else {
+                    return Optimum::Failed("the polish met a singular system".into());
+                };
+                self.count("factorisations", polished.factorisations);
+                self.count("newton_iterations", polished.iterations);
+                if polished.error > POLISHED {
+                    return match balanced(system, &pair) {
+                        Some(pair) => Optimum::Unsettled(pair),
+                        None => Optimum::Failed("equilibrium could not be restored".into()),
+                    };
+                }
+                Optimum::Found { pair: polished.pair, unique: polished.unique }
+            }
+            Word::Unbounded(iterations) => {
+                self.count("interior_point_iterations", iterations);
+                Optimum::Unbounded
+            }
+            Word::Other(why, iterations) => {
+                self.count("interior_point_iterations", iterations);
+                Optimum::Failed(why)
+            }
+        }
+    }
+
+    /// A finite optimum, capped or a collapse.
+    fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> Greatest {
+        if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
+            return Greatest::Capped(system.forces(&pair.x));
+        }
+        let motion = with_unit_power(varying, system.motion(&pair.equations));
+        let factor = pair.x[system.theta] * unit;
+        Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique }
+    }
+
+    /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
+    fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Equilibrium {
+        let force = force_unit(self.problem, loads);
+        let system = System::new(
+            self.problem,
+            &Loads {
+                constant: None,
+                varying: (loads, 1.0),
+                free: free.map(|f| (f, force / force_unit(self.problem, f))),
+                cap: Some(1.0),
+                strengths,
+                force,
+            },
+        );
+        match self.optimum(&system) {
+            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) if pair.x[system.theta] >= 1.0 - 1e-10 => {
+                Equilibrium::Field(system.forces(&pair.x))
+            }
+            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) => {
+                // loads·q̇ = 1 − y_cap = 1 and D = θ, so the excess is 1 − θ.
+                let excess = force * (1.0 - pair.x[system.theta]);
+                let mut motion = system.motion(&pair.equations);
+                motion.iter_mut().flatten().for_each(|v| *v /= excess);
+                Equilibrium::Motion(motion)
+            }
+            Optimum::Unbounded => Equilibrium::Failed("a bounded program was called unbounded".into()),
+            Optimum::Failed(why) => Equilibrium::Failed(why),
+        }
+    }
+}
+
+impl Engine for ConicEngine<'_> {
+    fn admissible(&mut self, loads: &Wrenches) -> Equilibrium {
+        self.share(loads, None, true)
+    }
+
+    fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium {
+        self.share(fixed, Some(varying), true)
+    }
+
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+        let force = force_scale(self.problem, fixed, varying);
+        let unit = force / force_unit(self.problem, varying);
+        let system = System::new(
+            self.problem,
+            &Loads {
+                constant: Some(fixed),
+                varying: (varying, unit),
+                free: None,
+                cap: cap.is_finite().then_some(cap / unit),
+                strengths: true,
+                force,
+            },
+        );
+        let optimum = self.optimum(&system);
+        let failed = match optimum {
+            Optimum::Found { pair, unique } => return self.finite(&system, &pair, unique, varying, unit),
+            // A pair without a polish is believed only where no ray says otherwise.
+            Optimum::Unsettled(pair) => {
+                return match self.share(varying, None, false) {
+                    Equilibrium::Field(ray) => Greatest::Unbounded(ray),
+                    _ => self.finite(&system, &pair, false, varying, unit),
+                };
+            }
+            Optimum::Unbounded => String::from("no ray confirms that the factor has no bound"),
+            Optimum::Failed(why) => why,
+        };
+        // Not bounded, or not solved: a ray settles it.
+        match self.share(varying, None, false) {
+            Equilibrium::Field(ray) => Greatest::Unbounded(ray),
+            _ => Greatest::Failed(failed),
+        }
+    }
+
+    fn counters(&self) -> Counters {
+        self.work.clone()
+    }
+}

@@ -1,0 +1,53 @@
+//! What engines of limit analysis answer: the three single optimisations behind every question.
+
+use voussoir_core::limit::{Counters, JointForce, Velocity};
+use voussoir_core::model::Wrenches;
+
+/// Whether a fixed load can be carried.
+#[derive(Debug, Clone)]
+pub enum Equilibrium {
+    /// Yes: an admissible field.
+    Field(Vec<JointForce>),
+    /// No: a motion on which the load does more work than is dissipated, in any scale.
+    Motion(Vec<Velocity>),
+    /// Not decided.
+    Failed(String),
+}
+
+/// The greatest factor of a varying load.
+#[derive(Debug, Clone)]
+pub enum Greatest {
+    /// Finite: both bounds meet.
+    Collapse {
+        /// The factor.
+        factor: f64,
+        /// Admissible field at that factor.
+        field: Vec<JointForce>,
+        /// Mechanism with varying·q̇ = 1, in the relative interior of the optimal ones.
+        motion: Vec<Velocity>,
+        /// Whether it is the only one.
+        unique: bool,
+    },
+    /// The cap was reached first: a field there.
+    Capped(Vec<JointForce>),
+    /// No bound: a field in the recession cone that balances the varying load alone.
+    Unbounded(Vec<JointForce>),
+    /// Not decided.
+    Failed(String),
+}
+
+/// Something that answers single optimisations over one problem's joints.
+pub trait Engine {
+    /// Can these loads be carried?
+    fn admissible(&mut self, loads: &Wrenches) -> Equilibrium;
+
+    /// Can `fixed + λ varying` be carried for some λ of either sign?
+    fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium;
+
+    /// The greatest λ ≤ `cap` (may be ∞) for which `fixed + λ varying` can be carried, given that
+    /// some λ can.
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest;
+
+    /// Work done so far.
+    fn counters(&self) -> Counters;
+}

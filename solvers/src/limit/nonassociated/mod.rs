@@ -1,0 +1,10 @@
+//! `limit_least`: the least load with non-associated flow, with a proved lower bound.
+#![doc = include_str!("limit_least.md")]
+
+mod bracket;
+mod conflict_search;
+mod descent;
+mod products;
+mod solver;
+
+pub use self::solver::LimitNonassociated;

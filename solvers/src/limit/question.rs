@@ -1,0 +1,128 @@
+//! The sequence of questions behind every status of limit analysis with associated flow.
+
+use super::engine::{Engine, Equilibrium, Greatest};
+use super::scale::combined;
+use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status};
+use voussoir_core::model::Wrenches;
+
+/// Answers a question by an engine: every status with its proof.
+pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn Engine) -> LimitAnswer {
+    let (start, max) = match question {
+        LimitQuestion::Admissible(factor) => (factor, factor),
+        LimitQuestion::Collapse { start, max } => (start, max),
+    };
+    let mut answer = LimitAnswer {
+        status: Status::Stalled,
+        factor: None,
+        field_factor: start,
+        field: None,
+        motion: None,
+        unique: None,
+        ray: None,
+        feasible_interval: None,
+        non_associated: None,
+        counters: Counters::new(),
+        notes: Vec::new(),
+    };
+    let base = combined(&problem.fixed, &problem.varying, start);
+    match engine.admissible(&base) {
+        Equilibrium::Field(field) => {
+            answer.field = Some(field);
+            answer.status = Status::Stands;
+            if matches!(question, LimitQuestion::Collapse { .. }) {
+                collapse(problem, engine, &base, start, max, &mut answer);
+            }
+        }
+        Equilibrium::Motion(motion) => {
+            answer.status = Status::NoEquilibrium;
+            answer.motion = Some(motion);
+            refuted(problem, engine, &base, start, &mut answer);
+        }
+        Equilibrium::Failed(why) => answer.notes.push(why),
+    }
+    answer.counters = engine.counters();
+    answer
+}
+
+/// The base load is carried: how much more?
+fn collapse(
+    problem: &LimitProblem,
+    engine: &mut dyn Engine,
+    base: &Wrenches,
+    start: f64,
+    max: f64,
+    answer: &mut LimitAnswer,
+) {
+    if problem.magnitude(&problem.varying) == 0.0 {
+        answer.notes.push("every load of this stage acts on what the ground holds".into());
+        answer.status = Status::Unbounded;
+        answer.ray = Some(vec![JointForce::default(); problem.joints.len()]);
+        return;
+    }
+    match engine.greatest(base, &problem.varying, max - start) {
+        Greatest::Collapse { factor, field, motion, unique } => {
+            // Rounding of a zero factor is not a factor.
+            let dead = problem.magnitude(base);
+            let unit = if dead > 0.0 { dead / problem.magnitude(&problem.varying) } else { 1.0 };
+            let factor = if factor.abs() < 1e-15 * unit { 0.0 } else { factor };
+            answer.status = Status::Collapse;
+            answer.factor = Some(start + factor);
+            answer.field_factor = start + factor;
+            answer.field = Some(field);
+            answer.motion = Some(motion);
+            answer.unique = Some(unique);
+        }
+        Greatest::Capped(field) => {
+            answer.field_factor = max;
+            answer.field = Some(field);
+        }
+        Greatest::Unbounded(ray) => {
+            answer.status = Status::Unbounded;
+            answer.ray = Some(ray);
+        }
+        Greatest::Failed(why) => {
+            answer.status = Status::Stalled;
+            answer.notes.push(why);
+        }
+    }
+}
+
+/// The base load is not carried: is there a factor at which it would be?
+fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, start: f64, answer: &mut LimitAnswer) {
+    if problem.magnitude(&problem.varying) == 0.0 {
+        return;
+    }
+    match engine.possible(base, &problem.varying) {
+        Equilibrium::Field(_) => {}
+        Equilibrium::Motion(motion) => {
+            answer.motion = Some(motion);
+            answer.notes.push("no factor of the last stage's loads makes equilibrium possible".into());
+            return;
+        }
+        Equilibrium::Failed(why) => return answer.notes.push(why),
+    }
+    let opposite: Wrenches = problem.varying.iter().map(|w| w.map(|x| -x)).collect();
+    let upper = engine.greatest(base, &problem.varying, f64::INFINITY);
+    let lower = engine.greatest(base, &opposite, f64::INFINITY);
+    let end = |greatest: &Greatest| match greatest {
+        Greatest::Collapse { factor, .. } => Some(*factor),
+        Greatest::Unbounded(_) => Some(f64::INFINITY),
+        _ => None,
+    };
+    let (Some(high), Some(low)) = (end(&upper), end(&lower)) else {
+        return answer.notes.push("the interval of factors with equilibrium could not be found".into());
+    };
+    let interval = [start - low, start + high];
+    answer.feasible_interval = Some(interval);
+    answer.notes.push(format!(
+        "equilibrium is impossible at the factor {start} at which the stage begins; it is possible only for factors from {:.9} to {:.9}: do not read either end as safe",
+        interval[0], interval[1]
+    ));
+    // The motion at the near end of the interval refutes the base load as well, and is the one
+    // that a reader looks for.
+    let near = if interval[0] > start { lower } else { upper };
+    if let Greatest::Collapse { motion, unique, .. } = near {
+        answer.motion = Some(motion);
+        answer.unique = Some(unique);
+    }
+}

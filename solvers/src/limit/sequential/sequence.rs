@@ -1,0 +1,267 @@
+//! The sequence of linear programs with fictitious cohesion that ends at a state of the laws' own flow.
+
+use crate::limit::conic;
+use crate::limit::engine::{Engine, Greatest};
+use crate::limit::systems::{LARGEST, Systems};
+use crate::optimise::dense_simplex::Feasibility;
+use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
+use voussoir_core::model::Wrenches;
+
+/// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
+/// the field is then moved onto the yield surface.
+pub const TOLERANCE: f64 = 1e-6;
+/// Greatest number of programs.
+const PROGRAMS: usize = 120;
+/// A field moved onto the yield surface is admissible to this.
+const ADMISSIBLE: f64 = 1e-12;
+
+/// A state that obeys the laws' own flow.
+#[derive(Debug, Clone)]
+pub struct FlowState {
+    /// Factor above the base loads.
+    pub factor: f64,
+    /// Field.
+    pub field: Vec<JointForce>,
+    /// Mechanism.
+    pub motion: Vec<Velocity>,
+}
+
+/// How a sequence ended.
+pub enum Sequence {
+    /// At a state.
+    Converged(FlowState),
+    /// Not, and why.
+    Open(String),
+}
+
+/// The problem with each row that flows otherwise replaced by its flow as an associated row through
+/// the yield point at the normal forces of `reference`: d·r ≤ b + (d − a)·r̄.
+fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem {
+    let mut replaced = problem.clone();
+    for (joint, force) in replaced.joints.iter_mut().zip(reference) {
+        let at = [force.normal[0], force.normal[1], force.shear];
+        for row in joint.strength.rows.iter_mut().filter(|row| row.flow != row.normal) {
+            let relief: f64 = (0..3).map(|k| (row.flow[k] - row.normal[k]) * at[k]).sum();
+            row.bound += relief.max(0.0);
+            row.normal = row.flow;
+        }
+    }
+    replaced
+}
+
+/// The program by the simplex method, which ends at a vertex of the fields; `None` in scenes too
+/// large for it, with joints that crush, or where rounding spoils it.
+fn at_vertex(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Option<Greatest> {
+    let systems = Systems::new(problem, base);
+    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return None;
+    }
+    let mut statics = systems.statics(None)?;
+    if statics.feasible() != Feasibility::Point {
+        return None;
+    }
+    let optimum = statics.minimise(&[(systems.theta(), -1.0)], 20_000);
+    *counters.entry("pivots".into()).or_default() += statics.pivots;
+    let (_, true) = optimum? else { return None };
+    let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
+    let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
+    let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
+    let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
+    let (motion, wrong) = systems.motion(problem, &moving)?;
+    (violation <= ADMISSIBLE && wrong <= 1e-11).then(|| Greatest::Collapse {
+        factor: z[systems.forces] * systems.unit,
+        field: systems.joint_forces(&z),
+        motion,
+        unique: false,
+    })
+}
+
+/// Runs the sequence from a field, that of associated flow by default.
+pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
+    let systems = Systems::new(problem, base);
+    let mut reference = from.to_vec();
+    let mut last = f64::NAN;
+    let mut course = Course::default();
+    for step in 0..PROGRAMS {
+        let replaced = fictitious(problem, &reference);
+        *counters.entry("linear_programs".into()).or_default() += 1;
+        let greatest = at_vertex(&replaced, base, counters).unwrap_or_else(|| {
+            let mut engine = conic::engine(&replaced);
+            let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+            for (name, count) in engine.counters() {
+                *counters.entry(name).or_default() += count;
+            }
+            greatest
+        });
+        let (factor, field, motion) = match greatest {
+            Greatest::Collapse { factor, field, motion, .. } => (factor, field, motion),
+            Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
+            _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
+        };
+        let steady = (factor - last).abs() <= TOLERANCE * factor.abs().max(TOLERANCE * systems.unit);
+        last = factor;
+        let z = systems.force_variables(&field);
+        let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
+        let gamma = systems.multipliers(problem, &motion);
+        let moving = greatest_shares(&gamma);
+        let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
+        course.take(factor, worst, idle);
+        if worst.max(idle) <= TOLERANCE
+            && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
+        {
+            return Sequence::Converged(state);
+        }
+        // Where fields are many the programs may wander among them at one factor.
+        if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
+            return Sequence::Converged(FlowState { factor, field, motion });
+        }
+        if steady
+            && step % 8 == 7
+            && let Some((field, factor)) = field_yielding(&systems, problem, base, &moving, counters)
+        {
+            return Sequence::Converged(FlowState { factor, field, motion });
+        }
+        // Half way where full steps have not settled, then a quarter.
+        let share = if step < 12 {
+            1.0
+        } else if step < 40 {
+            0.5
+        } else {
+            0.25
+        };
+        for (old, new) in reference.iter_mut().zip(&field) {
+            (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
+            old.shear += share * (new.shear - old.shear);
+        }
+    }
+    Sequence::Open(course.verdict())
+}
+
+/// Programs whose factors are told where the sequence does not converge.
+const TOLD: usize = 20;
+
+/// What the last programs of a sequence gave.
+#[derive(Default)]
+struct Course {
+    factors: Vec<f64>,
+    violation: f64,
+    idle: f64,
+}
+
+impl Course {
+    fn take(&mut self, factor: f64, violation: f64, idle: f64) {
+        self.factors.push(factor);
+        (self.violation, self.idle) = (violation, idle);
+    }
+
+    /// Why the sequence did not end at a state.
+    fn verdict(&self) -> String {
+        let last = &self.factors[self.factors.len().saturating_sub(TOLD)..];
+        let low = last.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let reason = if high - low > TOLERANCE * high.abs() {
+            format!("their factors wander between {low:.9} and {high:.9} above the start")
+        } else {
+            format!("their factor stays at {high:.9} above the start, but fields and mechanisms there do not fit")
+        };
+        format!(
+            "the sequence of {PROGRAMS} linear programs did not converge: in the last {} {reason}; the last field violates \
+             yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {TOLERANCE:e} at a state)",
+            last.len(),
+            self.violation,
+            self.idle
+        )
+    }
+}
+
+/// The pairs whose multiplier is more than rounding.
+pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
+    let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
+    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
+}
+
+/// A field at this factor, to the tolerance, in which all moving pairs yield.
+fn field_at(
+    systems: &Systems,
+    problem: &LimitProblem,
+    factor: f64,
+    moving: &[usize],
+) -> Option<(Vec<JointForce>, f64)> {
+    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return None;
+    }
+    let theta = factor / systems.unit;
+    let mut statics = systems.statics(Some(theta))?;
+    moving.iter().for_each(|&i| statics.fix(i, true));
+    if statics.feasible() != Feasibility::Point {
+        return None;
+    }
+    let (_, true) = statics.minimise(&[(systems.theta(), -1.0)], 20_000)? else { return None };
+    if statics.value(systems.theta()) < theta - TOLERANCE * theta.abs() {
+        return None;
+    }
+    let slacks: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.value(i).max(0.0)).collect();
+    let (z, violation) = systems.field_with(&slacks)?;
+    let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
+    let near = violation.max(idle) <= ADMISSIBLE && (z[systems.forces] - theta).abs() <= 2.0 * TOLERANCE * theta.abs();
+    near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+}
+
+/// The same in scenes too large for the simplex method: the greatest factor with equality in the
+/// moving rows. With the mechanism that moves only there, any such field is a state.
+fn field_yielding(
+    systems: &Systems,
+    problem: &LimitProblem,
+    base: &Wrenches,
+    moving: &[usize],
+    counters: &mut Counters,
+) -> Option<(Vec<JointForce>, f64)> {
+    let mut yielding = problem.clone();
+    let mut pair = 0;
+    for (joint, &(_, shear)) in yielding.joints.iter_mut().zip(&systems.variables.joints) {
+        let count = if shear { 3 } else { 2 };
+        for index in 0..joint.strength.rows.len() {
+            let mut row = joint.strength.rows[index];
+            if row.normal[..count].iter().all(|a| *a == 0.0) {
+                continue;
+            }
+            if moving.contains(&pair) {
+                row.normal.iter_mut().for_each(|a| *a = -*a);
+                row.flow = row.normal;
+                row.bound = -row.bound;
+                joint.strength.rows.push(row);
+            }
+            pair += 1;
+        }
+    }
+    let mut engine = conic::engine(&yielding);
+    let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+    for (name, count) in engine.counters() {
+        *counters.entry(name).or_default() += count;
+    }
+    let Greatest::Collapse { factor, field, .. } = greatest else { return None };
+    let mut z = systems.force_variables(&field);
+    z.push(factor / systems.unit);
+    let (z, violation) = systems.field(moving, z)?;
+    (violation <= ADMISSIBLE).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+}
+
+/// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
+fn settled(
+    systems: &Systems,
+    (mut z, factor): (Vec<f64>, f64),
+    motion: Vec<Velocity>,
+    moving: &[usize],
+) -> Option<FlowState> {
+    z.push(factor / systems.unit);
+    let near: Vec<usize> = (0..systems.pairs.len())
+        .filter(|&i| systems.slack(i, &z).abs() <= 10.0 * TOLERANCE || moving.contains(&i))
+        .collect();
+    let some: Vec<usize> =
+        (0..systems.pairs.len()).filter(|&i| systems.slack(i, &z) <= 0.0 || moving.contains(&i)).collect();
+    let (z, _) = [near, some, moving.to_vec()]
+        .into_iter()
+        .filter_map(|yielding| systems.field(&yielding, z.clone()))
+        .find(|(_, violation)| *violation <= ADMISSIBLE)?;
+    Some(FlowState { factor: z[systems.forces] * systems.unit, field: systems.joint_forces(&z), motion })
+}

@@ -1,0 +1,191 @@
+//! The limit point test: whether a rate with growing λ starts at a converged state (small displacements).
+//!
+//! Points with slack in all facets stay stuck, open ones without strength open. With the others, the active set, taken
+//! as stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ + s λ̇ over them
+//! ([`rate::problem`](crate::rate::problem)); branching finds a rate with λ̇ = 1 or proves that there is none.
+
+use super::equations::Equations;
+use super::state::{State, Tangent};
+use super::system::StepSystem;
+use super::tangent::tangent_from;
+use crate::contact::active_point::ActivePoint;
+use crate::contact::facet::slack;
+use crate::contact::mode::ContactMode;
+use crate::rate::branching::{RisingRate, rising_rate};
+use crate::rate::problem::RateProblem;
+use nalgebra::{DMatrix, DVector};
+use voussoir_core::law::FacetMode;
+use voussoir_core::linear::{Entries, SparseLu};
+
+/// Slack, relative to the greatest force, up to which a facet may yield in a rate.
+const ACTIVE: f64 = 1e-8;
+/// Multiplier of opening, relative to the unit of displacement, above which a point is open.
+const OPEN: f64 = 1e-9;
+/// Residual of a response, relative to what it is made of.
+const RESIDUAL: f64 = 1e-9;
+/// Regularisation of the factorised matrix, taken out by refinement.
+const REGULARISATION: f64 = 1e-11;
+/// Linear programs of a search.
+const MOST: u64 = 20_000;
+
+/// The active set of a state.
+struct ActiveSet {
+    /// Contact points.
+    contacts: Vec<usize>,
+    /// Facets of each without slack, and the opening facet where it is open with a strength.
+    facets: Vec<(Vec<usize>, Option<usize>)>,
+    /// Modes of all points with those of the active set stuck.
+    modes: Vec<ContactMode>,
+}
+
+/// What is known of rates with growing λ.
+pub(super) enum LimitPointTest {
+    /// There is none.
+    None,
+    /// One, with its modes.
+    Tangent(Tangent, Vec<ContactMode>),
+    /// Not decided, and why.
+    Unknown(String),
+}
+
+/// Looks for a rate with λ growing in the sense `direction` at a converged state, or proves that there is none.
+pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) -> LimitPointTest {
+    let active = active_set(system, state);
+    let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
+    system.count("factorisations", 1);
+    let gradient = system.gradient(state);
+    let hessian = system.hessian(state, &gradient);
+    let Some(responses) = responses_of(system, &active, hessian.rows(&system.unknowns), direction) else {
+        return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
+    };
+    let mut programs = 0;
+    let found = rising_rate(&rate_problem(system, &active, &responses), MOST, &mut programs);
+    system.count("rate_programs", programs);
+    match found {
+        RisingRate::None => LimitPointTest::None,
+        RisingRate::Undecided(why) => {
+            LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
+        }
+        RisingRate::Found(gaps, modes) => {
+            let mut x = responses[2 * gaps.len()].clone();
+            for (by, gap) in responses.iter().zip(gaps.iter().flatten()) {
+                x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
+            }
+            x.push(direction);
+            let mut all = active.modes.clone();
+            for (c, mode) in active.contacts.iter().zip(modes) {
+                // A corner has one mode, whichever two of its facets flow.
+                let law = system.law(*c);
+                all[*c] = match mode {
+                    ContactMode::Corner(i, j) => {
+                        law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode)
+                    }
+                    other => other,
+                };
+            }
+            LimitPointTest::Tangent(tangent_from(system, &x, state, &hessian), all)
+        }
+    }
+}
+
+fn active_set(system: &StepSystem, state: &State) -> ActiveSet {
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.mode.clone() };
+    for c in 0..active.modes.len() {
+        let (Some(law), area, r) = (system.law(c), system.problem.contacts[c].area, state.force[c]) else { continue };
+        let (_, opening) = law.irreversible(state.mode[c], system.step_gap(state, state, c));
+        let is_open = law.opens(state.mode[c]) && opening > OPEN * system.units().displacement;
+        let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
+        let strength = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0);
+        if is_open && strength.is_none() {
+            continue;
+        }
+        active.modes[c] = ContactMode::Stick;
+        let open = strength.filter(|_| is_open);
+        let tight = |i: &usize| slack(&law.facets[*i], r, area) <= ACTIVE * largest;
+        let facets: Vec<usize> = (0..law.facets.len()).filter(tight).collect();
+        if !facets.is_empty() || open.is_some() {
+            active.contacts.push(c);
+            active.facets.push((facets, open));
+        }
+    }
+    active
+}
+
+/// Rates of all unknowns but λ by a unit gap rate in each of the two directions of every point of the active set
+/// and, last, by λ̇ in the sense `direction`. `None` where linear algebra fails.
+fn responses_of(
+    system: &StepSystem,
+    active: &ActiveSet,
+    equations: &Equations,
+    direction: f64,
+) -> Option<Vec<Vec<f64>>> {
+    let size = system.size() - 1;
+    let forces = equations.gaps.len();
+    // −∂/∂λ of gaps and balance.
+    let driven = |row: &[(usize, f64)]| -> f64 { row.iter().filter(|e| e.0 == size).map(|e| -direction * e.1).sum() };
+    let (mut entries, mut shift): (Entries, Entries) = (Vec::new(), Vec::new());
+    let mut right = vec![0.0; size];
+    let add = |i: usize, row: &[(usize, f64)], by: f64, entries: &mut Entries| {
+        entries.extend(row.iter().filter(|e| e.0 < size).map(|&(j, v)| (i, j, by * v)));
+    };
+    for (c, mode) in active.modes.iter().enumerate() {
+        let gap = [0, 1].map(|k| equations.gaps.row(2 * c + k));
+        let law = system.law(c).map_or(&[][..], |law| &law.facets);
+        for (k, own) in mode.rows(law)?.into_iter().enumerate() {
+            let i = 2 * c + k;
+            entries.extend((0..2).filter(|t| own[*t] != 0.0).map(|t| (i, 2 * c + t, own[t])));
+            for t in (0..2).filter(|t| own[2 + t] != 0.0) {
+                add(i, gap[t], own[2 + t], &mut entries);
+                right[i] += own[2 + t] * driven(gap[t]);
+            }
+            if *mode == ContactMode::Stick {
+                shift.push((i, i, REGULARISATION));
+            }
+        }
+    }
+    for row in 0..equations.bodies.len() {
+        let (i, own) = (forces + row, equations.bodies.row(row));
+        add(i, own, 1.0, &mut entries);
+        right[i] = driven(own);
+        shift.push((i, i, -REGULARISATION));
+    }
+    let unit = |i: usize| (0..size).map(|j| f64::from(u8::from(i == j))).collect();
+    let mut all: Vec<Vec<f64>> = active.contacts.iter().flat_map(|c| [2 * c, 2 * c + 1]).map(unit).collect();
+    all.push(right);
+    let x = SparseLu::shifted(size, &entries, &shift)?.solve(&all, 3)?;
+    for (x, right) in x.iter().zip(&all) {
+        let (mut rest, mut parts) = (right.clone(), 0.0f64);
+        for &(i, j, v) in &entries {
+            rest[i] -= v * x[j];
+            parts = parts.max((v * x[j]).abs());
+        }
+        if rest.iter().any(|r| r.is_nan() || r.abs() > RESIDUAL * parts) {
+            return None;
+        }
+    }
+    Some(x)
+}
+
+fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec<f64>]) -> RateProblem<'s> {
+    let n = 2 * active.contacts.len();
+    let force = |i: usize, x: &[f64]| x[2 * active.contacts[i / 2] + i % 2];
+    let point = |(c, (facets, open)): (&usize, &(Vec<usize>, Option<usize>))| {
+        let law = system.law(*c).map_or(&[][..], |law| &law.facets);
+        ActivePoint {
+            facets: law,
+            active: facets.clone(),
+            open: *open,
+            apex: open.is_none() && ActivePoint::is_apex(law, facets),
+            guess: ContactMode::Stick,
+            hit: true,
+            stiffness: 1.0,
+        }
+    };
+    RateProblem {
+        points: active.contacts.iter().zip(&active.facets).map(point).collect(),
+        s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
+        load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
+        from_nothing: false,
+    }
+}

@@ -1,0 +1,54 @@
+//! Names and numbers of a scene's table, and what is said where they are wrong.
+
+use voussoir_core::model::Catalogue;
+use voussoir_core::plugin::{Diagnostic, Range, nearest};
+
+/// Index of a material, or a mistake at `path`.
+pub(super) fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
+    catalogue
+        .material(name)
+        .ok_or_else(|| unknown(path, "material", name, catalogue.materials.iter().map(|(name, _)| name.as_str())))
+}
+
+/// Index of an interface law, or a mistake at `path`.
+pub(super) fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
+    catalogue
+        .law(name)
+        .ok_or_else(|| unknown(path, "joint law", name, catalogue.laws.iter().map(|(name, _)| name.as_str())))
+}
+
+/// "There is no such thing", with the nearest right name.
+pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(path, format!("there is no {kind} called \"{name}\""));
+    match nearest(name, names) {
+        Some(near) => diagnostic.help(format!("did you mean \"{near}\"?")),
+        None => diagnostic,
+    }
+}
+
+/// A diagnostic at a number that breaks a range; `None` where it does not.
+pub(super) fn out_of_range(path: &str, value: f64, range: Range) -> Option<Diagnostic> {
+    (!range.contains(value)).then(|| Diagnostic::new(path, format!("{value} must be {}", range.describe())))
+}
+
+/// The value, or its mistake added to the list.
+pub(super) fn take<T>(result: Result<T, Diagnostic>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {
+    result.map_err(|diagnostic| diagnostics.push(diagnostic)).ok()
+}
+
+/// Issues with paths from the scene's table, as a card's check gives them.
+pub(super) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
+    let words = |diagnostic: Diagnostic| match diagnostic.help {
+        Some(help) => (diagnostic.path, format!("{}; {help}", diagnostic.message)),
+        None => (diagnostic.path, diagnostic.message),
+    };
+    diagnostics.into_iter().map(words).collect()
+}
+
+/// Issues with paths from the scene's table, now from the study's root.
+pub(super) fn from_root(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    diagnostics
+        .into_iter()
+        .map(|diagnostic| Diagnostic { path: format!("scene.{}", diagnostic.path), ..diagnostic })
+        .collect()
+}
