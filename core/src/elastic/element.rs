@@ -107,6 +107,8 @@ pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -
     }
     let count = reference.nodes.len().pow(2);
     let mut k = DMatrix::zeros(2 * count, 2 * count);
+    // What an isotropic material has not, apart: 0 there, so that mirrored elements stay mirrored to the last bit.
+    let other = [d.m11, d.m22].map(|direct| direct - (d.m12 + 2.0 * d.m33));
     for point in &reference.points {
         let (gradient, determinant) = gradients(corners, point);
         let area = point.weight * determinant;
@@ -114,11 +116,13 @@ pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -
             let h = gradient[b] * area;
             for a in 0..=b {
                 let g = gradient[a];
-                let (xx, yy, xy, yx) = (g.x * h.x, g.y * h.y, g.x * h.y, g.y * h.x);
-                k[(2 * a, 2 * b)] += d.m11 * xx + d.m33 * yy + d.m13 * (xy + yx);
-                k[(2 * a + 1, 2 * b + 1)] += d.m22 * yy + d.m33 * xx + d.m23 * (xy + yx);
-                k[(2 * a, 2 * b + 1)] += d.m12 * xy + d.m33 * yx + d.m13 * xx + d.m23 * yy;
-                k[(2 * a + 1, 2 * b)] += d.m12 * yx + d.m33 * xy + d.m13 * xx + d.m23 * yy;
+                let (xx, yy, xy) = (g.x * h.x, g.y * h.y, g.x * h.y + g.y * h.x);
+                let both = d.m33 * (xx + yy);
+                k[(2 * a, 2 * b)] += (d.m12 + d.m33) * xx + both + (other[0] * xx + d.m13 * xy);
+                k[(2 * a + 1, 2 * b + 1)] += (d.m12 + d.m33) * yy + both + (other[1] * yy + d.m23 * xy);
+                let shear = d.m13 * xx + d.m23 * yy;
+                k[(2 * a, 2 * b + 1)] += d.m12 * g.x * h.y + d.m33 * g.y * h.x + shear;
+                k[(2 * a + 1, 2 * b)] += d.m12 * g.y * h.x + d.m33 * g.x * h.y + shear;
             }
         }
     }

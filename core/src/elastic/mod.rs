@@ -1,6 +1,9 @@
 //! Linear elastic bodies: their finite-element meshes and the static condensation of a mesh on the
 //! points where something acts on the body.
 //!
+//! **Material.** Any [`Elasticity`](crate::law::Elasticity) along the body's axes, x along edge 0; the plane problem's
+//! operator is made once, in [`PlaneElasticity`](crate::law::PlaneElasticity).
+//!
 //! **Elements.** Straight-sided quadrilaterals with the bilinear map, nodes at the tensor product of
 //! Gauss–Lobatto points. Order 1: the five-parameter hybrid-stress element of Pian and Sumihara
 //! (1984, Int. J. Numer. Methods Eng. 20, 1685–1695), which neither locks in bending nor for

@@ -49,11 +49,14 @@ impl Outcome {
 
     /// The answer, its claim checked again: a stall where it is not confirmed.
     pub fn answer(self, problem: &PathProblem, finite: bool, record: PathRecord) -> PathAnswer {
+        confirmed(problem, finite, self.unconfirmed(record))
+    }
+
+    /// The answer as it is: for paths whose end cannot be checked without what came before.
+    pub fn unconfirmed(self, record: PathRecord) -> PathAnswer {
         let Outcome { status, factor, motion, ray, unique } = self;
         let PathRecord { load_step, state, last, events, counters, notes } = record;
-        let answer =
-            PathAnswer { status, load_step, factor, state, last, motion, unique, ray, events, counters, notes };
-        confirmed(problem, finite, answer)
+        PathAnswer { status, load_step, factor, state, last, motion, unique, ray, events, counters, notes }
     }
 }
 

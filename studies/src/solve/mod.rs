@@ -1,7 +1,7 @@
 //! From a case to its result: who solves it, and the answer with its certificate.
 //!
 //! [`solve_case`] solves one case, [`solve_cases`] several side by side, [`explain`](explain::explain) says what
-//! would be solved. Checking a result without a solver is [`crate::verify`].
+//! would be solved. Checking a result without a solver is [`mod@crate::verify`].
 
 pub mod auto;
 mod case;

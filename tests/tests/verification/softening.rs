@@ -206,8 +206,7 @@ fn mortar() -> Cohesive {
 
 fn response(law: &Cohesive) -> Arc<dyn InterfaceResponse> {
     assert_eq!(law.validate(), vec![]);
-    let response = law.response().expect("a response");
-    response
+    law.response().expect("a response")
 }
 
 /// Opening and pure shear: the peak is the strength, the energy dissipated G_I or G_II, exactly and for

@@ -1,7 +1,7 @@
 //! `event_path`: elastic blocks with facet laws and small displacements, exactly from event to event.
 //!
 //! Between events everything is linear. At an event the points of the active set pose a rate
-//! problem (`rate`); its solution is the direction of the next mode of the path. λ is no
+//! problem (`rate`); its solution is the direction of the next piece of the path. λ is no
 //! parameter of the path: it may stand still (a mechanism) or fall.
 #![doc = include_str!("event_path.md")]
 

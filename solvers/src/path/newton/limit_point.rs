@@ -34,7 +34,7 @@ pub(super) fn test_limit_point(
 }
 
 /// A branch with growing λ, where there should be none; a few times at most at one factor. Otherwise
-/// the limit point is proven, or in doubt.
+/// the limit point is proven, or not decided.
 pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) -> Option<(Tangent, Vec<ContactMode>)> {
     let other = test_limit_point(tracer, state, direction)?;
     let same = |factor: f64| (state.factor - factor) * direction <= 1e-10 * factor.abs();

@@ -20,6 +20,7 @@ use super::factors::Kept;
 use super::response::{traction_residual, traction_row};
 use super::state::State;
 use super::system::StepSystem;
+use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
 use crate::linear::csr::CsrMatrix;
@@ -44,8 +45,7 @@ pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gra
         let rows = match (state.mode[c], system.law(c)) {
             (ContactMode::Facet(i), Some(law)) => {
                 let f = &law.facets[i as usize];
-                let yields = f.normal[0] * r[0] + f.normal[1] * r[1] - f.bound * area;
-                [yields / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
+                [-slack(f, r, area) / u.force, gap[0] * f.flow[1] - gap[1] * f.flow[0]]
             }
             (mode @ (ContactMode::Corner(..) | ContactMode::Open), Some(law)) => {
                 let corner = law.corner(mode).unwrap_or_default();

@@ -14,6 +14,7 @@ use super::step::solve_step;
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::tracer::{Tracer, moved_along};
+use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
 use voussoir_core::path::LoadStepEnd;
 
@@ -135,10 +136,9 @@ pub(super) fn first_slip(tracer: &Tracer, rate: &Tangent) -> Option<f64> {
         let (ContactMode::Stick, Some(law)) = (tracer.state.mode[c], tracer.system.law(c)) else { continue };
         for f in law.facets.iter().filter(|f| f.flow != f.normal) {
             let (r, dr) = (tracer.state.force[c], rate.force[c]);
-            let slack = f.bound * tracer.system.problem.contacts[c].area - f.normal[0] * r[0] - f.normal[1] * r[1];
-            let speed = f.normal[0] * dr[0] + f.normal[1] * dr[1];
+            let speed = dot(f.normal, dr);
             if speed > 0.0 {
-                first = first.min(slack.max(0.0) / speed);
+                first = first.min(slack(f, r, tracer.system.problem.contacts[c].area).max(0.0) / speed);
             }
         }
     }

@@ -4,12 +4,13 @@ use super::{Kept, body, settings};
 use crate::path::continuation::dissipation::Dissipation;
 use crate::path::newton::NewtonPath;
 use nalgebra::Rotation2;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
-    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathProblem, PathSolver, PointLaw, Sliding,
-    Unobserved,
+    Attachment, Constraint, Contact, Continuation, Increment, LoadStep, LoadStepEnd, Loading, MOST_MONITORS, Monitor,
+    PathProblem, PathSolver, PointLaw, Sliding, Unobserved,
 };
 
 /// Two rigid bars, hinged to each other at the crown and to the ground by a hinge of compliance c in
@@ -58,6 +59,30 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
     }
 }
 
+/// Control of the displacement of a point of the first bar, downwards.
+#[derive(Debug, Serialize, Deserialize)]
+struct DisplacementOfPoint {
+    point: [f64; 2],
+}
+
+#[typetag::serde(name = "displacement_of_point")]
+impl Continuation for DisplacementOfPoint {
+    fn monitors(&self) -> Vec<Monitor> {
+        vec![Monitor::Displacement { block: 1, point: self.point, direction: [0.0, -1.0] }]
+    }
+
+    fn constraint(&self, increment: &Increment, _previous: Option<&Increment>) -> Constraint {
+        let value = increment.monitored[0];
+        let mut monitored = [0.0; MOST_MONITORS];
+        monitored[0] = if value < 0.0 { -1.0 } else { 1.0 };
+        Constraint { value: value.abs(), derivative: Increment { monitored, ..Increment::default() } }
+    }
+
+    fn passes_limit_points(&self) -> bool {
+        true
+    }
+}
+
 /// With N the force and L = √(a² + y²) the distance of crown and support, the hinge's springs lie in
 /// the bar's line (the force acts at the middle of their two ends), so L = ℓ − c N and
 /// F = 2 N y / L = (2/c)(ℓ/L − 1) y; the peak is at L³ = ℓ a². The path is that curve through the peak,
@@ -74,6 +99,7 @@ fn two_bars_snap_through() {
         Some(Arc::new(crate::path::continuation::displacement_control::DisplacementControl::default())
             as Arc<dyn Continuation>),
         Some(Arc::new(Dissipation::default()) as Arc<dyn Continuation>),
+        Some(Arc::new(DisplacementOfPoint { point: [0.0, h] }) as Arc<dyn Continuation>),
     ] {
         let mut how = settings(strategy);
         how.finite = true;
@@ -100,7 +126,7 @@ fn two_bars_snap_through() {
             least < -0.99 * peak && last > least,
             "{least} {last}: the snap goes to −peak and the load grows again"
         );
-        let end = answer.last.expect("a state behind the peak");
+        let end = answer.last.expect("a state after the peak");
         assert!((end.work - end.stored).abs() < 2e-3 * peak * h, "{} {}", end.work, end.stored);
     }
 }
