@@ -7,8 +7,9 @@
 //! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
 //! ([`Sliding`](crate::path::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
 
+use crate::law::{Facet, FacetMode};
 use crate::model::geometry::{Vec2, cross, turned};
-use crate::path::{Attachment, Contact, PathProblem, PathState};
+use crate::path::{Attachment, Contact, PathProblem, PathState, PointLaw};
 use nalgebra::DVector;
 
 /// A state with the deformations of its bodies.
@@ -79,11 +80,17 @@ impl<'a> Displaced<'a> {
         self.problem.contacts.iter().zip(&self.state.force).map(gap).collect()
     }
 
-    /// Elastic energy of blocks and joints \[J\] (Clapeyron); `None` where a block has yielded or a joint has a law of
-    /// tractions from gaps, whose energy is no function of forces.
+    /// Elastic energy of blocks and joints \[J\] (Clapeyron); `None` where it is no function of forces: a block has
+    /// yielded, a joint has a law of tractions from gaps, or one whose tensile strength opening works against.
     pub fn stored(&self) -> Option<f64> {
         let contacts = &self.problem.contacts;
-        if self.state.yielded.iter().any(Option::is_some) || contacts.iter().any(|c| c.law.response().is_some()) {
+        let pulls = |f: &Facet| f.mode == FacetMode::Opening && f.bound > 0.0;
+        let by_history = |law: &PointLaw| match law {
+            PointLaw::Bonded => false,
+            PointLaw::Facets(facets) => facets.iter().any(pulls),
+            PointLaw::Response(_) => true,
+        };
+        if self.state.yielded.iter().any(Option::is_some) || contacts.iter().any(|c| by_history(&c.law)) {
             return None;
         }
         let points = self.forces.iter().flatten().zip(self.deformation.iter().flatten());
