@@ -71,7 +71,7 @@ fn bricks_that_slide_side_by_side_are_a_mechanism() {
 /// Steps below the tolerance of the law crept along what is no solution, thousands of them: the limit
 /// point is proven at the corner instead, and the path ends there.
 #[test]
-fn a_path_does_not_creep_behind_its_limit_point() {
+fn a_path_does_not_creep_beyond_its_limit_point() {
     let unloaded = [
         (
             Law::Dilatant,
