@@ -21,5 +21,5 @@ pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS,
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;
-pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, Unobserved};
+pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, StageSettings, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};

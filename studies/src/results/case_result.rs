@@ -3,7 +3,7 @@
 use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
-use voussoir_core::certificate::{Certificate, Mechanism};
+use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{Counters, LowerProof, Status};
 
 /// Which case of its study it is.
@@ -78,8 +78,9 @@ pub struct StageResult {
     pub status: Status,
     /// The factor it reached; `null` where it reached none, or any.
     pub factor: Option<f64>,
-    /// Hinges of the mechanism that ended it, else empty.
-    pub hinges: Vec<usize>,
+    /// Hinges of the mechanism that ended it, rotations per unit of motion; of a path's stage that stands the joints
+    /// that are open over three quarters of their height at its end, with their rotation \[rad\].
+    pub hinges: Vec<Hinge>,
 }
 
 /// The answer to one case with what proves it.

@@ -7,6 +7,7 @@ use super::{limit, path};
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
 use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
 
@@ -25,9 +26,17 @@ pub fn solve_case(case: &Case) -> CaseResult {
     solve_observed(case, &mut Unobserved)
 }
 
+/// The answer, or what a panic in a plug-in or a solver said: it ends its case, never the run.
+fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
+    catch_unwind(AssertUnwindSafe(solve)).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        CaseResult::stalled(format!("a panic ended the case: {}", said.unwrap_or("it said nothing")))
+    })
+}
+
 fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
-    let mut result = solve_input(&CaseInput::of(case), observer);
+    let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
     result.label = CaseLabel {
         id: case.id,
         variant: case.variant.clone(),

@@ -13,6 +13,8 @@ pub struct CaseInput<'a> {
     pub stages: &'a [Stage],
     /// Which solver.
     pub solver: &'a SelectedSolver,
+    /// Which limit solver answers a stage that names its own, by index.
+    pub of_stages: &'a [Option<SelectedSolver>],
     /// What a path solver is told; its tolerance is the greatest relative gap between bounds too.
     pub settings: &'a PathSettings,
 }
@@ -24,6 +26,7 @@ impl<'a> CaseInput<'a> {
             assembly: &case.assembly,
             stages: &case.stages,
             solver: &case.solver.solver,
+            of_stages: &case.solver.of_stages,
             settings: &case.solver.settings,
         }
     }

@@ -23,7 +23,7 @@ fn followed(
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
     let mut record = Record::default();
     let settings =
-        PathSettings { finite: true, tolerance: 1e-9, stop_displacement: Some(stop), stop_factor: None, continuation };
+        PathSettings { finite: true, tolerance: 1e-9, stop_displacement: Some(stop), stop_factor: None, continuation, stages: Vec::new() };
     let answer = NewtonPath {}.trace(&problem, &settings, &mut record);
     (problem, answer, record.0)
 }

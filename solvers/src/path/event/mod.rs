@@ -38,7 +38,7 @@ impl PathSolver for EventPath {
         if settings.finite {
             return Some("it follows small displacements only; newton_path follows finite ones".into());
         }
-        if settings.continuation.as_ref().is_some_and(|c| !ExactEvents::is(&**c)) {
+        if settings.strategies().any(|c| !ExactEvents::is(&**c)) {
             return Some("it goes from event to event and knows no other continuation than exact_events".into());
         }
         if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
