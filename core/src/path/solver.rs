@@ -104,4 +104,9 @@ pub trait PathSolver: Debug + Send + Sync {
 
     /// Why this solver cannot take this problem, if so.
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String>;
+
+    /// How much of the energy of a stage its steps may lose.
+    fn energy_tolerance(&self) -> f64 {
+        1e-3
+    }
 }

@@ -2,13 +2,50 @@
 //! changes linearly during a step, and what dissipates.
 
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::{Loading, PathProblem};
+use voussoir_core::path::{Loading, PathProblem, PathState};
 
 /// Energies so far \[J\].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct EnergyBalance {
     pub dissipated: f64,
     pub work: f64,
+}
+
+/// The energy balance of a stage.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct StageBalance {
+    stage: usize,
+    /// Σ|work| over its steps, and what it has dissipated \[J\].
+    work: f64,
+    dissipated: f64,
+    /// What work leaves of the energy stored and dissipated \[J\].
+    left: f64,
+}
+
+impl StageBalance {
+    /// After a step of a stage between two states, and what the step leaves over itself.
+    pub fn after(&self, stage: usize, from: &PathState, to: &PathState) -> (Self, f64) {
+        let before = if stage == self.stage { *self } else { StageBalance { stage, ..Self::default() } };
+        let (work, dissipated) = (to.work - from.work, to.dissipated - from.dissipated);
+        let left = work - (to.stored - from.stored) - dissipated;
+        let after = StageBalance {
+            stage,
+            work: before.work + work.abs(),
+            dissipated: before.dissipated + dissipated.abs(),
+            left: before.left + left,
+        };
+        (after, left)
+    }
+
+    /// What is left over \[J\].
+    pub fn left(&self) -> f64 {
+        self.left
+    }
+
+    /// What that is compared with, for what is stored now \[J\].
+    pub fn scale(&self, stored: f64) -> f64 {
+        self.work + stored.abs() + self.dissipated
+    }
 }
 
 /// What the work of a step needs of the state at one of its ends.

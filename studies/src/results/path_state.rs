@@ -2,9 +2,7 @@
 //! mechanism of a motion, and the bounds of residuals.
 
 use super::inelastic_state::with_crushing;
-use voussoir_core::certificate::{
-    CentroidVelocity, Hinge, Mechanism, Side, mechanism, mechanism_above, tolerance,
-};
+use voussoir_core::certificate::{CentroidVelocity, Hinge, Mechanism, Side, mechanism, mechanism_above, tolerance};
 use voussoir_core::law::FlowRule;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};

@@ -2,7 +2,7 @@
 
 use super::auto::{TaggedPathSolver, willing};
 use super::case_input::CaseInput;
-use super::path_result::path_result;
+use super::path_result::{Seen, path_result};
 use crate::results::CaseResult;
 use voussoir_core::certificate::PathChecker;
 use voussoir_core::path::{PathObserver, PathProblem, PathState};
@@ -42,7 +42,8 @@ pub(super) fn solve_by_path(
     };
     let mut watched = Watched { checker, observer, ends: vec![None; input.stages.len()] };
     let solved = solver.trace(&problem, input.settings, &mut watched);
-    path_result(input, tag, &problem, solved, (watched.checker, &watched.ends))
+    let energy = solver.energy_tolerance();
+    path_result(input, tag, &problem, solved, Seen { checker: watched.checker, ends: watched.ends, energy })
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

@@ -72,7 +72,9 @@ fn stage_solver(
         return None;
     }
     if path(card) || chosen.is_some_and(path) {
-        let message = format!("\"{tag}\" cannot answer one stage of a study that [solver] gives to another solver: a path is followed by one solver from its first stage to its last");
+        let message = format!(
+            "\"{tag}\" cannot answer one stage of a study that [solver] gives to another solver: a path is followed by one solver from its first stage to its last"
+        );
         diagnostics.wrong(&at, message, format!("set [solver] solver = \"{tag}\" for all stages, or remove this key"));
         return None;
     }

@@ -305,7 +305,10 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
         (None, true) => Outcome::at(Status::NoEquilibrium, None),
         (None, false) => Outcome::at(Status::Collapse, Some(trace.state.factor)),
         (Some(_), false) if greatest => {
-            trace.log.notes.push(format!("the load rose above all limit points again ({} of them)", follower.limits.count));
+            trace
+                .log
+                .notes
+                .push(format!("the load rose above all limit points again ({} of them)", follower.limits.count));
             Outcome::at(Status::Collapse, Some(trace.state.factor))
         }
         (Some(_), _) => {

@@ -34,6 +34,10 @@ impl PathSolver for EventPath {
         follow::follow(problem, settings, observer)
     }
 
+    fn energy_tolerance(&self) -> f64 {
+        1e-9
+    }
+
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
         if settings.finite {
             return Some("it follows small displacements only; newton_path follows finite ones".into());

@@ -155,11 +155,7 @@ pub fn motion_alone(
 
 /// Rates with a moving support, their forces taken for rounding: `None` where they are more than that, because the
 /// motion alone does not keep the points in their modes or a load grows too.
-fn at_constant_forces(
-    (system, points): (&System, &[Point]),
-    (x, factor): (&[f64], f64),
-    load: &Load,
-) -> Option<Rates> {
+fn at_constant_forces((system, points): (&System, &[Point]), (x, factor): (&[f64], f64), load: &Load) -> Option<Rates> {
     let forces = 2 * system.contacts;
     let loaded = load.wrench.iter().flatten().any(|w| *w != 0.0);
     if loaded || largest(&x[..forces]) > MECHANISM * largest(&x[forces..]).max(factor.abs() * load.size) {

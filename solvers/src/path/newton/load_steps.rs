@@ -8,7 +8,7 @@ use super::recorded::{recorded, work_state};
 use super::system::StepSystem;
 use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
 use crate::path::continuation::arc_length::ArcLength;
-use crate::path::energy::EnergyBalance;
+use crate::path::energy::{EnergyBalance, StageBalance};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
@@ -16,11 +16,7 @@ use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings};
 
 /// Follows all load steps.
-pub(super) fn trace(
-    problem: &PathProblem,
-    settings: &PathSettings,
-    observer: &mut dyn PathObserver,
-) -> PathAnswer {
+pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
     let system = match StepSystem::new(problem, settings.finite) {
         Ok(system) => system,
         Err(why) => return stalled(problem, why),
@@ -37,7 +33,7 @@ pub(super) fn trace(
         observer,
         load_step: 0,
         state,
-        record: Record { energy, work, state: seen, events: Vec::new(), notes: Vec::new() },
+        record: Record { energy, balance: StageBalance::default(), work, state: seen, events: Vec::new(), notes: Vec::new() },
         ending: Ending { status: Status::Stalled, motion: None, ray: None },
         limit: LimitPoint::default(),
         post_peak: PostPeak::default(),
@@ -52,7 +48,8 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     for (index, load_step) in problem.load_steps.iter().enumerate() {
         tracer.load_step = index;
         tracer.state.factor = load_step.start;
-        tracer.strategy = tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
+        tracer.strategy =
+            tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
         // What the problem does not have is refused before the path begins.
         tracer.system.monitors = resolve(problem, &tracer.strategy.monitors()).unwrap_or_default();
         tracer.system.load(StagedLoads {

@@ -38,6 +38,7 @@ mod response;
 mod softening;
 mod state;
 mod step;
+mod step_energy;
 mod system;
 mod tangent;
 mod termination;
