@@ -30,6 +30,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let mut result = solve_input(&CaseInput::of(case), observer);
     result.label = CaseLabel {
         id: case.id,
+        case_hash: case.hash(),
         variant: case.variant.clone(),
         scene: case.scene.clone(),
         parameters: case.parameters.clone(),
