@@ -116,7 +116,8 @@ Not checked: counters, seconds, version";
 pub(super) fn remarks(request: &RunRequest, others: usize, of: usize) -> Vec<String> {
     match request.wanted.as_slice() {
         [id] if request.keep && of > 1 => {
-            let words = if others == 0 { "no other case is there".into() } else { format!("{others} other(s) are kept") };
+            let words =
+                if others == 0 { "no other case is there".into() } else { format!("{others} other(s) are kept") };
             vec![format!("case {id} of {of} was solved; of the study as it stands {words}")]
         }
         _ => Vec::new(),

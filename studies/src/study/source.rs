@@ -64,6 +64,8 @@ pub(super) fn no_file_name(name: &str) -> Option<String> {
         _ if name.trim() != name => Some("begins or ends with a blank".into()),
         _ if name.starts_with('.') || name.ends_with('.') => Some("begins or ends with a point".into()),
         _ if name.len() > 200 => Some("is longer than 200 bytes".into()),
-        _ => name.chars().find(|c| unfit(*c)).map(|c| format!("holds {c:?}, which no folder's name can hold everywhere")),
+        _ => {
+            name.chars().find(|c| unfit(*c)).map(|c| format!("holds {c:?}, which no folder's name can hold everywhere"))
+        }
     }
 }

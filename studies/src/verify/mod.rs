@@ -5,7 +5,7 @@
 //! number and word against solving the case again, because a path's history is not stored: only counters, seconds
 //! and the version are not looked at.
 
-mod case;
+pub mod case;
 pub mod fields;
 mod findings;
 mod limit;

@@ -126,7 +126,8 @@ mod tests {
     use serde_json::json;
 
     fn case() -> Json {
-        let field: Vec<Json> = (0..20).map(|i| json!({ "joint": i, "force": [1000.0 / 3.0 + f64::from(i), 0.1] })).collect();
+        let field: Vec<Json> =
+            (0..20).map(|i| json!({ "joint": i, "force": [1000.0 / 3.0 + f64::from(i), 0.1] })).collect();
         json!({ "status": "collapse", "load_factor": 0.1, "field": field, "notes": ["a"], "seconds": 1.0 })
     }
 

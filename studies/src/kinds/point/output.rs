@@ -9,6 +9,7 @@ use crate::kinds::case_study::remarks;
 use crate::kinds::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification};
 use crate::solve::Observer;
 use crate::verify::repeat::differences;
+use crate::writers::csv_table::csv_table;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::Value as Json;
 
@@ -130,10 +131,9 @@ pub fn csv(results: &[PointResult]) -> String {
         }
     }
     let keys = keys(results);
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let header = ["id".to_string(), "variant".into()].into_iter().chain(keys.iter().map(|key| key_with_unit(key)));
     let header = header.chain(["segment".to_string(), "region".into()]).chain(columns.iter().map(|c| c.to_string()));
-    writer.write_record(header).expect("writing to memory does not fail");
+    let mut rows = Vec::new();
     for result in results {
         let places: Vec<Option<usize>> =
             columns.iter().map(|column| result.columns.iter().position(|own| own == *column)).collect();
@@ -142,11 +142,10 @@ pub fn csv(results: &[PointResult]) -> String {
             row.extend(keys.iter().map(|key| result.parameters.get(key).map(format_value).unwrap_or_default()));
             row.extend([result.segments[index].to_string(), result.regions[index].to_string()]);
             row.extend(places.iter().map(|place| place.map_or(String::new(), |place| numbers[place].to_string())));
-            writer.write_record(row).expect("every row is as long as the header");
+            rows.push(row);
         }
     }
-    let bytes = writer.into_inner().expect("writing to memory does not fail");
-    String::from_utf8(bytes).expect("every cell is text")
+    csv_table(header.collect(), rows.into_iter())
 }
 
 /// What tells a case apart.
