@@ -13,6 +13,7 @@ mod build;
 mod continuation;
 mod point_law;
 mod problem;
+mod response_check;
 mod sliding;
 mod solver;
 mod state;

@@ -72,6 +72,16 @@ pub struct PathRecord {
     pub yielded: Vec<YieldedEntry>,
 }
 
+/// What proves that a case stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Proof {
+    /// An admissible field: flow is associated and displacements are small.
+    Static,
+    /// The path to its loads.
+    Path,
+}
+
 /// What one stage came to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageResult {
@@ -105,6 +115,9 @@ pub struct CaseResult {
     pub feasible_interval: Option<[Option<f64>; 2]>,
     /// `"associated"` where a non-associated law was read so.
     pub flow_read_as: Option<String>,
+    /// What proves that it stands, where it does.
+    #[serde(rename = "proof", default, skip_serializing_if = "Option::is_none")]
+    pub proved_by: Option<Proof>,
     /// The solver that answered.
     pub solver: String,
     /// What a user should know.
@@ -143,6 +156,7 @@ impl CaseResult {
             non_associated: NonAssociatedAnswer::default(),
             feasible_interval: None,
             flow_read_as: None,
+            proved_by: None,
             solver: String::new(),
             notes: Vec::new(),
             mechanism: None,

@@ -3,6 +3,7 @@
 use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
+use super::statics::stands_by_statics;
 use super::{limit, path};
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
@@ -18,10 +19,9 @@ use voussoir_core::plugin::{PluginKind, card};
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
     let solvers = path_solvers(input);
     if solvers.is_empty() {
-        limit::solve_by_limit_analysis(input)
-    } else {
-        path::solve_by_path(input, &solvers, observer)
+        return limit::solve_by_limit_analysis(input);
     }
+    stands_by_statics(input).unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
 }
 
 /// Solves one case.

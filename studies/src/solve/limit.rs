@@ -3,6 +3,7 @@
 use super::auto::limit_solvers;
 use super::case_input::CaseInput;
 use super::limit_result::certified;
+use super::safe_theorem::static_proof;
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
 use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
@@ -53,6 +54,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
         if result.status != Status::Stands || index + 1 == stages.len() {
             result.stages = done;
             result.counters = counters;
+            result.proved_by = static_proof(assembly, &result);
             return result;
         }
     }

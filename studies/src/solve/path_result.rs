@@ -6,7 +6,7 @@ use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
 use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
-use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, ProofFields, StageResult};
+use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, Proof, ProofFields, StageResult};
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
     CentroidVelocity, Certificate, ContactForce, Hinge, PathChecker, flow_residual, jumps, largest_jump, tolerance,
@@ -75,6 +75,7 @@ pub(super) fn path_result(
     CaseResult {
         status,
         load_factor,
+        proved_by: (status == Status::Stands).then_some(Proof::Path),
         solver: tag.into(),
         mechanism,
         proof: ProofFields {
