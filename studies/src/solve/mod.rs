@@ -14,6 +14,7 @@ mod observer;
 mod path;
 mod path_result;
 mod safe_theorem;
+mod settlement;
 mod statics;
 
 pub use case::{solve_case, solve_cases, solve_input};
