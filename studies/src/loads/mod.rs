@@ -8,11 +8,15 @@ mod keys;
 mod load_kind;
 pub mod point;
 pub mod pressure;
+pub mod lane;
 mod site;
 pub mod strip;
 #[cfg(test)]
 mod tests;
+pub mod vehicle;
+mod vehicle_axles;
 
 pub use keys::load_shape;
 pub use load_kind::{LoadKind, Placed};
-pub use site::{BlockName, LoadSite};
+pub use site::{BlockName, LoadSite, LoadTables};
+pub use vehicle_axles::{Axle, VEHICLE, VehicleAxles};

@@ -4,6 +4,7 @@ use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::{limit, path};
+use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
 use rayon::prelude::*;
@@ -35,6 +36,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         parameters: case.parameters.clone(),
     };
     result.notes.extend(case.notes.iter().cloned());
+    result.loads = load_entries(&case.assembly, &case.stages);
     if !case.output_curve {
         result.path.curve = None;
     }
