@@ -59,25 +59,8 @@ pub fn contains(vertices: &[Vec2], p: Vec2, tolerance: f64) -> bool {
         == 1
 }
 
-/// Whether two edges of the polygon that are no neighbours touch or cross.
-pub fn crosses_itself(vertices: &[Vec2]) -> bool {
-    let n = vertices.len();
-    let segment = |i: usize| (vertices[i], vertices[(i + 1) % n]);
-    (0..n).any(|i| {
-        (i + 2..n).filter(|&j| (j + 1) % n != i).any(|j| {
-            let ((a, b), (c, d)) = (segment(i), segment(j));
-            // Edges on one line cross only where their boxes meet.
-            let apart = |i: usize| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]);
-            if apart(0) || apart(1) {
-                return false;
-            }
-            let side = |p, q, r| cross(q - p, r - p);
-            side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
-        })
-    })
-}
-
-fn is_convex(vertices: &[Vec2]) -> bool {
+/// Whether an anticlockwise polygon turns left, or not at all, at every vertex.
+pub fn is_convex(vertices: &[Vec2]) -> bool {
     let n = vertices.len();
     (0..n).all(|i| {
         let (a, b, c) = (vertices[i], vertices[(i + 1) % n], vertices[(i + 2) % n]);
@@ -176,20 +159,6 @@ mod tests {
         assert!(overlap_depth(&square, &angle) > 0.1);
         let beside = polygon(&[(1.0, 1.0), (1.0, -1.0), (3.0, -1.0), (3.0, 3.0), (2.0, 3.0), (2.0, 1.0)]);
         assert!(overlap_depth(&square, &beside) < 1e-15);
-    }
-
-    #[test]
-    fn a_bow_tie_crosses_itself() {
-        assert!(crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])));
-        assert!(!crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])));
-    }
-
-    #[test]
-    fn edges_on_one_line_do_not_cross_unless_they_overlap() {
-        let legs = [(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
-        assert!(!crosses_itself(&polygon(&legs)));
-        assert!(!crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (0.0, 1.0)])));
-        assert!(crosses_itself(&polygon(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (3.0, 0.0), (1.0, 0.0), (0.0, 1.0)])));
     }
 
     #[test]

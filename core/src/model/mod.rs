@@ -7,6 +7,7 @@ pub mod geometry;
 mod joints;
 mod loads;
 mod scene;
+mod self_crossing;
 mod wrench;
 
 pub use self::assembly::{ArchLayout, Assembly, Body, Catalogue, Inertia, root};
@@ -15,4 +16,5 @@ pub use self::contact::{CONTACT_TOLERANCE, Interpenetration, find_joints};
 pub use self::joints::{Bond, Gap, Joint};
 pub use self::loads::{PointForce, Settlement, Stage, StageLoads, Target, fill_bounds, fill_weights, stage_loads};
 pub use self::scene::Scene;
+pub use self::self_crossing::crosses_itself;
 pub use self::wrench::{Wrenches, add_force};

@@ -5,8 +5,10 @@ use super::keys::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take, unknown};
 use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use serde::{Deserialize, Serialize};
-use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cross, crosses_itself};
-use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Interpenetration, Joint, Scene, find_joints};
+use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cross};
+use voussoir_core::model::{
+    Assembly, Body, Bond, Catalogue, Gap, Interpenetration, Joint, Scene, crosses_itself, find_joints,
+};
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
 
 /// One block.

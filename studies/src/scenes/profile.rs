@@ -9,7 +9,8 @@
 use super::curve::Curve;
 use super::lookup::out_of_range;
 use serde::{Deserialize, Serialize};
-use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, crosses_itself};
+use voussoir_core::model::crosses_itself;
+use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, is_convex};
 use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};
 
 /// `profile = { shape = …, … }`.
@@ -170,6 +171,18 @@ impl Ring {
     /// Voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
     pub fn voussoir(&self, k: usize) -> Vec<Vec2> {
         vec![self.intrados[k], self.intrados[k + 1], self.extrados[k + 1], self.extrados[k]]
+    }
+
+    /// Whether the ring's outline proves that no two voussoirs overlap. Convex voussoirs of one sense, each joined
+    /// to the next along a whole edge, are a disc laid into the plane without folds: every point is covered
+    /// as often as the outline winds around it, which is once at the most where the outline does not cross itself.
+    pub fn is_plainly_simple(&self) -> bool {
+        let outline: Vec<Vec2> = self.intrados.iter().chain(self.extrados.iter().rev()).copied().collect();
+        let convex = |k: usize| {
+            let voussoir = self.voussoir(k);
+            is_convex(&voussoir) && area_and_centroid(&voussoir).0 > 0.0
+        };
+        (0..self.voussoirs()).all(convex) && !crosses_itself(&outline)
     }
 
     /// Number of voussoirs.

@@ -1,0 +1,124 @@
+//! Whether a polygon crosses itself, by a hierarchy of boxes: n log n for boundaries that do not.
+
+use super::geometry::Vec2;
+
+/// A box: lower left and upper right corner.
+type Bounds = (Vec2, Vec2);
+
+/// The edges of a closed polygon in a binary tree over their places, each node with the box around its edges.
+/// Node 1 is the root, node k has the children 2k and 2k + 1, edge i is node `first + i`.
+struct EdgeTree<'a> {
+    vertices: &'a [Vec2],
+    boxes: Vec<Bounds>,
+    first: usize,
+}
+
+impl<'a> EdgeTree<'a> {
+    fn new(vertices: &'a [Vec2]) -> EdgeTree<'a> {
+        let (n, first) = (vertices.len(), vertices.len().next_power_of_two());
+        let nothing = (Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY));
+        let mut boxes = vec![nothing; 2 * first];
+        for i in 0..n {
+            let (a, b) = (vertices[i], vertices[(i + 1) % n]);
+            boxes[first + i] = (a.inf(&b), a.sup(&b));
+        }
+        for k in (1..first).rev() {
+            let ((low, high), (other_low, other_high)) = (boxes[2 * k], boxes[2 * k + 1]);
+            boxes[k] = (low.inf(&other_low), high.sup(&other_high));
+        }
+        EdgeTree { vertices, boxes, first }
+    }
+
+    fn crosses_within(&self, node: usize) -> bool {
+        if node >= self.first {
+            return false;
+        }
+        let (left, right) = (2 * node, 2 * node + 1);
+        self.crosses_within(left) || self.crosses_within(right) || self.crosses_between(left, right)
+    }
+
+    /// Of two nodes of one level, so that both are edges or neither.
+    fn crosses_between(&self, one: usize, other: usize) -> bool {
+        let ((low, high), (other_low, other_high)) = (self.boxes[one], self.boxes[other]);
+        if (0..2).any(|k| high[k] < other_low[k] || other_high[k] < low[k]) {
+            return false;
+        }
+        if one >= self.first {
+            return self.edges_cross(one - self.first, other - self.first);
+        }
+        [2 * one, 2 * one + 1].iter().any(|&a| [2 * other, 2 * other + 1].iter().any(|&b| self.crosses_between(a, b)))
+    }
+
+    /// Whether edges i < j, whose boxes meet, touch or cross; neighbours do not count.
+    fn edges_cross(&self, i: usize, j: usize) -> bool {
+        let n = self.vertices.len();
+        if j == i + 1 || (j + 1) % n == i {
+            return false;
+        }
+        let edge = |i: usize| (self.vertices[i], self.vertices[(i + 1) % n]);
+        let ((a, b), (c, d)) = (edge(i), edge(j));
+        let side = |p: Vec2, q: Vec2, r: Vec2| super::geometry::cross(q - p, r - p);
+        side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+    }
+}
+
+/// Whether two edges of the polygon that are no neighbours touch or cross.
+pub fn crosses_itself(vertices: &[Vec2]) -> bool {
+    vertices.len() > 3 && EdgeTree::new(vertices).crosses_within(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(points: &[(f64, f64)]) -> Vec<Vec2> {
+        points.iter().map(|&(x, y)| Vec2::new(x, y)).collect()
+    }
+
+    #[test]
+    fn a_bow_tie_crosses_itself() {
+        assert!(crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])));
+        assert!(!crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])));
+    }
+
+    #[test]
+    fn edges_on_one_line_do_not_cross_unless_they_overlap() {
+        let legs = [(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+        assert!(!crosses_itself(&polygon(&legs)));
+        assert!(!crosses_itself(&polygon(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (0.0, 1.0)])));
+        assert!(crosses_itself(&polygon(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (3.0, 0.0), (1.0, 0.0), (0.0, 1.0)])));
+    }
+
+    /// Every pair of edges, one by one.
+    fn crosses_by_pairs(vertices: &[Vec2]) -> bool {
+        let tree = EdgeTree::new(vertices);
+        let n = vertices.len();
+        let apart = |i: usize, j: usize| {
+            let ((low, high), (other_low, other_high)) = (tree.boxes[tree.first + i], tree.boxes[tree.first + j]);
+            (0..2).any(|k| high[k] < other_low[k] || other_high[k] < low[k])
+        };
+        (0..n).any(|i| (i + 1..n).any(|j| !apart(i, j) && tree.edges_cross(i, j)))
+    }
+
+    #[test]
+    fn the_tree_finds_what_every_pair_of_edges_finds() {
+        let mut crossing = 0;
+        for case in 0..400_u32 {
+            let n = 5 + case % 23;
+            // A circle with a ripple; every second one with two vertices exchanged.
+            let mut vertices: Vec<Vec2> = (0..n)
+                .map(|i| {
+                    let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+                    Vec2::new(angle.cos(), angle.sin()) * (1.0 + 0.3 * (f64::from(case) * angle.sin()).sin())
+                })
+                .collect();
+            if case % 2 == 1 {
+                vertices.swap(case as usize % 5, (case as usize / 7) % n as usize);
+            }
+            let by_pairs = crosses_by_pairs(&vertices);
+            assert_eq!(crosses_itself(&vertices), by_pairs, "{vertices:?}");
+            crossing += usize::from(by_pairs);
+        }
+        assert!(crossing > 100 && crossing < 300, "{crossing}");
+    }
+}
