@@ -2,7 +2,8 @@
 
 use crate::scenes::lookup::out_of_range;
 use serde::{Deserialize, Serialize};
-use voussoir_core::model::geometry::{Vec2, area_and_centroid, crosses_itself};
+use voussoir_core::model::geometry::{Vec2, area_and_centroid};
+use voussoir_core::model::crosses_itself;
 use voussoir_core::plugin::{Diagnostic, Range};
 
 /// Greatest number of courses.
