@@ -150,7 +150,8 @@ mod tests {
                 let held = cohesion * height / theta.sin();
                 (weight * (theta + phi).sin() + held * phi.cos()) / (theta + phi).cos()
             };
-            let least = (1..90000).map(|i| wedge((90.0 - degrees) * f64::from(i) / 90000.0 * 1f64.to_radians()))
+            let least = (1..90000)
+                .map(|i| wedge((90.0 - degrees) * f64::from(i) / 90000.0 * 1f64.to_radians()))
                 .fold(f64::INFINITY, f64::min);
             let mean = FillState { vertical_stress: unit_weight * height / 2.0, friction_angle: phi, cohesion };
             let [_, pressure] = law(LeastPressure::Zero, 1.0).pressures(&mean);

@@ -195,7 +195,9 @@ impl Rows {
             columns.extend(groups.columns(joint).into_iter().take(width));
             forces += width;
         }
-        for (index, (reaction, [least, greatest])) in assembly.fill_reactions().iter().zip(&loads.fill_bounds).enumerate() {
+        for (index, (reaction, [least, greatest])) in
+            assembly.fill_reactions().iter().zip(&loads.fill_bounds).enumerate()
+        {
             let Some(column) = groups.fill_column(reaction).filter(|_| greatest > least) else { continue };
             let code = 4 * (assembly.joints.len() + index) as i64;
             let row = |sign: f64, bound: f64, slot: i64| {

@@ -114,7 +114,16 @@ impl LimitProblem {
             let strength = integrate(facets, joint.height() * assembly.width)
                 .map_err(|why| format!("joint law \"{name}\": {why}"))?;
             let (normal, tangent) = joint.frame();
-            joints.push(LimitJoint { joint: index, fill: None, minus, plus, ends: joint.ends, normal, tangent, strength });
+            joints.push(LimitJoint {
+                joint: index,
+                fill: None,
+                minus,
+                plus,
+                ends: joint.ends,
+                normal,
+                tangent,
+                strength,
+            });
         }
         let least = fill_joints(assembly, loads, &group_of, &mut joints);
         let gather = |wrenches: &Wrenches| {

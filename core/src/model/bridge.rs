@@ -76,7 +76,6 @@ pub fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(
     parts
 }
 
-
 /// Fill that stands on a block: gravity acts on it, accelerations of blocks do not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FillMass {

@@ -118,7 +118,7 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
     let tolerance = ROUNDING * site.assembly.size();
     let centre = (patch.from + patch.to) / 2.0;
     let Some(chord) = upper_at(&chords, centre, tolerance).first().copied() else { return Ok(None) };
-    let fill = layers(site, centre, chord.at(centre).y);
+    let fill = fill_layers(site, centre, chord.at(centre).y);
     let dispersion: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
     let spread = dispersion.map_or_else(|| vec![patch], |law| law.spread(patch, &fill));
     let reach = spread.iter().map(|part| patch.from - part.from).fold(0.0, f64::max);
@@ -138,8 +138,9 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
 }
 
 /// The layers between the road and a level at x, from the lowest.
-fn layers(site: &LoadSite, x: f64, level: f64) -> Vec<Through> {
-    let Some((bridge, road)) = site.assembly.bridge.as_ref().and_then(|bridge| Some((bridge, bridge.road_at(x)?))) else {
+pub fn fill_layers(site: &LoadSite, x: f64, level: f64) -> Vec<Through> {
+    let Some((bridge, road)) = site.assembly.bridge.as_ref().and_then(|bridge| Some((bridge, bridge.road_at(x)?)))
+    else {
         return Vec::new();
     };
     let mut bottom = level;
@@ -165,7 +166,7 @@ pub fn dispersed(
     let chords = faces(site, key)?;
     let centre = (patch.from + patch.to) / 2.0;
     let chord = upper_at(&chords, centre, ROUNDING * site.assembly.size()).first().copied();
-    let fill = chord.map(|chord| layers(site, centre, chord.at(centre).y)).unwrap_or_default();
+    let fill = chord.map(|chord| fill_layers(site, centre, chord.at(centre).y)).unwrap_or_default();
     if fill.is_empty() && !law.has_depth() {
         return site.fail("dispersion.depth", "is missing: there is no fill above the extrados that would give it");
     }

@@ -30,7 +30,9 @@ impl LoadKind for Lane {
         let forces = on_faces(site, [self.from, self.to], density, "from")?;
         let mut placed = Placed::from(forces);
         if placed.forces.is_empty() {
-            placed.notes.push(format!("the lane from x = {} to {} m is off the bridge: it counts zero", self.from, self.to));
+            placed
+                .notes
+                .push(format!("the lane from x = {} to {} m is off the bridge: it counts zero", self.from, self.to));
         }
         Ok(placed)
     }

@@ -5,10 +5,10 @@ pub mod body;
 pub mod dispersion;
 mod extrados;
 mod keys;
+pub mod lane;
 mod load_kind;
 pub mod point;
 pub mod pressure;
-pub mod lane;
 mod site;
 pub mod strip;
 #[cfg(test)]
@@ -16,6 +16,7 @@ mod tests;
 pub mod vehicle;
 mod vehicle_axles;
 
+pub use extrados::fill_layers;
 pub use keys::load_shape;
 pub use load_kind::{LoadKind, Placed};
 pub use site::{BlockName, LoadSite, LoadTables};

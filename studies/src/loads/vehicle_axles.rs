@@ -38,7 +38,8 @@ const AXLE: &[Parameter] = &[
     Parameter::number("force", Quantity::Force, Range::ANY, "downwards"),
     Parameter::number("wheel_width", Quantity::Length, Range::POSITIVE, "of the loaded area, across the road")
         .optional("the whole width"),
-    Parameter::number("length", Quantity::Length, Range::NON_NEGATIVE, "of the loaded area, along the road").default("0.0"),
+    Parameter::number("length", Quantity::Length, Range::NON_NEGATIVE, "of the loaded area, along the road")
+        .default("0.0"),
     Parameter::number("lift_off", Quantity::Ratio, Range::NON_NEGATIVE, "factor of the axle's force").default("1.0"),
 ];
 

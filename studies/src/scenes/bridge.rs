@@ -133,7 +133,15 @@ impl Builder {
 
     /// The rings of a span on what stands `before` it; `bonds` of joints across rings, between rings, at springings.
     /// The joints at its end are left without the body that comes after.
-    fn span(&mut self, index: usize, blocks: &SpanBlocks, before: usize, bonds: [Bond; 3], alone: bool, material: usize) {
+    fn span(
+        &mut self,
+        index: usize,
+        blocks: &SpanBlocks,
+        before: usize,
+        bonds: [Bond; 3],
+        alone: bool,
+        material: usize,
+    ) {
         let [bond, ring_bond, springing] = bonds;
         let mut first = Vec::new();
         for (r, ring) in blocks.rings.iter().enumerate() {

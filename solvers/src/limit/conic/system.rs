@@ -83,10 +83,7 @@ fn strength_rows(
     (rows, bounds, blocks): (&mut Vec<Row>, &mut Vec<f64>, &mut Vec<Block>),
 ) {
     for row in &joint.strength.rows {
-        let entries: Row = (0..own)
-            .filter(|&k| row.normal[k] != 0.0)
-            .map(|k| (first + k, row.normal[k]))
-            .collect();
+        let entries: Row = (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k])).collect();
         if !entries.is_empty() {
             rows.push(entries);
             bounds.push(if loads.strengths { row.bound / loads.force } else { 0.0 });

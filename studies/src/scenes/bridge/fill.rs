@@ -100,7 +100,9 @@ impl Fill {
     pub fn mistakes(&self) -> Vec<Diagnostic> {
         let mut diagnostics = Vec::new();
         match (self.cover, &self.road) {
-            (None, None) => diagnostics.push(Diagnostic::new("cover", "is missing: the depth of the road above the crown")),
+            (None, None) => {
+                diagnostics.push(Diagnostic::new("cover", "is missing: the depth of the road above the crown"))
+            }
             (Some(_), Some(_)) => {
                 diagnostics.push(Diagnostic::new("cover", "is given besides road").help("keep one of the two"));
             }

@@ -38,7 +38,12 @@ const SPAN: &[Parameter] = &[
         "least length of a voussoir along the lower face of its ring",
     )
     .optional("voussoirs is given"),
-    key("rings", Shape::Integer { min: 1, max: MAX_RINGS as i64 }, Need::Default("1"), "number of rings, equally thick"),
+    key(
+        "rings",
+        Shape::Integer { min: 1, max: MAX_RINGS as i64 },
+        Need::Default("1"),
+        "number of rings, equally thick",
+    ),
     key(
         "radial_joints",
         Shape::Choice(&["aligned", "offset"]),
@@ -63,9 +68,20 @@ const SPAN: &[Parameter] = &[
 
 const PIER: &[Parameter] = &[
     Parameter::number("height", Quantity::Length, Range::POSITIVE, "below the lower of the springings on it"),
-    Parameter::number("width", Quantity::Length, Range::POSITIVE, "at the springings: the distance of their intrados ends"),
-    Parameter::number("base_width", Quantity::Length, Range::POSITIVE, "at its foot").optional("that at the springings"),
-    key("courses", Shape::Integer { min: 1, max: MAX_COURSES as i64 }, Need::Default("1"), "number of courses, equally high"),
+    Parameter::number(
+        "width",
+        Quantity::Length,
+        Range::POSITIVE,
+        "at the springings: the distance of their intrados ends",
+    ),
+    Parameter::number("base_width", Quantity::Length, Range::POSITIVE, "at its foot")
+        .optional("that at the springings"),
+    key(
+        "courses",
+        Shape::Integer { min: 1, max: MAX_COURSES as i64 },
+        Need::Default("1"),
+        "number of courses, equally high",
+    ),
     key(
         "footing",
         Shape::Choice(&["fixed", "bonded"]),
@@ -93,8 +109,13 @@ const HAUNCHING: &[Parameter] = &[
 ];
 
 const FILL: &[Parameter] = &[
-    Parameter::number("cover", Quantity::Length, Range::NON_NEGATIVE, "depth of a level road above the highest crown's extrados")
-        .optional("road is given"),
+    Parameter::number(
+        "cover",
+        Quantity::Length,
+        Range::NON_NEGATIVE,
+        "depth of a level road above the highest crown's extrados",
+    )
+    .optional("road is given"),
     key(
         "road",
         Shape::List { of: &POINT, min: 1, max: usize::MAX },
@@ -137,9 +158,15 @@ pub(super) const PARAMETERS: &[Parameter] = &[
     PLANE,
     MATERIAL,
     JOINT,
-    Parameter { name: "ring_joint", doc: "interface law of the joints between rings", ..JOINT }.optional("that of joint"),
+    Parameter { name: "ring_joint", doc: "interface law of the joints between rings", ..JOINT }
+        .optional("that of joint"),
     key("spans", Shape::List { of: &Shape::Table(SPAN), min: 1, max: 1000 }, Need::Required, "from left to right"),
-    key("piers", Shape::List { of: &Shape::Table(PIER), min: 0, max: 1000 }, Need::Default("[]"), "one between two spans"),
+    key(
+        "piers",
+        Shape::List { of: &Shape::Table(PIER), min: 0, max: 1000 },
+        Need::Default("[]"),
+        "one between two spans",
+    ),
     key("fill", Shape::Table(FILL), Need::Optional("bare rings"), "fill between the rings and the road"),
     MESH,
 ];

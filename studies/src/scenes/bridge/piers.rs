@@ -2,8 +2,8 @@
 
 use crate::scenes::lookup::out_of_range;
 use serde::{Deserialize, Serialize};
-use voussoir_core::model::geometry::{Vec2, area_and_centroid};
 use voussoir_core::model::crosses_itself;
+use voussoir_core::model::geometry::{Vec2, area_and_centroid};
 use voussoir_core::plugin::{Diagnostic, Range};
 
 /// Greatest number of courses.
@@ -73,7 +73,11 @@ impl Pier {
 
     /// The blocks between the right springing of one span and the left springing of the next (intrados and extrados
     /// ends).
-    pub fn blocks(&self, [left, outer_left]: [Vec2; 2], [right, outer_right]: [Vec2; 2]) -> Result<PierBlocks, Diagnostic> {
+    pub fn blocks(
+        &self,
+        [left, outer_left]: [Vec2; 2],
+        [right, outer_right]: [Vec2; 2],
+    ) -> Result<PierBlocks, Diagnostic> {
         let base = left.y.min(right.y);
         let size = self.width + self.height;
         let (low_left, low_right) = (Vec2::new(left.x, base), Vec2::new(right.x, base));

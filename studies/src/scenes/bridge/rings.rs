@@ -185,7 +185,9 @@ impl Span {
         }
         let counts = match (&self.voussoirs, self.voussoir_length) {
             (Some(_), Some(_)) => {
-                return Err(Diagnostic::new("voussoir_length", "is given besides voussoirs").help("keep one of the two"));
+                return Err(
+                    Diagnostic::new("voussoir_length", "is given besides voussoirs").help("keep one of the two")
+                );
             }
             (Some(Counts::Each(count)), None) => vec![*count; self.rings],
             (Some(Counts::Rings(counts)), None) if counts.len() == self.rings => counts.clone(),
@@ -208,7 +210,9 @@ impl Span {
             return Err(wrong);
         }
         // What is wrong with the ring itself is said where it is built.
-        let Ok(ring) = self.profile.ring(self.thickness, Some(FINE), self.springing) else { return Ok(vec![1; self.rings]) };
+        let Ok(ring) = self.profile.ring(self.thickness, Some(FINE), self.springing) else {
+            return Ok(vec![1; self.rings]);
+        };
         let count = |index: usize| {
             let share = index as f64 / self.rings as f64;
             let at = |k: usize| ring.intrados[k] + (ring.extrados[k] - ring.intrados[k]) * share;

@@ -1,0 +1,82 @@
+//! Places of the scan: even ones, those where axles enter the bridge, and those where edges of their patches meet joints.
+
+use super::{Request, Run, value_at};
+use crate::loads::dispersion::{Dispersion, Patch};
+use crate::loads::{LoadSite, LoadTables, VehicleAxles, fill_layers};
+use crate::study::Case;
+use voussoir_core::model::Chord;
+
+/// Places nearer than this share of the range are one.
+const SAME: f64 = 1e-9;
+
+/// Values of the parameter to be tried, growing.
+pub(super) fn scan(case: &Case, request: &Request, run: &Run) -> Vec<f64> {
+    let [from, to] = request.range;
+    let last = (request.scan - 1) as f64;
+    let mut places: Vec<f64> = (0..request.scan).map(|i| from + (to - from) * i as f64 / last).collect();
+    if let Some(last) = places.last_mut() {
+        *last = to;
+    }
+    places.extend(events(case, request, run).into_iter().filter(|x| from < *x && *x < to));
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|b, a| *b - *a <= SAME * (to - from));
+    places
+}
+
+/// Where an axle enters or leaves, or an edge of its patch on the extrados meets a joint.
+fn events(case: &Case, request: &Request, run: &Run) -> Vec<f64> {
+    let name = run.vehicle.as_deref().unwrap_or_default();
+    let vehicle = case.resolved.get("vehicles").and_then(|all| all.get(name));
+    let vehicle: Option<VehicleAxles> = vehicle.and_then(|table| serde_json::from_value(table.clone()).ok());
+    let Some(vehicle) = vehicle else { return Vec::new() };
+    let law = value_at(&case.resolved, "scene.fill.dispersion").cloned();
+    let tables = LoadTables { dispersion: law.and_then(|law| serde_json::from_value(law).ok()), ..LoadTables::default() };
+    let site = LoadSite::new(&case.assembly, &tables, "");
+    let chords = case.assembly.extrados();
+    let mut joints: Vec<f64> = chords.iter().flat_map(|chord| chord.ends.map(|end| end.x)).collect();
+    joints.sort_by(f64::total_cmp);
+    joints.dedup();
+    let (Some(&first), Some(&last)) = (joints.first(), joints.last()) else { return Vec::new() };
+    let sense = if run.direction.as_deref() == Some("backward") { -1.0 } else { 1.0 };
+    // A hair inside: beyond the ends the axle counts nothing.
+    let hair = 1e-9 * (last - first);
+    let mut places = Vec::new();
+    for axle in &vehicle.axles {
+        let origin = |x: f64| x - sense * axle.at;
+        places.extend([first + hair, last - hair].map(origin));
+        for joint in &joints {
+            for side in [-1.0, 1.0] {
+                let centre = centre_of(&site, &chords, *joint, side, axle.length / 2.0);
+                // A patch without length jumps from one block to the next.
+                let apart = if axle.length == 0.0 { hair } else { 0.0 };
+                places.push(origin(centre + side * apart));
+            }
+        }
+    }
+    places
+}
+
+/// Where the centre of a patch is when the edge on its `side` meets a joint: the reach depends on the depth under the
+/// centre, so it is found by iteration.
+fn centre_of(site: &LoadSite, chords: &[Chord], joint: f64, side: f64, half: f64) -> f64 {
+    let mut centre = joint - side * half;
+    for _ in 0..8 {
+        let next = joint - side * (half + reach(site, chords, centre, half));
+        if (next - centre).abs() <= 1e-12 * site.assembly.size() {
+            break;
+        }
+        centre = next;
+    }
+    centre
+}
+
+/// How far the fill spreads a patch to one side.
+fn reach(site: &LoadSite, chords: &[Chord], centre: f64, half: f64) -> f64 {
+    let law: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
+    let above = chords.iter().filter(|chord| chord.left() <= centre && centre <= chord.right());
+    let level = above.map(|chord| chord.at(centre).y).fold(f64::NEG_INFINITY, f64::max);
+    let Some(law) = law.filter(|_| level.is_finite()) else { return 0.0 };
+    let patch = Patch { from: centre - half, to: centre + half, share: 1.0 };
+    let spread = law.spread(patch, &fill_layers(site, centre, level));
+    spread.iter().map(|part| patch.from - part.from).fold(0.0, f64::max)
+}
