@@ -151,6 +151,7 @@ fn case_at(study: &Study, base: usize, id: usize, values: &[(String, Json)]) -> 
     let values: Vec<(&str, Json)> = values.iter().map(|(key, value)| (key.as_str(), value.clone())).collect();
     let mut case = study.at(base, &values).ok()?;
     case.id = id;
+    case.brief = true;
     Some(case)
 }
 
@@ -165,7 +166,7 @@ impl Envelope {
                 let case = case_at(study, base, first + index, &request.values(run, value))?;
                 Some(solve_case(&case))
             };
-            let places = places::scan(case, request, run);
+            let places = places::places(case, request, run);
             search::worst_place(&places, request, &solve)
         };
         runs.iter().enumerate().flat_map(run).collect()
@@ -192,7 +193,9 @@ impl StudyKind for Envelope {
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
         let Some(request) = Request::of(outline) else {
-            return vec![Diagnostic::new("envelope", "is missing").help("say what moves: [envelope] parameter, from, to")];
+            return vec![
+                Diagnostic::new("envelope", "is missing").help("say what moves: [envelope] parameter, from, to"),
+            ];
         };
         let mut diagnostics = Vec::new();
         if request.range[0] >= request.range[1] {

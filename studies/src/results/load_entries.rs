@@ -1,18 +1,20 @@
 //! Loads of a bridge as they are written: what stands on which block, so that it can be checked by hand.
 
 use super::entries::{FillEntry, LoadEntry, LoadOrigin};
+use crate::study::Case;
 use voussoir_core::model::geometry::{Vec2, cross};
 use voussoir_core::model::{Assembly, FillReaction, PointForce, Stage, fill_weights};
 
 /// Weights of blocks and fill under the gravity of each stage that sets it, and the loads of each stage at factor 1;
-/// none for scenes that are no bridges.
-pub fn load_entries(assembly: &Assembly, stages: &[Stage]) -> Vec<LoadEntry> {
+/// none for scenes that are no bridges, and no weights for brief cases.
+pub fn load_entries(case: &Case) -> Vec<LoadEntry> {
+    let (assembly, stages) = (&case.assembly, &case.stages);
     let mut entries = Vec::new();
     if assembly.bridge.is_none() {
         return entries;
     }
     for stage in stages {
-        if let Some(gravity) = stage.gravity {
+        if let Some(gravity) = stage.gravity.filter(|_| !case.brief) {
             let weights = (0..assembly.bodies.len()).filter(|body| !assembly.bodies[*body].fixed).map(|body| {
                 let inertia = assembly.inertia(body);
                 PointForce { body, point: inertia.centroid, force: gravity * inertia.mass }

@@ -36,7 +36,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         parameters: case.parameters.clone(),
     };
     result.notes.extend(case.notes.iter().cloned());
-    result.loads = load_entries(&case.assembly, &case.stages);
+    result.loads = load_entries(case);
     if !case.output_curve {
         result.path.curve = None;
     }

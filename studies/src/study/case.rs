@@ -35,7 +35,8 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
             let resolved = Json::Object(resolved);
-            Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, resolved })
+            let brief = false;
+            Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, brief, resolved })
         }
         _ => Err(diagnostics.found),
     }

@@ -22,7 +22,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     findings.expect(result.label.variant == case.variant, "variant is not that of the study");
     findings.expect(result.label.scene == case.scene, "scene is not that of the study");
     findings.expect(result.label.parameters == case.parameters, "parameters are not those of the study");
-    let loads = load_entries(&case.assembly, &case.stages);
+    let loads = load_entries(case);
     findings.expect(result.loads == loads, "loads are not those of the study");
     let last = result.stages.len().checked_sub(1).ok_or("no stage")?;
     case.stages.get(last).ok_or("more stages than the study has")?;

@@ -1,5 +1,6 @@
 //! The search for the worst place of one run: a scan, then golden sections between its neighbours where it is least.
 
+use super::places::Places;
 use super::{Request, solve_all};
 use crate::results::CaseResult;
 use voussoir_core::limit::Status;
@@ -22,26 +23,39 @@ pub(super) fn rank(result: &CaseResult) -> Option<f64> {
 
 /// Results at all places that were tried, in order of id.
 pub(super) fn worst_place(
-    places: &[f64],
+    places: &Places,
     request: &Request,
     solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
 ) -> Vec<CaseResult> {
-    let scanned = solve_all(0, places, solve);
-    let mut next = places.len();
-    let mut found: Vec<CaseResult> = Vec::new();
-    let values: Vec<(f64, f64)> = scanned.iter().filter_map(|(x, result)| Some((*x, rank(result)?))).collect();
-    let least = values.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
+    let ranked = |(x, result): &(f64, CaseResult)| Some((*x, rank(result)?));
+    let mut tried = solve_all(0, &places.scan, solve);
+    let mut values: Vec<(f64, f64)> = tried.iter().filter_map(ranked).collect();
+    // Where the scan is low, edges of patches at joints are tried too.
+    let within = |x: &&f64| valleys(&values).iter().any(|[low, high]| *low < **x && **x < *high);
+    let joints: Vec<f64> = places.joints.iter().filter(within).copied().collect();
+    let more = solve_all(places.scan.len(), &joints, solve);
+    values.extend(more.iter().filter_map(ranked));
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    tried.extend(more);
+    let mut next = places.scan.len() + joints.len();
+    let mut found = Vec::new();
     let width = request.tolerance * (request.range[1] - request.range[0]);
-    for (i, (_, value)) in values.iter().enumerate() {
-        let before = values[i.saturating_sub(1)];
-        let after = values[(i + 1).min(values.len() - 1)];
-        let lowest = *value <= before.1 && *value < after.1 || (*value < before.1 && *value <= after.1);
-        let worthwhile = value.is_finite() && *value <= least + WORTHWHILE * least.abs();
-        if lowest && worthwhile {
-            golden_section([before.0, after.0], width, &mut next, solve, &mut found);
-        }
+    for bracket in valleys(&values) {
+        golden_section(bracket, width, &mut next, solve, &mut found);
     }
-    scanned.into_iter().map(|(_, result)| result).chain(found).collect()
+    tried.into_iter().map(|(_, result)| result).chain(found).collect()
+}
+
+/// Brackets of the places that are lower than their neighbours and near the lowest of all.
+fn valleys(values: &[(f64, f64)]) -> Vec<[f64; 2]> {
+    let least = values.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
+    let valley = |i: usize| {
+        let (before, value, after) = (values[i.saturating_sub(1)], values[i].1, values[(i + 1).min(values.len() - 1)]);
+        let lowest = (value <= before.1 && value < after.1) || (value < before.1 && value <= after.1);
+        let worthwhile = value.is_finite() && value <= least + WORTHWHILE * least.abs();
+        (lowest && worthwhile).then_some([before.0, after.0])
+    };
+    (0..values.len()).filter_map(valley).collect()
 }
 
 /// Golden sections of a bracket down to a width; every result is kept.
@@ -100,7 +114,7 @@ mod tests {
     fn the_deeper_of_two_valleys_is_found() {
         let f = |x: f64| (1.0 + (x - 2.3_f64).powi(2)).min(0.99 + 3.0 * (x - 7.777).abs());
         let solve = |id: usize, x: f64| Some(answer(id, f(x)));
-        let places: Vec<f64> = (0..=10).map(f64::from).collect();
+        let places = Places { scan: (0..=10).map(f64::from).collect(), joints: vec![1.5, 7.5] };
         let results = worst_place(&places, &request(1e-4), &solve);
         let least = results.iter().filter_map(|result| result.load_factor).fold(f64::INFINITY, f64::min);
         assert!((least - 0.99).abs() < 3e-3, "{least}");
@@ -116,6 +130,9 @@ mod tests {
             (result.status, result.load_factor) = (Status::Unbounded, None);
             Some(result)
         };
-        assert_eq!(worst_place(&[0.0, 1.0, 2.0], &request(1e-3), &solve).len(), 3);
+        assert_eq!(
+            worst_place(&Places { scan: vec![0.0, 1.0, 2.0], joints: vec![0.5] }, &request(1e-3), &solve).len(),
+            3
+        );
     }
 }

@@ -25,7 +25,8 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
             let text = |key: &str| of(&request.beside(key)).and_then(Json::as_str);
             places.push(Place { value, vehicle: text("vehicle"), direction: text("direction"), result });
         }
-        places.sort_by(|a, b| (a.vehicle, a.direction).cmp(&(b.vehicle, b.direction)).then(a.value.total_cmp(&b.value)));
+        places
+            .sort_by(|a, b| (a.vehicle, a.direction).cmp(&(b.vehicle, b.direction)).then(a.value.total_cmp(&b.value)));
         worsts.extend(worst(request, base, &places));
         curve.extend(places.iter().map(|place| {
             json!({
