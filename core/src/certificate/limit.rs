@@ -242,7 +242,7 @@ impl Check<'_> {
         sums.iter().map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size)).fold(0.0, f64::max)
     }
 
-    /// Greatest violation of strength \[N\]; in the recession cone where `strengths` is false.
+    /// Greatest violation of strength \[N\], of sliding as the distance from its facet; in the recession cone where `strengths` is false.
     fn violation(&self, forces: &[ContactForce], strengths: bool) -> f64 {
         let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for contact in forces {
@@ -274,7 +274,8 @@ impl Check<'_> {
                 worst = worst.max(arm - block.max(0.0) * (1.0 - depth));
             }
             for facet in self.facets[law].iter().filter(|f| f.normal[1] != 0.0) {
-                worst = worst.max(facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale);
+                let beyond = facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale;
+                worst = worst.max(beyond / facet.normal[0].hypot(facet.normal[1]));
             }
         }
         worst
@@ -389,7 +390,7 @@ impl Check<'_> {
         let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
         let jumps = jumps(self.assembly, motion);
         let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
-        let (impossible, mut idle) = self.idle_power(field, &jumps);
+        let (impossible, mut idle) = self.idle_power(field, &jumps, largest);
         idle += self.idle_fill(claim.fill, motion);
         let flows = self.residual("flow", impossible / largest, ROUNDING);
         let scale = self.residual_scale(factor) * largest;
@@ -440,7 +441,7 @@ impl Check<'_> {
     /// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
     /// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
     /// multiplier of its sliding facet; what is left of the opening is associated.
-    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump]) -> (f64, f64) {
+    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump], largest: f64) -> (f64, f64) {
         let mut resultants = vec![[0.0f64; 3]; jumps.len()];
         for contact in field {
             let joint = &self.assembly.joints[contact.joint];
@@ -458,16 +459,17 @@ impl Check<'_> {
             };
             let (height, area) = (joint.height(), joint.height() * self.assembly.width);
             let mut open = jump.open;
+            // Slip that is rounding is none, however far a facet is from yielding.
+            let slip = if jump.slip.abs() > 8.0 * f64::EPSILON * largest { jump.slip } else { 0.0 };
             let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
-            let sliding =
-                self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * jump.slip < 0.0);
+            let sliding = self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * slip < 0.0);
             match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
                 Some(facet) => {
-                    let gamma = -jump.slip / facet.flow[1];
+                    let gamma = -slip / facet.flow[1];
                     open.iter_mut().for_each(|o| *o += gamma * facet.flow[0]);
                     idle += gamma * slack(facet).abs();
                 }
-                None => impossible = impossible.max(jump.slip.abs()),
+                None => impossible = impossible.max(slip.abs()),
             }
             let polygon = &self.polygons[law];
             let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());

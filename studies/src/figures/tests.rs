@@ -228,7 +228,7 @@ fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
         }
     }
     let own = Default::default();
-    let results = StudyResults { study: "rise".into(), version: "0.1.0".into(), cases, comparison: None, own };
+    let results = StudyResults { study: "rise".into(), version: "0.1.0".into(), cases, own, ..StudyResults::default() };
     (assemblies, stages, results)
 }
 

@@ -10,5 +10,7 @@ pub mod point;
 mod read;
 pub mod run;
 
-pub use kind::{KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StudyKind, Verification, kind, kinds};
+pub use kind::{
+    KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
+};
 pub use read::read_study;

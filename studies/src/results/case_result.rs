@@ -11,6 +11,9 @@ use voussoir_core::limit::{Counters, LowerProof, Status};
 pub struct CaseLabel {
     /// Index from 0, variants outermost.
     pub id: usize,
+    /// Which resolved case it answers: [`crate::study::Case::hash`].
+    #[serde(default)]
+    pub case_hash: String,
     /// Name of the variant, if the study has variants.
     pub variant: Option<String>,
     /// Name of the scene, where the study compares several.

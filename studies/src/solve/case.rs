@@ -7,9 +7,12 @@ use super::{limit, path};
 use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
+use crate::verify::case::verify_case;
 use rayon::prelude::*;
 use std::time::Instant;
+use voussoir_core::limit::Status;
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
+use voussoir_core::plugin::{PluginKind, card};
 
 /// Solves a case; an observer sees the states of a path. The label and `seconds` are left for the caller to fill.
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
@@ -31,10 +34,15 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let mut result = solve_input(&CaseInput::of(case), observer);
     result.label = CaseLabel {
         id: case.id,
+        case_hash: case.hash(),
         variant: case.variant.clone(),
         scene: case.scene.clone(),
         parameters: case.parameters.clone(),
     };
+    if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
+        let wrong = verify_case(case, &result);
+        withdraw(&mut result, wrong);
+    }
     result.notes.extend(case.notes.iter().cloned());
     result.loads = load_entries(case);
     if !case.output_curve {
@@ -42,6 +50,21 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     }
     result.seconds = started.elapsed().as_secs_f64();
     result
+}
+
+/// An answer in which `verify` finds something wrong is no answer: what decides there decides here.
+fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
+    if wrong.is_empty() {
+        return;
+    }
+    result.status = Status::Stalled;
+    result.load_factor = None;
+    if let Some(last) = result.stages.last_mut() {
+        (last.status, last.factor) = (Status::Stalled, None);
+    }
+    result.notes.push(format!("{}: {}", result.solver, wrong.join("; ")));
+    result.certificate.passed = false;
+    result.certificate.failures.extend(wrong);
 }
 
 /// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`.

@@ -16,4 +16,4 @@ mod path_result;
 
 pub use case::{solve_case, solve_cases, solve_input};
 pub use case_input::CaseInput;
-pub use observer::{Observer, PathProgress};
+pub use observer::{Observer, PathProgress, Unobserved};

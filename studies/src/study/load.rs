@@ -5,7 +5,7 @@ use super::diagnostics::located;
 use super::keys::{VARIANT, kind_tables, study_keys};
 use super::model::{Case, Output, Study};
 use super::outline::Outline;
-use super::source::{StudySource, kind_of};
+use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
 use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::{Node, Value};
@@ -61,6 +61,10 @@ impl Study {
             return Err(diagnostics);
         }
         let first = cases.first().map(|case| &case.resolved);
+        // A sweep or a variant may have changed it.
+        if let Some(why) = first.and_then(|case| case["name"].as_str()).and_then(no_file_name) {
+            return Err(vec![LocatedDiagnostic::new(&root.place("name"), "name", why).help(FILE_NAME)]);
+        }
         let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
         Ok(Study {
             name: text_of("name"),

@@ -10,7 +10,7 @@ use voussoir_core::model::Target;
 use voussoir_core::plugin::{PluginKind, card};
 
 /// What is wrong with a result.
-pub(super) fn verify_case(case: &Case, result: &CaseResult) -> Vec<String> {
+pub fn verify_case(case: &Case, result: &CaseResult) -> Vec<String> {
     let mut findings = Findings::default();
     match recompute(case, result, &mut findings) {
         Ok(()) => findings.0,

@@ -8,6 +8,7 @@ mod contact;
 mod crushing;
 mod elements;
 mod event;
+mod extreme_strengths;
 mod finite;
 mod flow_rule;
 mod force_method;

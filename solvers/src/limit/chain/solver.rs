@@ -74,9 +74,9 @@ impl<'a> ChainEngine<'a> {
                 let (columns, _) = centre(&program, &solved.point, solved.columns);
                 Equilibrium::Motion(program.motion(self.problem, &self.chains, &columns))
             }
-            Outcome::Unbounded(_) | Outcome::Infeasible => {
-                Equilibrium::Failed("the margin program has no optimum".into())
-            }
+            // Rows that pin T to zero have no margin: they alone may refute equilibrium.
+            Outcome::Infeasible(columns) => Equilibrium::Motion(program.motion(self.problem, &self.chains, &columns)),
+            Outcome::Unbounded(_) => Equilibrium::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Equilibrium::Failed(why),
         }
     }
@@ -125,7 +125,7 @@ impl Engine for ChainEngine<'_> {
                         .collect(),
                 )
             }
-            Outcome::Infeasible => {
+            Outcome::Infeasible(_) => {
                 Greatest::Failed("no admissible field: the start is on the verge of collapse".into())
             }
             Outcome::Failed(why) => Greatest::Failed(why),
