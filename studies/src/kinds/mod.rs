@@ -2,6 +2,7 @@
 
 mod case_study;
 pub mod compare;
+pub mod envelope;
 pub mod json_schema;
 mod kind;
 pub mod map;

@@ -4,6 +4,7 @@ use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::{limit, path};
+use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
@@ -43,6 +44,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
+    result.loads = load_entries(case);
     if !case.output_curve {
         result.path.curve = None;
     }

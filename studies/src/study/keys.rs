@@ -1,7 +1,7 @@
 //! The keys of a study file.
 
 use crate::kinds::kinds;
-use crate::loads::load_shape;
+use crate::loads::{VEHICLE, load_shape};
 use std::sync::LazyLock;
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card, cards_of};
 
@@ -158,6 +158,12 @@ static COMMON: &[Parameter] = &[
         Shape::Plugin(PluginKind::LimitSolver),
         Need::Default("{ solver = \"auto\" }"),
         "how the cases are answered",
+    ),
+    key(
+        "vehicles",
+        Shape::Map(&VEHICLE),
+        Need::Optional("no vehicles"),
+        "vehicles by name, for loads of kind \"vehicle\"",
     ),
     key(
         "sweep",

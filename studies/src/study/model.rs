@@ -50,6 +50,8 @@ pub struct Case {
     pub output_curve: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
+    /// One of many made from another case, which has the weights that both have: its results leave them out.
+    pub brief: bool,
     /// The case's own study file: numbers in SI units, defaults filled in.
     pub resolved: Json,
 }

@@ -3,6 +3,7 @@
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
+use crate::figures::envelope::envelope_chart;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use serde_json::Value as Json;
@@ -18,8 +19,9 @@ impl Writer for Figures {
         }
         let mut files: Vec<(String, String)> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
+        files.extend(envelope_chart(study.name, study.results).map(|svg| ("figures/envelope.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
-        for (place, case) in study.results.cases.iter().enumerate() {
+        for (place, case) in study.results.cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id)) {
             let Some((assembly, stages)) = study.scene(place) else { continue };
             let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.label.id);
             files.push((name("scene"), scene_svg(study.name, assembly, stages, case)));

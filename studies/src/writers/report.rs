@@ -6,6 +6,7 @@ use super::register::register;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
+use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     case_title, escape, format_force, format_number, format_seconds, format_short, headline, key_with_unit, kind_words,
     status_meaning, status_word, unit_load,
@@ -47,6 +48,12 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += &chart;
         body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
                  lines only join neighbouring cases.</figcaption></figure>\n";
+    }
+    if let Some(chart) = study.output.figures.then(|| envelope_chart(study.name, study.results)).flatten() {
+        body += &format!(
+            "<h2>Envelope</h2>\n<figure>{chart}<figcaption>The load factor at every place that was tried; only the worst \
+             is drawn below.</figcaption></figure>\n"
+        );
     }
     body += &comparison(study);
     body += "<h2>Cases</h2>\n";
@@ -192,12 +199,14 @@ fn notes(cases: &[CaseResult]) -> String {
 fn figures(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut text = format!("<h2>Figures</h2>\n{}", page::MEANING);
-    if cases.len() > drawn {
+    if cases.len() > drawn && study.drawn(cases[0].label.id) {
         text += &format!("<p>{} cases: the first {drawn} are drawn here.</p>\n", cases.len());
     }
-    for (place, case) in cases.iter().take(drawn).enumerate() {
+    let chosen = || cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id));
+    let first = chosen().next().map(|(place, _)| place);
+    for (place, case) in chosen().take(drawn) {
         let Some((assembly, stages)) = study.scene(place) else { continue };
-        let open = if place == 0 && cases.len() <= drawn { " open" } else { "" };
+        let open = if Some(place) == first && chosen().count() <= drawn { " open" } else { "" };
         let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
         let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.label.id));

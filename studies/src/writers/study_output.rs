@@ -49,6 +49,12 @@ impl<'a> StudyOutput<'a> {
         }
     }
 
+    /// Whether a case is drawn: of an envelope only the worst places are.
+    pub fn drawn(&self, id: usize) -> bool {
+        let Some(worsts) = self.results.own.get("worsts").and_then(serde_json::Value::as_array) else { return true };
+        worsts.iter().any(|worst| worst["case"].as_u64() == Some(id as u64))
+    }
+
     /// Assembly and stages of the case at this place in the list; `None` where they are missing.
     pub fn scene(&self, place: usize) -> Option<(&'a Assembly, &'a [Stage])> {
         self.scenes.get(place).map(|scene| (scene.assembly, scene.stages))
