@@ -7,7 +7,7 @@ mod search;
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
 use crate::study::{Case, Outline, Study, StudySource};
 use serde_json::Value as Json;
 use std::borrow::Cow;
@@ -193,10 +193,7 @@ impl StudyKind for Optimise {
             };
             wanted.iter().flat_map(of).collect::<Vec<_>>()
         };
-        results.extend(match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
-            Ok(pool) => pool.install(all),
-            Err(_) => all(),
-        });
+        results.extend(side_by_side(jobs, all));
         results
     }
 

@@ -13,7 +13,9 @@ mod limit_result;
 mod observer;
 mod path;
 mod path_result;
+mod side_by_side;
 
 pub use case::{solve_case, solve_cases, solve_input};
 pub use case_input::CaseInput;
 pub use observer::{Observer, PathProgress, Unobserved};
+pub use side_by_side::side_by_side;
