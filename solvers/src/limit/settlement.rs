@@ -45,8 +45,8 @@ fn settled(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> R
     // Openings over the force variables, in the length of the greatest.
     let unit = openings.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let mut driven = vec![0.0; systems.forces];
-    for (opening, &(first, shear)) in openings.iter().zip(&systems.variables.joints) {
-        for k in 0..if shear { 3 } else { 2 } {
+    for (opening, &(first, count)) in openings.iter().zip(&systems.variables.joints) {
+        for k in 0..count {
             driven[first + k] = if unit > 0.0 { opening[k] / unit } else { 0.0 };
         }
     }

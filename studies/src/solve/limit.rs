@@ -4,7 +4,7 @@ use super::auto::limit_solvers;
 use super::case_input::CaseInput;
 use super::limit_result::certified;
 use super::safe_theorem::static_proof;
-use super::settlement::{follow_supports, settles};
+use super::settlement::{Settling, follow_supports, settles};
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
 use voussoir_core::certificate::Hinge;
@@ -49,7 +49,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
         let (mut result, hinges) = match LimitProblem::new(assembly, &loads[index]) {
             Ok(problem) => {
                 let mut result = solve_stage(input, index, &problem, &loads[index]);
-                let hinges = settled_hinges(input, index, &problem, &mut result);
+                let hinges = settled_hinges(input, index, (&problem, &loads[index]), &mut result);
                 (result, hinges)
             }
             Err(why) => (CaseResult::stalled(why), Vec::new()),
@@ -96,7 +96,12 @@ fn record_stages(
 }
 
 /// How blocks have followed their supports by the end of a stage that stands, in its result, and the hinges.
-fn settled_hinges(input: &CaseInput, index: usize, problem: &LimitProblem, result: &mut CaseResult) -> Vec<Hinge> {
+fn settled_hinges(
+    input: &CaseInput,
+    index: usize,
+    (problem, loads): (&LimitProblem, &StageLoads),
+    result: &mut CaseResult,
+) -> Vec<Hinge> {
     let idle = problem.magnitude(&problem.varying) == 0.0;
     let stands = result.status == Status::Stands || (result.status == Status::Unbounded && idle);
     if !stands || !settles(input.stages, index) {
@@ -104,10 +109,10 @@ fn settled_hinges(input: &CaseInput, index: usize, problem: &LimitProblem, resul
     }
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let factor = result.proof.field_factor.unwrap_or(0.0);
-    let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + factor * b[i]);
-    let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
     match limit_solvers(selected, problem).iter().find(|(_, solver)| solver.refuses(problem).is_none()) {
-        Some((_, solver)) => follow_supports(input, index, (&**solver, problem, &loads), result),
+        Some((_, solver)) => {
+            follow_supports(input, index, Settling { solver: &**solver, problem, loads, factor }, result)
+        }
         None => Vec::new(),
     }
 }

@@ -15,8 +15,10 @@ mod path;
 mod path_result;
 mod safe_theorem;
 mod settlement;
+mod side_by_side;
 mod statics;
 
 pub use case::{solve_case, solve_cases, solve_input};
 pub use case_input::CaseInput;
 pub use observer::{Observer, PathProgress, Unobserved};
+pub use side_by_side::side_by_side;

@@ -8,11 +8,13 @@ use super::limit_result::{body_velocities, contact_forces};
 use crate::results::convert::field_entries;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, DisplacementEntry};
-use voussoir_core::certificate::{CentroidVelocity, Hinge, jumps, largest_jump, mechanism, settlement_residuals};
+use voussoir_core::certificate::{
+    CentroidVelocity, Claim, Hinge, certify, jumps, largest_jump, mechanism, settlement_residuals,
+};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitProblem, LimitSolver, SettlementAnswer, Status};
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::model::{Assembly, Bond, Stage, Target, Wrenches};
+use voussoir_core::model::{Assembly, Bond, Stage, StageLoads, Target};
 
 /// Residual up to which a settlement is proved.
 const PROVED: f64 = 1e-8;
@@ -87,15 +89,20 @@ fn openings(assembly: &Assembly, problem: &LimitProblem, supports: &[Option<Cent
     problem.joints.iter().map(of).collect()
 }
 
+/// What is asked of a solver.
+#[derive(Clone, Copy)]
+pub(super) struct Settling<'a> {
+    pub solver: &'a dyn LimitSolver,
+    pub problem: &'a LimitProblem,
+    pub loads: &'a StageLoads,
+    /// Factor of the stage's loads.
+    pub factor: f64,
+}
+
 /// Puts into the result of a stage that stands how its blocks have followed their supports: field, displacements and
 /// residuals. Returns the hinges; where nothing is proved the stage is stalled.
-pub(super) fn follow_supports(
-    input: &CaseInput,
-    index: usize,
-    (solver, problem, loads): (&dyn LimitSolver, &LimitProblem, &Wrenches),
-    result: &mut CaseResult,
-) -> Vec<Hinge> {
-    let found = followed(input, index, (solver, problem, loads), result);
+pub(super) fn follow_supports(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseResult) -> Vec<Hinge> {
+    let found = followed(input, index, asked, result);
     found.unwrap_or_else(|why| {
         result.status = Status::Stalled;
         result.certificate.passed = false;
@@ -105,21 +112,38 @@ pub(super) fn follow_supports(
     })
 }
 
-fn followed(
-    input: &CaseInput,
-    index: usize,
-    (solver, problem, loads): (&dyn LimitSolver, &LimitProblem, &Wrenches),
-    result: &mut CaseResult,
-) -> Result<Vec<Hinge>, String> {
-    let assembly = input.assembly;
+fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseResult) -> Result<Vec<Hinge>, String> {
+    let (assembly, problem) = (input.assembly, asked.problem);
+    if problem.joints.iter().any(|joint| joint.fill.is_some()) {
+        return Err("settlements of rigid blocks take no fill that presses: switch its resistance off".into());
+    }
     let supports = supports(assembly, input.stages, index)?;
-    let (field, motion, unique) = match solver.settle(problem, loads, &openings(assembly, problem, &supports)) {
+    let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + asked.factor * b[i]);
+    let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
+    let (field, motion, unique) = match asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports)) {
         SettlementAnswer::Follows { field, motion, unique } => (field, motion, unique),
         SettlementAnswer::Refused(why) => return Err(why),
     };
     let field = contact_forces(problem, &field);
     let free = body_velocities(assembly, problem, &motion);
     let motion: Vec<CentroidVelocity> = supports.iter().zip(free).map(|(held, free)| held.unwrap_or(free)).collect();
+    let claim = Claim {
+        status: Status::Stands,
+        factor: None,
+        field_factor: asked.factor,
+        start: asked.factor,
+        field: Some(&field),
+        fill: &[],
+        motion: None,
+        ray: None,
+        feasible_interval: None,
+        non_associated: None,
+    };
+    let (certificate, _) = certify(assembly, asked.loads, &claim, input.settings.tolerance);
+    if !certificate.passed {
+        return Err(certificate.failures.join("; "));
+    }
+    result.certificate.residuals.extend(certificate.residuals);
     for (name, value) in settlement_residuals(assembly, &field, &motion, &supports) {
         result.certificate.residuals.insert(name.into(), value);
         if value.is_nan() || value > PROVED {
