@@ -11,7 +11,7 @@ pub mod stage_start;
 mod study_results;
 pub mod thrust_line;
 
-pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, ProofFields, StageResult};
+pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult};
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, YieldedEntry,
