@@ -8,7 +8,7 @@ mod worsts;
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
 use crate::study::{Case, Outline, Study, StudySource};
 use rayon::prelude::*;
 use serde_json::Value as Json;
@@ -213,10 +213,7 @@ impl StudyKind for Envelope {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = Request::of(&study.outline) else { return results };
         let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request)).collect::<Vec<_>>();
-        results.extend(match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
-            Ok(pool) => pool.install(all),
-            Err(_) => all(),
-        });
+        results.extend(side_by_side(jobs, all));
         results
     }
 

@@ -6,6 +6,7 @@ pub mod envelope;
 pub mod json_schema;
 mod kind;
 pub mod map;
+pub mod optimise;
 pub mod point;
 mod read;
 pub mod run;

@@ -3,7 +3,7 @@
 use super::case::build_case;
 use super::diagnostics::located;
 use super::keys::{VARIANT, kind_tables, study_keys};
-use super::model::{Case, Output, Study};
+use super::model::{Case, Drawn, Output, Study};
 use super::outline::Outline;
 use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
 use crate::config::check::Checker;
@@ -70,7 +70,7 @@ impl Study {
             name: text_of("name"),
             kind: text_of("kind"),
             outline,
-            output: first.map(|case| output(&case["output"])).unwrap_or_default(),
+            output: first.map(|case| output(&case["output"], expansion.count())).unwrap_or_default(),
             cases,
             resolved: root.to_toml(),
             expansion,
@@ -96,12 +96,12 @@ impl Study {
 }
 
 /// What is written besides the results, from the checked table `[output]`.
-fn output(table: &Json) -> Output {
+fn output(table: &Json, cases: usize) -> Output {
     let flag = |name: &str| table[name].as_bool().unwrap_or(false);
     let tags = |list: &Vec<Json>| list.iter().filter_map(|tag| tag.as_str().map(str::to_string)).collect();
     Output {
         curve: flag("curve"),
-        figures: flag("figures"),
+        figures: Drawn::read(&table["figures"], cases),
         vtu: flag("vtu"),
         writers: table["writers"].as_array().map(tags),
         options: table["options"].as_object().cloned().unwrap_or_default(),

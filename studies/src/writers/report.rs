@@ -41,7 +41,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
-    if study.output.figures
+    if study.output.figures.anything()
         && let Some(chart) = study_chart(study)
     {
         body += "<h2>The sweep</h2>\n<figure>";
@@ -49,7 +49,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
                  lines only join neighbouring cases.</figcaption></figure>\n";
     }
-    if let Some(chart) = study.output.figures.then(|| envelope_chart(study.name, study.results)).flatten() {
+    if let Some(chart) = study.output.figures.anything().then(|| envelope_chart(study.name, study.results)).flatten() {
         body += &format!(
             "<h2>Envelope</h2>\n<figure>{chart}<figcaption>The load factor at every place that was tried; only the worst \
              is drawn below.</figcaption></figure>\n"
@@ -59,7 +59,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     body += "<h2>Cases</h2>\n";
     body += &case_table(study);
     body += &notes(cases);
-    if study.output.figures {
+    if study.output.figures.anything() {
         body += &figures(study, drawn);
     }
     body += &paths(study, drawn);
@@ -84,7 +84,7 @@ fn comparison(study: &StudyOutput) -> String {
          after ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
         escape(&comparison.reference)
     );
-    if study.output.figures
+    if study.output.figures.anything()
         && let Some((name, svg)) = figure(study.name, comparison)
     {
         let caption = match name {
@@ -199,10 +199,14 @@ fn notes(cases: &[CaseResult]) -> String {
 fn figures(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut text = format!("<h2>Figures</h2>\n{}", page::MEANING);
-    if cases.len() > drawn && study.drawn(cases[0].label.id) {
-        text += &format!("<p>{} cases: the first {drawn} are drawn here.</p>\n", cases.len());
-    }
     let chosen = || cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id));
+    match chosen().count() {
+        count if count > drawn => text += &format!("<p>{count} cases: the first {drawn} are drawn here.</p>\n"),
+        count if count < cases.len() => {
+            text += &format!("<p>{} cases: the {count} worst or best of them are drawn.</p>\n", cases.len());
+        }
+        _ => {}
+    }
     let first = chosen().next().map(|(place, _)| place);
     for (place, case) in chosen().take(drawn) {
         let Some((assembly, stages)) = study.scene(place) else { continue };
@@ -260,7 +264,7 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
                     point still closed, and slides when all its closed points slide the same way. What moves only in the \
                     collapse mechanism stands last, at the collapse load.</p>\n"
         .to_string();
-    if study.output.figures {
+    if study.output.figures.anything() {
         for (_, chart) in curve_charts(study) {
             text += &format!("<figure>{chart}<figcaption>{CURVE}</figcaption></figure>\n");
         }
