@@ -435,3 +435,39 @@ fn friction_that_does_not_dilate_takes_fill_too() {
     assert!(result.certificate.passed, "{:?}", result.certificate);
     assert!(result.load_factor.expect("a factor") <= 272.620144 * (1.0 + 1e-8));
 }
+
+/// Elastic–plastic and rigid–plastic fill on paths end at the load of limit analysis, with elastic blocks and with
+/// compliant joints, whatever the least pressure.
+#[test]
+fn paths_with_fill_end_at_the_limit_load() {
+    let elastic = changed(RESISTING, "law = \"rigid\"", "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2");
+    let elastic = changed(&elastic, "[scene.fill]", "mesh = { elements = [2, 2] }\n[scene.fill]");
+    let springs = "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9";
+    let compliant = changed(RESISTING, "friction = 0.6", springs);
+    for lower in ["zero", "active", "at_rest"] {
+        let own = |text: &str| changed(text, "lower = \"zero\"", &format!("lower = \"{lower}\""));
+        let limit = collapse_factor(&own(RESISTING));
+        for text in [&elastic, &compliant] {
+            for stiffness in [None, Some(1e8)] {
+                let law = stiffness.map_or("law = \"fill_pressure\"".to_string(), |k: f64| {
+                    format!("law = \"fill_pressure\", stiffness = {k:?}")
+                });
+                let text = changed(&own(text), "law = \"fill_pressure\"", &law);
+                for solver in ["event_path", "newton_path"] {
+                    let text = format!("{text}[solver]\nsolver = \"{solver}\"\n");
+                    assert_close(collapse_factor(&text), limit, 1e-8);
+                }
+            }
+        }
+    }
+}
+
+/// A study whose gravity changes has no one strength of its fill: paths say so.
+#[test]
+fn paths_refuse_fill_whose_strength_changes() {
+    let text = changed(RESISTING, "friction = 0.6", "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9");
+    let twice = "[[stages]]\nname = \"more\"\ngravity = 12.0\n[[stages]]\nname = \"live\"";
+    let result = answered(&changed(&text, "[[stages]]\nname = \"live\"", twice));
+    assert_eq!(result.status, Status::Stalled);
+    assert!(result.notes.iter().any(|note| note.contains("gravity changes")), "{:?}", result.notes);
+}
