@@ -66,8 +66,11 @@ pub(super) fn add_fill(problem: &mut PathProblem, assembly: &Assembly, stages: &
             gap: 0.0,
             law: PointLaw::Facets(facets.into()),
             compliance: [compliance; 2],
-            // The force stays horizontal, at the point of the block.
-            sliding: Sliding { share: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] },
+            // The force stays horizontal, at the point of the block; where the block deforms it turns with half of it.
+            sliding: match slot {
+                None => Sliding { share: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] },
+                Some(_) => Sliding::middle(0.0),
+            },
         });
     }
     Ok(())
