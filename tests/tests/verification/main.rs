@@ -1,6 +1,8 @@
 //! Somebody else's answers: closed forms, published numbers, independent programs.
 
 mod arch;
+mod bridge;
+mod bridge_envelope;
 mod cap;
 mod cohesive;
 mod compare;
