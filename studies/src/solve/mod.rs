@@ -13,6 +13,7 @@ mod limit_result;
 mod observer;
 mod path;
 mod path_result;
+mod symmetric;
 
 pub use case::{solve_case, solve_cases, solve_input};
 pub use case_input::CaseInput;
