@@ -1,6 +1,7 @@
 //! Studies and results as files: read back unchanged, and every changed number found.
 
 mod forgery;
+mod labels;
 mod lower_bound;
 mod pages;
 mod round_trip;
