@@ -51,7 +51,14 @@ pub fn collapse_factor(text: &str) -> f64 {
 
 /// What a path with small displacements is asked for where nothing else is.
 pub fn small_displacements() -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
+    PathSettings {
+        finite: false,
+        tolerance: 1e-9,
+        stop_displacement: None,
+        stop_factor: None,
+        continuation: None,
+        stages: Vec::new(),
+    }
 }
 
 /// Asserts |a − b| ≤ tolerance × |b|.

@@ -2,6 +2,7 @@
 
 use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
+use super::response_check::check_response;
 use super::sliding::Sliding;
 use crate::elastic::{Condenser, breaks_on_joint, joint_points, union_breaks};
 use crate::law::PlanarUpdate;
@@ -103,6 +104,7 @@ fn points_of_joint(assembly: &Assembly, joint: &Joint) -> Result<(Vec<f64>, Vec<
 fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTreeSet<usize>, String> {
     let laws: Vec<Option<PointLaw>> = assembly.catalogue.laws.iter().map(|(_, law)| PointLaw::of(&**law)).collect();
     let mut nonmatching = BTreeSet::new();
+    let mut checked = BTreeSet::new();
     for (index, joint) in assembly.joints.iter().enumerate() {
         if problem.body_of[joint.minus] == problem.body_of[joint.plus] {
             continue;
@@ -118,6 +120,12 @@ fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTre
             Bond::Bonded => &PointLaw::Bonded,
             Bond::Law(law) => laws[law].as_ref().ok_or("a joint law gives neither facets nor tractions from gaps")?,
         };
+        if let (PointLaw::Response(response), Bond::Law(own)) = (law, joint.bond)
+            && checked.insert(own)
+        {
+            let (name, interface) = &assembly.catalogue.laws[own];
+            check_response((name, &**interface), &**response, (index, joint.middle()))?;
+        }
         for (position, weight) in positions.into_iter().zip(weights) {
             let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
             let area = weight * height * assembly.width;

@@ -13,6 +13,7 @@ mod build;
 mod continuation;
 mod point_law;
 mod problem;
+mod response_check;
 mod sliding;
 mod solver;
 mod state;
@@ -21,5 +22,5 @@ pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS,
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;
-pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, Unobserved};
+pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, StageSettings, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};

@@ -3,7 +3,7 @@
 use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
-use voussoir_core::certificate::{Certificate, Mechanism};
+use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{Counters, LowerProof, Status};
 
 /// Which case of its study it is.
@@ -72,6 +72,16 @@ pub struct PathRecord {
     pub yielded: Vec<YieldedEntry>,
 }
 
+/// What proves that a case stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Proof {
+    /// An admissible field: flow is associated and displacements are small.
+    Static,
+    /// The path to its loads.
+    Path,
+}
+
 /// What one stage came to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageResult {
@@ -81,8 +91,9 @@ pub struct StageResult {
     pub status: Status,
     /// The factor it reached; `null` where it reached none, or any.
     pub factor: Option<f64>,
-    /// Hinges of the mechanism that ended it, else empty.
-    pub hinges: Vec<usize>,
+    /// Hinges of the mechanism that ended it, rotations per unit of motion; of a path's stage that stands the joints
+    /// that are open over three quarters of their height at its end, with their rotation \[rad\].
+    pub hinges: Vec<Hinge>,
 }
 
 /// The answer to one case with what proves it.
@@ -104,6 +115,9 @@ pub struct CaseResult {
     pub feasible_interval: Option<[Option<f64>; 2]>,
     /// `"associated"` where a non-associated law was read so.
     pub flow_read_as: Option<String>,
+    /// What proves that it stands, where it does.
+    #[serde(rename = "proof", default, skip_serializing_if = "Option::is_none")]
+    pub proved_by: Option<Proof>,
     /// The solver that answered.
     pub solver: String,
     /// What a user should know.
@@ -142,6 +156,7 @@ impl CaseResult {
             non_associated: NonAssociatedAnswer::default(),
             feasible_interval: None,
             flow_read_as: None,
+            proved_by: None,
             solver: String::new(),
             notes: Vec::new(),
             mechanism: None,

@@ -10,7 +10,7 @@ pub mod stage_start;
 mod study_results;
 pub mod thrust_line;
 
-pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, ProofFields, StageResult};
+pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult};
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
 pub use study_results::StudyResults;

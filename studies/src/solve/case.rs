@@ -3,11 +3,13 @@
 use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
+use super::statics::stands_by_statics;
 use super::{limit, path};
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
 use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
@@ -17,10 +19,9 @@ use voussoir_core::plugin::{PluginKind, card};
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
     let solvers = path_solvers(input);
     if solvers.is_empty() {
-        limit::solve_by_limit_analysis(input)
-    } else {
-        path::solve_by_path(input, &solvers, observer)
+        return limit::solve_by_limit_analysis(input);
     }
+    stands_by_statics(input).unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
 }
 
 /// Solves one case.
@@ -28,9 +29,17 @@ pub fn solve_case(case: &Case) -> CaseResult {
     solve_observed(case, &mut Unobserved)
 }
 
+/// The answer, or what a panic in a plug-in or a solver said: it ends its case, never the run.
+fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
+    catch_unwind(AssertUnwindSafe(solve)).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        CaseResult::stalled(format!("a panic ended the case: {}", said.unwrap_or("it said nothing")))
+    })
+}
+
 fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
-    let mut result = solve_input(&CaseInput::of(case), observer);
+    let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
     result.label = CaseLabel {
         id: case.id,
         case_hash: case.hash(),
@@ -39,7 +48,8 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         parameters: case.parameters.clone(),
     };
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
-        let wrong = verify_case(case, &result);
+        let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
+        let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
@@ -56,7 +66,7 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
         return;
     }
     result.status = Status::Stalled;
-    result.load_factor = None;
+    (result.load_factor, result.proved_by) = (None, None);
     if let Some(last) = result.stages.last_mut() {
         (last.status, last.factor) = (Status::Stalled, None);
     }

@@ -3,6 +3,7 @@
 use super::auto::limit_solvers;
 use super::case_input::CaseInput;
 use super::limit_result::certified;
+use super::safe_theorem::static_proof;
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
 use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
@@ -43,7 +44,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
             continue;
         }
         let mut result = match LimitProblem::new(assembly, &loads[index]) {
-            Ok(problem) => solve_stage(input, &stages[index], &problem, &loads[index]),
+            Ok(problem) => solve_stage(input, index, &problem, &loads[index]),
             Err(why) => CaseResult::stalled(why),
         };
         for (name, count) in std::mem::take(&mut result.counters) {
@@ -53,6 +54,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
         if result.status != Status::Stands || index + 1 == stages.len() {
             result.stages = done;
             result.counters = counters;
+            result.proved_by = static_proof(assembly, &result);
             return result;
         }
     }
@@ -77,15 +79,17 @@ fn record_stages(done: &mut Vec<StageResult>, stages: &[Stage], index: usize, re
         (Status::Stands, Target::Collapse) => result.proof.field_factor,
         _ => None,
     };
-    let hinges = result.mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
+    let hinges = result.mechanism.iter().flat_map(|m| &m.hinges).cloned().collect();
     done.push(stage(index, result.status, reached, hinges));
 }
 
 /// The first certified answer of the solvers to try; without one the stage is stalled.
-fn solve_stage(input: &CaseInput, stage: &Stage, problem: &LimitProblem, loads: &StageLoads) -> CaseResult {
+fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &StageLoads) -> CaseResult {
+    let stage = &input.stages[index];
+    let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let mut notes = Vec::new();
     let mut best: Option<CaseResult> = None;
-    for (tag, solver) in limit_solvers(input.solver, problem) {
+    for (tag, solver) in limit_solvers(selected, problem) {
         if let Some(why) = solver.refuses(problem) {
             notes.push(format!("{tag}: {why}"));
             continue;

@@ -13,6 +13,8 @@ mod limit_result;
 mod observer;
 mod path;
 mod path_result;
+mod safe_theorem;
+mod statics;
 mod symmetric;
 
 pub use case::{solve_case, solve_cases, solve_input};

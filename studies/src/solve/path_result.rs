@@ -5,29 +5,39 @@ use super::coarse_joints::coarse_joints;
 use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
-use crate::results::path_state::{carried, mechanism_of, small};
+use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
-use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, ProofFields, StageResult};
+use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, Proof, ProofFields, StageResult};
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, ContactForce, PathChecker, flow_residual, jumps, largest_jump,
+    CentroidVelocity, Certificate, ContactForce, Hinge, PathChecker, flow_residual, jumps, largest_jump, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{PathAnswer, PathEvent, PathProblem};
+use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, PathState};
 
-/// The result of a path that `checker` has looked on.
+/// What was seen of a path.
+pub(super) struct Seen {
+    /// Residuals of all states.
+    pub checker: PathChecker,
+    /// The last state of each stage, by index.
+    pub ends: Vec<Option<PathState>>,
+    /// How much of the energy of a stage its steps may lose.
+    pub energy: f64,
+}
+
+/// The result of a path.
 pub(super) fn path_result(
     input: &CaseInput,
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    checker: PathChecker,
+    Seen { checker, ends, energy }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     prefer_symmetric(assembly, &checker, finite, &mut solved);
-    let certificate = certificate(&solved, &checker, finite);
+    let certificate = certificate(&solved, &checker, finite, energy);
     let (mut status, mut notes) = (solved.status, solved.notes.clone());
     notes.extend(coarse_note(problem, assembly));
     if !certificate.passed && status != Status::Stalled {
@@ -51,7 +61,12 @@ pub(super) fn path_result(
         (Status::Stands, Target::Collapse) => solved.factor,
         _ => load_factor,
     };
-    let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
+    let at_end = |stage: usize| ends[stage].as_ref().map(|state| open_hinges(assembly, problem, state));
+    let mut hinges: Vec<Vec<Hinge>> = (0..=load_step.stage).map(|stage| at_end(stage).unwrap_or_default()).collect();
+    if let (Some(mechanism), Some(last)) = (mechanism.as_ref().filter(|_| status != Status::Stands), hinges.last_mut())
+    {
+        last.clone_from(&mechanism.hinges);
+    }
     let motion = match (finite, &rates) {
         (true, Some(rates)) => Some(velocities(assembly, problem, rates, Some(&solved.state.motion))),
         _ => motion,
@@ -62,6 +77,7 @@ pub(super) fn path_result(
     CaseResult {
         status,
         load_factor,
+        proved_by: (status == Status::Stands).then_some(Proof::Path),
         solver: tag.into(),
         mechanism,
         proof: ProofFields {
@@ -110,11 +126,12 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
 }
 
 /// Residuals of all states and of the mechanism's flow, against their bounds.
-fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool) -> Certificate {
+fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy: f64) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
-        if !small(name, *value) {
+        let bound = if *name == "path_energy" { energy } else { tolerance(name).result };
+        if value.is_nan() || *value > bound {
             certificate.passed = false;
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
@@ -173,19 +190,28 @@ fn stage_results(
     last: usize,
     status: Status,
     reached: Option<f64>,
-    hinges: Vec<usize>,
+    hinges: Vec<Vec<Hinge>>,
 ) -> Vec<StageResult> {
-    let stood = |stage: &Stage| {
+    let mut hinges = hinges.into_iter();
+    let mut stood = |stage: &Stage| {
         let factor = match stage.target {
             Target::Factor(factor) => Some(factor),
             Target::Collapse => None,
         };
-        StageResult { name: stage.name.clone(), status: Status::Stands, factor, hinges: Vec::new() }
+        StageResult {
+            name: stage.name.clone(),
+            status: Status::Stands,
+            factor,
+            hinges: hinges.next().unwrap_or_default(),
+        }
     };
-    let mut results: Vec<StageResult> = stages[..last].iter().map(stood).collect();
-    results.push(StageResult { name: stages[last].name.clone(), status, factor: reached, hinges });
+    let mut results: Vec<StageResult> = stages[..last].iter().map(&mut stood).collect();
+    let end = stood(&stages[last]);
+    results.push(StageResult { status, factor: reached, ..end });
     if status == Status::Stands {
-        results.extend(stages[last + 1..].iter().map(stood).filter(|idle| idle.factor.is_some()));
+        let after = results[last].hinges.clone();
+        let idle = stages[last + 1..].iter().map(stood).filter(|idle| idle.factor.is_some());
+        results.extend(idle.map(|idle| StageResult { hinges: after.clone(), ..idle }));
     }
     results
 }

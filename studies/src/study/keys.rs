@@ -1,5 +1,6 @@
 //! The keys of a study file.
 
+use crate::config::common_keys::STOP;
 use crate::kinds::kinds;
 use crate::loads::load_shape;
 use std::sync::LazyLock;
@@ -55,6 +56,14 @@ static STAGE: &[Parameter] = &[
         Need::Default("[]"),
         "movements of supports",
     ),
+    key(
+        "continuation",
+        Shape::Plugin(PluginKind::Continuation),
+        Need::Optional("that of [solver]"),
+        "strategy of path solvers in this stage",
+    ),
+    key("stop", STOP, Need::Optional("that of [solver]"), "how far to go after a peak in this stage"),
+    key("solver", Shape::Text, Need::Optional("that of [solver]"), "tag of the limit solver that answers this stage"),
 ];
 
 static AXIS: Shape = Shape::Table(&[

@@ -27,6 +27,8 @@ pub struct SolverChoice {
     pub solver: SelectedSolver,
     /// What a path solver is told; its tolerance is that of certificates too.
     pub settings: PathSettings,
+    /// Who solves a stage that names its own limit solver, by index.
+    pub of_stages: Vec<Option<SelectedSolver>>,
 }
 
 /// One case, ready to be solved.

@@ -8,7 +8,7 @@ use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, Claim, ContactForce, NonAssociatedClaim, certify, mechanism,
+    CentroidVelocity, Certificate, Claim, ContactForce, Hinge, NonAssociatedClaim, certify, mechanism,
 };
 use voussoir_core::law::{FlowRule, is_associated};
 use voussoir_core::limit::Status;
@@ -161,7 +161,7 @@ fn verify_mechanism(
         (None, None) => {}
         _ => findings.expect(false, "there is a motion without a mechanism, or a mechanism without a motion"),
     }
-    let hinges: Vec<usize> = result.mechanism.iter().flat_map(|m| &m.hinges).map(|h| h.joint).collect();
+    let hinges: Vec<Hinge> = result.mechanism.iter().flat_map(|m| &m.hinges).cloned().collect();
     findings.expect(result.stages[last].hinges == hinges, "hinges of the last stage are not those of the mechanism");
     let line = stored.field.as_ref().and_then(|field| thrust_line(assembly, field));
     findings.expect(same_line(&line, &result.proof.thrust_line), "the thrust line is not that of the field");

@@ -18,6 +18,7 @@ mod path_certificate;
 mod paths_read;
 mod plastic;
 mod semicircle;
+mod settlements;
 mod snap_through;
 mod softening;
 mod statuses;

@@ -7,27 +7,20 @@ use super::monitors::resolve;
 use super::recorded::{recorded, work_state};
 use super::system::StepSystem;
 use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
-use crate::path::energy::EnergyBalance;
+use crate::path::continuation::arc_length::ArcLength;
+use crate::path::energy::{EnergyBalance, StageBalance};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings};
+use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings};
 
 /// Follows all load steps.
-pub(super) fn trace(
-    problem: &PathProblem,
-    settings: &PathSettings,
-    strategy: Arc<dyn Continuation>,
-    observer: &mut dyn PathObserver,
-) -> PathAnswer {
-    let monitors = resolve(problem, &strategy.monitors());
-    let built = monitors.and_then(|monitors| Ok((StepSystem::new(problem, settings.finite)?, monitors)));
-    let (mut system, monitors) = match built {
-        Ok(built) => built,
+pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
+    let system = match StepSystem::new(problem, settings.finite) {
+        Ok(system) => system,
         Err(why) => return stalled(problem, why),
     };
-    system.monitors = monitors;
     let state = system.undeformed();
     let gradient = system.gradient(&state);
     let energy = EnergyBalance::default();
@@ -36,11 +29,18 @@ pub(super) fn trace(
     let mut tracer = Tracer {
         system,
         settings,
-        strategy,
+        strategy: Arc::new(ArcLength::default()),
         observer,
         load_step: 0,
         state,
-        record: Record { energy, work, state: seen, events: Vec::new(), notes: Vec::new() },
+        record: Record {
+            energy,
+            balance: StageBalance::default(),
+            work,
+            state: seen,
+            events: Vec::new(),
+            notes: Vec::new(),
+        },
         ending: Ending { status: Status::Stalled, motion: None, ray: None },
         limit: LimitPoint::default(),
         post_peak: PostPeak::default(),
@@ -55,6 +55,10 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     for (index, load_step) in problem.load_steps.iter().enumerate() {
         tracer.load_step = index;
         tracer.state.factor = load_step.start;
+        tracer.strategy =
+            tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
+        // What the problem does not have is refused before the path begins.
+        tracer.system.monitors = resolve(problem, &tracer.strategy.monitors()).unwrap_or_default();
         tracer.system.load(StagedLoads {
             earlier: earlier.clone(),
             growing: &load_step.loading,

@@ -176,7 +176,7 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     if let Some(trough) = &tracer.post_peak.trough {
         tracer.post_peak.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
     }
-    let (stop_displacement, stop_factor) = (tracer.settings.stop_displacement, tracer.settings.stop_factor);
+    let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
     let done = match (stop_displacement, stop_factor) {
         (None, None) => {
             let grown = (peak.factor - load_step.start).abs();
