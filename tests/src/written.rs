@@ -4,9 +4,9 @@ use crate::study;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
+use voussoir::kinds::kind;
 use voussoir::results::{CaseResult, StudyResults};
 use voussoir::solve::Unobserved;
-use voussoir::solve_case;
 use voussoir::study::{Study, load};
 use voussoir::verify::{solve_again, verify_against};
 
@@ -15,7 +15,9 @@ pub fn results(text: &str) -> (Study, Value) {
     let original = study(text);
     let resolved = toml::to_string(&original.resolved).expect("a study can be written");
     let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
-    let results = original.results("test", original.cases.iter().map(solve_case).collect());
+    let (kind, wanted) =
+        (kind(&original.kind).expect("a registered kind"), (0..original.cases.len()).collect::<Vec<_>>());
+    let results = original.results("test", kind.solve(&original, &wanted, 1, &Unobserved));
     (again, serde_json::to_value(&results).expect("results can be written"))
 }
 

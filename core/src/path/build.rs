@@ -8,7 +8,7 @@ use crate::elastic::{Condenser, breaks_on_joint, joint_points, union_breaks};
 use crate::law::PlanarUpdate;
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
-use crate::model::{Assembly, Bond, Joint, Stage, Target, root};
+use crate::model::{Assembly, Bond, Joint, PointForce, Stage, Target, fill_weights, root};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
@@ -19,6 +19,9 @@ const REGULARISATION: f64 = 1e5;
 impl PathProblem {
     /// Builds the problem. An error says what cannot be followed.
     pub fn new(assembly: &Assembly, stages: &[Stage]) -> Result<Self, String> {
+        if !assembly.fill_reactions().is_empty() {
+            return Err("fill that resists is read by limit analysis only".into());
+        }
         let (bodies, body_of) = bodies(assembly);
         let mut problem = PathProblem {
             contacts: Vec::new(),
@@ -187,7 +190,19 @@ fn regularise_nonmatching_joints(problem: &mut PathProblem, assembly: &Assembly,
 /// What grows in a stage besides gravity; points of deformable blocks at which it acts become points of bodies.
 fn loading(problem: &mut PathProblem, assembly: &Assembly, stage: &Stage) -> Loading {
     let mut loading = Loading { acceleration: stage.accelerations.iter().sum(), ..Loading::default() };
-    for force in &stage.forces {
+    add_forces(problem, assembly, &stage.forces, &mut loading);
+    for settlement in &stage.settlements {
+        let body = problem.body_of[settlement.body];
+        let pole = problem.bodies[body].pole;
+        let u = settlement.displacement + turned(pole - settlement.about) * settlement.rotation;
+        loading.settlements.push((body, [u.x, u.y, settlement.rotation]));
+    }
+    loading
+}
+
+/// Forces at points, which become points of bodies where these deform.
+fn add_forces(problem: &mut PathProblem, assembly: &Assembly, forces: &[PointForce], loading: &mut Loading) {
+    for force in forces {
         let body = problem.body_of[force.body];
         let slot = assembly.is_deformable(force.body).then(|| {
             let points = &mut problem.bodies[body].points;
@@ -198,13 +213,6 @@ fn loading(problem: &mut PathProblem, assembly: &Assembly, stage: &Stage) -> Loa
         });
         loading.forces.push((body, slot, force.point, force.force));
     }
-    for settlement in &stage.settlements {
-        let body = problem.body_of[settlement.body];
-        let pole = problem.bodies[body].pole;
-        let u = settlement.displacement + turned(pole - settlement.about) * settlement.rotation;
-        loading.settlements.push((body, [u.x, u.y, settlement.rotation]));
-    }
-    loading
 }
 
 /// Load steps in order: of each stage its change of gravity, then its loads.
@@ -215,7 +223,8 @@ fn load_steps(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
         let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);
         if change != Vec2::zeros() {
             gravity += change;
-            let loading = Loading { acceleration: change, ..Loading::default() };
+            let mut loading = Loading { acceleration: change, ..Loading::default() };
+            add_forces(problem, assembly, &fill_weights(assembly, change), &mut loading);
             let end = LoadStepEnd::Factor(1.0);
             steps.push(LoadStep { stage: index, gravity: true, loading, start: 0.0, end });
         }

@@ -8,6 +8,10 @@ use voussoir_core::model::{Assembly, Joint};
 
 /// Fill of free blocks.
 pub const STONE: &str = "#e9dfcb";
+/// Fill above the rings.
+pub const FILL: &str = "#f4eede";
+/// Forces of the fill.
+pub const PRESSURE: &str = "#a05a00";
 /// Outline of blocks.
 pub const OUTLINE: &str = "#6b6150";
 /// Loads.
@@ -36,6 +40,10 @@ pub enum Symbol {
     Block,
     /// The ground.
     Ground,
+    /// The fill of a bridge.
+    Fill,
+    /// A force of the fill.
+    Pressure,
     /// A load's arrow.
     Load,
     /// An arrow of a load before the last stage.
@@ -70,6 +78,8 @@ impl LegendSymbol for Symbol {
             Symbol::Block => boxed(canvas, [x, y], STONE, OUTLINE, ""),
             Symbol::Ground => boxed(canvas, [x, y], "url(#ground)", OUTLINE, ""),
             Symbol::Before => boxed(canvas, [x, y], "none", "#999999", "4 3"),
+            Symbol::Fill => boxed(canvas, [x, y], FILL, "#b9ad93", ""),
+            Symbol::Pressure => canvas.arrow(ends[0], ends[1], PRESSURE, 1.6, 7.0),
             Symbol::Load => canvas.arrow(ends[0], ends[1], LOAD, 2.2, 10.0),
             Symbol::EarlierLoad => canvas.arrow(ends[0], ends[1], EARLIER, 2.2, 10.0),
             Symbol::Settlement => canvas.arrow(ends[0], ends[1], SETTLEMENT, 3.0, 10.0),

@@ -3,8 +3,8 @@
 
 use super::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification, kind};
 use crate::results::{CaseLabel, CaseResult, StudyResults};
-use crate::solve::Observer;
 use crate::solve::explain::explain;
+use crate::solve::{Observer, side_by_side};
 use crate::study::{Case, Study};
 use crate::verify::{solve_again, verify_against};
 use crate::writers::comparison::comparison_table;
@@ -75,7 +75,7 @@ impl LoadedStudy for Study {
         let results = self.results(&request.version, done.into_values().collect());
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
-        let files = written(&output);
+        let files = side_by_side(request.jobs, || written(&output));
         let mut table = results_table(&output);
         if let Some(comparison) = &results.comparison {
             table += "\n";
@@ -91,7 +91,7 @@ impl LoadedStudy for Study {
         let again = solve_again(self, &results, stored.jobs, observer);
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let files = if cases.len() == results.cases.len() {
-            let made = written(&StudyOutput::new(self, &results, &cases));
+            let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));
             stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
         } else {
             Vec::new()

@@ -2,9 +2,11 @@
 
 mod case_study;
 pub mod compare;
+pub mod envelope;
 pub mod json_schema;
 mod kind;
 pub mod map;
+pub mod optimise;
 pub mod point;
 mod read;
 pub mod run;

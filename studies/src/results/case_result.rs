@@ -1,6 +1,6 @@
 //! The result of a case, as it stands in `results.json`.
 
-use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+use super::entries::{DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, YieldedEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
@@ -43,6 +43,9 @@ pub struct ProofFields {
     pub field_factor: Option<f64>,
     /// Contact forces.
     pub field: Option<Vec<FieldEntry>>,
+    /// Forces of the fill that belong to `field`, where fill resists.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fill: Vec<FillEntry>,
     /// Velocities of the mechanism.
     pub motion: Option<Vec<MotionEntry>>,
     /// Contact forces that balance the live load alone, for `unbounded`.
@@ -138,6 +141,9 @@ pub struct CaseResult {
     /// What a path leaves.
     #[serde(flatten)]
     pub path: PathRecord,
+    /// On bridges, what stands on which block.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<LoadEntry>,
 }
 
 impl CaseResult {
@@ -170,6 +176,7 @@ impl CaseResult {
             seconds: 0.0,
             stages: Vec::new(),
             path: PathRecord::default(),
+            loads: Vec::new(),
         }
     }
 }

@@ -5,6 +5,7 @@ mod comparison;
 pub mod convert;
 mod entries;
 pub mod inelastic_state;
+pub mod load_entries;
 pub mod path_state;
 pub mod stage_start;
 mod study_results;
@@ -12,5 +13,7 @@ pub mod thrust_line;
 
 pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult};
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
-pub use entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+pub use entries::{
+    DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, YieldedEntry,
+};
 pub use study_results::StudyResults;

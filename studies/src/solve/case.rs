@@ -3,8 +3,10 @@
 use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
+use super::side_by_side::side_by_side;
 use super::statics::stands_by_statics;
 use super::{limit, path};
+use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
@@ -53,6 +55,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
+    result.loads = load_entries(case);
     if !case.output_curve {
         result.path.curve = None;
     }
@@ -83,9 +86,10 @@ pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn 
         observer.answered(&result);
         result
     };
-    match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
-        Ok(pool) if jobs > 1 => pool.install(|| wanted.par_iter().map(one).collect()),
-        _ => wanted.iter().map(one).collect(),
+    if jobs > 1 {
+        side_by_side(jobs, || wanted.par_iter().map(one).collect())
+    } else {
+        wanted.iter().map(one).collect()
     }
 }
 

@@ -81,6 +81,7 @@ pub(super) fn path_result(
         solver: tag.into(),
         mechanism,
         proof: ProofFields {
+            fill: Vec::new(),
             field_factor: Some(solved.state.factor),
             thrust_line: thrust_line(assembly, &unbonded(problem, &field)),
             field: Some(field_entries(&field)),

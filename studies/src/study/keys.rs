@@ -2,7 +2,7 @@
 
 use crate::config::common_keys::STOP;
 use crate::kinds::kinds;
-use crate::loads::load_shape;
+use crate::loads::{VEHICLE, load_shape};
 use std::sync::LazyLock;
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card, cards_of};
 
@@ -89,7 +89,12 @@ pub static VARIANT: Shape = Shape::Table(&[
 /// Keys of `[output]` that studies of every kind have.
 static OUTPUT_KEYS: &[Parameter] = &[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
-    key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
+    key(
+        "figures",
+        Shape::Either(&[Shape::Boolean, Shape::Choice(&["all", "worst", "none"])]),
+        Need::Default("true"),
+        "figures: of all cases, of the worst of each variant, of none; true: of all up to 50 cases, else of the worst",
+    ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ];
 
@@ -167,6 +172,12 @@ static COMMON: &[Parameter] = &[
         Shape::Plugin(PluginKind::LimitSolver),
         Need::Default("{ solver = \"auto\" }"),
         "how the cases are answered",
+    ),
+    key(
+        "vehicles",
+        Shape::Map(&VEHICLE),
+        Need::Optional("no vehicles"),
+        "vehicles by name, for loads of kind \"vehicle\"",
     ),
     key(
         "sweep",

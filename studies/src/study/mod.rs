@@ -19,6 +19,6 @@ pub(crate) use assemble::read_plugin;
 pub use diagnostics::DiagnosticList;
 pub use keys::{OUTPUT, VARIANT, study_keys};
 pub use load::load;
-pub use model::{Case, Output, SelectedSolver, SolverChoice, Study};
+pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study};
 pub use outline::Outline;
 pub use source::{StudySource, kind_of};

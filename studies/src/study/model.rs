@@ -52,6 +52,8 @@ pub struct Case {
     pub output_curve: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
+    /// One of many made from another case, which has the weights that both have: its results leave them out.
+    pub brief: bool,
     /// The case's own study file: numbers in SI units, defaults filled in.
     pub resolved: Json,
 }
@@ -69,13 +71,46 @@ impl Case {
     }
 }
 
+/// Which cases of a study are drawn, in figures and in the report.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Drawn {
+    /// Every one.
+    #[default]
+    All,
+    /// The worst of each variant.
+    Worst,
+    /// None.
+    Nothing,
+}
+
+impl Drawn {
+    /// Cases up to which all are drawn where a study does not say.
+    const MOST: usize = 50;
+
+    /// As the checked key `figures` says of a study of so many cases.
+    pub fn read(key: &Json, cases: usize) -> Drawn {
+        match (key.as_bool(), key.as_str()) {
+            (Some(false), _) | (_, Some("none")) => Drawn::Nothing,
+            (_, Some("all")) => Drawn::All,
+            (_, Some("worst")) => Drawn::Worst,
+            _ if cases > Drawn::MOST => Drawn::Worst,
+            _ => Drawn::All,
+        }
+    }
+
+    /// Whether anything is drawn.
+    pub fn anything(self) -> bool {
+        self != Drawn::Nothing
+    }
+}
+
 /// What is written besides the results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
     /// Force-displacement points.
     pub curve: bool,
-    /// Figures and the report.
-    pub figures: bool,
+    /// Which cases are drawn.
+    pub figures: Drawn,
     /// Files for ParaView.
     pub vtu: bool,
     /// Tags of the writers that are wanted; all where there is no list.

@@ -3,6 +3,7 @@
 use super::findings::Findings;
 use super::{limit, path};
 use crate::results::CaseResult;
+use crate::results::load_entries::load_entries;
 use crate::study::Case;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Target;
@@ -21,6 +22,8 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     findings.expect(result.label.variant == case.variant, "variant is not that of the study");
     findings.expect(result.label.scene == case.scene, "scene is not that of the study");
     findings.expect(result.label.parameters == case.parameters, "parameters are not those of the study");
+    let loads = load_entries(case);
+    findings.expect(result.loads == loads, "loads are not those of the study");
     let last = result.stages.len().checked_sub(1).ok_or("no stage")?;
     case.stages.get(last).ok_or("more stages than the study has")?;
     verify_stages(case, result, last, findings);

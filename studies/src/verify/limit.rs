@@ -4,6 +4,7 @@ use super::fields::{EQUAL, close, contacts, velocities};
 use super::findings::Findings;
 use super::mechanism::{differences, same_line};
 use crate::results::CaseResult;
+use crate::results::load_entries::fill_entries;
 use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
 use crate::study::Case;
@@ -50,6 +51,10 @@ fn non_associated(assembly: &Assembly) -> bool {
 pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &mut Findings) -> Result<(), String> {
     let (assembly, stage) = (&case.assembly, &case.stages[last]);
     let stored = Stored::read(assembly, result)?;
+    let loads = &stage_loads(assembly, &case.stages)[last];
+    let fill: Vec<f64> = result.proof.fill.iter().map(|entry| entry.force).collect();
+    let expected = if stored.field.is_some() { fill_entries(assembly, &fill, &loads.fill_bounds) } else { Vec::new() };
+    findings.expect(result.proof.fill == expected, "the forces of the fill do not stand where the fill presses");
     let start = match stage.target {
         Target::Collapse => search_start(stage),
         // A stage whose loads decrease is asked at its end, any other at its start.
@@ -66,6 +71,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         field_factor: result.proof.field_factor.unwrap_or(start),
         start,
         field: stored.field.as_deref(),
+        fill: &fill,
         motion: stored.motion.as_deref(),
         ray: stored.ray.as_deref(),
         feasible_interval: result.feasible_interval.map(|ends| [0, 1].map(|i| ends[i].unwrap_or(infinite[i]))),
@@ -76,7 +82,6 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
             associated_motion: stored.associated_motion.as_deref(),
         }),
     };
-    let loads = &stage_loads(assembly, &case.stages)[last];
     let (certificate, bounds) = certify(assembly, loads, &claim, case.solver.settings.tolerance);
     verify_certificate(result, &certificate, bounds, findings);
     verify_factors(result, (stage, loads), &claim, last, findings);

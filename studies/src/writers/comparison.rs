@@ -19,7 +19,7 @@ impl Writer for ComparisonFiles {
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
         let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison).into_bytes())];
-        if study.output.figures {
+        if study.output.figures.anything() {
             files.extend(
                 figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())),
             );

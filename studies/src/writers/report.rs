@@ -6,6 +6,7 @@ use super::register::register;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
+use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, key_with_unit,
     kind_words, open_bounds, status_meaning, status_word, unit_load,
@@ -40,7 +41,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
-    if study.output.figures
+    if study.output.figures.anything()
         && let Some(chart) = study_chart(study)
     {
         body += "<h2>The sweep</h2>\n<figure>";
@@ -48,11 +49,17 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
                  lines only join neighbouring cases.</figcaption></figure>\n";
     }
+    if let Some(chart) = study.output.figures.anything().then(|| envelope_chart(study.name, study.results)).flatten() {
+        body += &format!(
+            "<h2>Envelope</h2>\n<figure>{chart}<figcaption>The load factor at every place that was tried; only the worst \
+             is drawn below.</figcaption></figure>\n"
+        );
+    }
     body += &comparison(study);
     body += "<h2>Cases</h2>\n";
     body += &case_table(study);
     body += &notes(cases);
-    if study.output.figures {
+    if study.output.figures.anything() {
         body += &figures(study, drawn);
     }
     body += &paths(study, drawn);
@@ -77,7 +84,7 @@ fn comparison(study: &StudyOutput) -> String {
          after ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
         escape(&comparison.reference)
     );
-    if study.output.figures
+    if study.output.figures.anything()
         && let Some((name, svg)) = figure(study.name, comparison)
     {
         let caption = match name {
@@ -212,12 +219,18 @@ fn notes(cases: &[CaseResult]) -> String {
 fn figures(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut text = format!("<h2>Figures</h2>\n{}", page::MEANING);
-    if cases.len() > drawn {
-        text += &format!("<p>{} cases: the first {drawn} are drawn here.</p>\n", cases.len());
+    let chosen = || cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id));
+    match chosen().count() {
+        count if count > drawn => text += &format!("<p>{count} cases: the first {drawn} are drawn here.</p>\n"),
+        count if count < cases.len() => {
+            text += &format!("<p>{} cases: the {count} worst or best of them are drawn.</p>\n", cases.len());
+        }
+        _ => {}
     }
-    for (place, case) in cases.iter().take(drawn).enumerate() {
+    let first = chosen().next().map(|(place, _)| place);
+    for (place, case) in chosen().take(drawn) {
         let Some((assembly, stages)) = study.scene(place) else { continue };
-        let open = if place == 0 && cases.len() <= drawn { " open" } else { "" };
+        let open = if Some(place) == first && chosen().count() <= drawn { " open" } else { "" };
         let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
         let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.label.id));
@@ -271,7 +284,7 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
                     point still closed, and slides when all its closed points slide the same way. What moves only in the \
                     collapse mechanism stands last, at the collapse load.</p>\n"
         .to_string();
-    if study.output.figures {
+    if study.output.figures.anything() {
         for (_, chart) in curve_charts(study) {
             text += &format!("<figure>{chart}<figcaption>{CURVE}</figcaption></figure>\n");
         }

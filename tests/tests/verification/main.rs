@@ -13,6 +13,7 @@ mod finite;
 mod flow_rule;
 mod force_method;
 mod newton;
+mod optimise;
 mod orthotropic;
 mod path_certificate;
 mod paths_read;
