@@ -22,7 +22,7 @@ pub struct StudyOutput<'a> {
     /// What is wanted besides the results.
     pub output: Output,
     /// Ids of the cases that are drawn, where not all are.
-    drawn: Option<BTreeSet<usize>>,
+    pub drawn: Option<BTreeSet<usize>>,
 }
 
 /// The scene of a case.

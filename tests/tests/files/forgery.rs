@@ -173,8 +173,8 @@ fn path_results() {
 #[test]
 fn violated_residuals_are_found_without_solving() {
     let mut seen = std::collections::BTreeSet::new();
-    for kinematics in ["small", "finite"] {
-        let case = first_case(&path("newton_path", kinematics, false));
+    for (solver, kinematics) in [("event_path", "small"), ("newton_path", "finite")] {
+        let case = first_case(&path(solver, kinematics, false));
         let result = solve_case(&case);
         assert_eq!(verify_case(&case, &result), Vec::<String>::new(), "{kinematics}");
         let field = result.proof.field.clone().expect("a field");
