@@ -7,10 +7,12 @@
 
 mod arch;
 pub mod by_hand;
+pub mod energy;
 pub mod known;
 pub mod random;
 pub mod samples;
 pub mod seen;
+pub mod settled;
 mod wall;
 pub mod written;
 

@@ -1,5 +1,6 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, load steps.
 
+use super::fill::{add_fill, least_forces};
 use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 use super::response_check::check_response;
@@ -19,9 +20,6 @@ const REGULARISATION: f64 = 1e5;
 impl PathProblem {
     /// Builds the problem. An error says what cannot be followed.
     pub fn new(assembly: &Assembly, stages: &[Stage]) -> Result<Self, String> {
-        if !assembly.fill_reactions().is_empty() {
-            return Err("fill that resists is read by limit analysis only".into());
-        }
         let (bodies, body_of) = bodies(assembly);
         let mut problem = PathProblem {
             contacts: Vec::new(),
@@ -33,6 +31,7 @@ impl PathProblem {
         };
         let nonmatching = contact_points(&mut problem, assembly)?;
         regularise_nonmatching_joints(&mut problem, assembly, nonmatching);
+        add_fill(&mut problem, assembly, stages)?;
         // What turns about a point has its pole there, so that the point's displacement is the pole's
         // however far the body turns.
         for settlement in stages.iter().flat_map(|stage| &stage.settlements).rev() {
@@ -225,6 +224,7 @@ fn load_steps(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
             gravity += change;
             let mut loading = Loading { acceleration: change, ..Loading::default() };
             add_forces(problem, assembly, &fill_weights(assembly, change), &mut loading);
+            add_forces(problem, assembly, &least_forces(assembly, change), &mut loading);
             let end = LoadStepEnd::Factor(1.0);
             steps.push(LoadStep { stage: index, gravity: true, loading, start: 0.0, end });
         }

@@ -11,6 +11,7 @@
 
 mod build;
 mod continuation;
+mod fill;
 mod point_law;
 mod problem;
 mod response_check;
@@ -19,6 +20,7 @@ mod solver;
 mod state;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
+pub use self::fill::fill_gravity;
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;

@@ -3,7 +3,8 @@
 use super::entries::{FillEntry, LoadEntry, LoadOrigin};
 use crate::study::Case;
 use voussoir_core::model::geometry::{Vec2, cross};
-use voussoir_core::model::{Assembly, FillReaction, PointForce, Stage, fill_weights};
+use voussoir_core::model::{Assembly, FillReaction, PointForce, Stage, fill_bounds, fill_weights};
+use voussoir_core::path::{PathProblem, fill_gravity};
 
 /// Weights of blocks and fill under the gravity of each stage that sets it, and the loads of each stage at factor 1;
 /// none for scenes that are no bridges, and no weights for brief cases.
@@ -61,4 +62,16 @@ pub fn fill_entries(assembly: &Assembly, forces: &[f64], bounds: &[[f64; 2]]) ->
         bounds: *bounds,
     };
     reactions.map(entry).collect()
+}
+
+/// Forces of the fill at the contact points of a path.
+pub fn path_fill(assembly: &Assembly, problem: &PathProblem, stages: &[Stage], forces: &[[f64; 2]]) -> Vec<FillEntry> {
+    let bounds = fill_bounds(assembly, fill_gravity(stages).unwrap_or_default());
+    let mut fill: Vec<f64> = bounds.iter().map(|bounds| bounds[0]).collect();
+    for (contact, force) in problem.contacts.iter().zip(forces) {
+        if let Some(index) = contact.joint.checked_sub(assembly.joints.len()) {
+            fill[index] += force[0];
+        }
+    }
+    fill_entries(assembly, &fill, &bounds)
 }

@@ -66,7 +66,8 @@ pub fn open_hinges(assembly: &Assembly, problem: &PathProblem, state: &PathState
     let mut hinges = Vec::new();
     for points in problem.contacts.chunk_by(|a, b| a.joint == b.joint) {
         let index = points[0].joint;
-        let joint = &assembly.joints[index];
+        // Contact points of the fill come after those of all joints.
+        let Some(joint) = assembly.joints.get(index) else { break };
         let from = problem.contacts.partition_point(|c| c.joint < index);
         if points[0].law.is_bonded() {
             continue;

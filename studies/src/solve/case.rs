@@ -49,13 +49,13 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         scene: case.scene.clone(),
         parameters: case.parameters.clone(),
     };
+    result.loads = load_entries(case);
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
         let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
         let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
-    result.loads = load_entries(case);
     if !case.output_curve {
         result.path.curve = None;
     }

@@ -5,6 +5,7 @@ use super::coarse_joints::coarse_joints;
 use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
+use crate::results::load_entries::path_fill;
 use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, Proof, ProofFields, StageResult};
@@ -71,7 +72,8 @@ pub(super) fn path_result(
         (true, Some(rates)) => Some(velocities(assembly, problem, rates, Some(&solved.state.motion))),
         _ => motion,
     };
-    let field = contact_forces(problem, &solved.state.force);
+    let field = contact_forces(assembly, problem, &solved.state.force);
+    let fill = path_fill(assembly, problem, input.stages, &solved.state.force);
     let mut counters = solved.counters.clone();
     counters.insert("states".into(), checker.states);
     CaseResult {
@@ -81,11 +83,11 @@ pub(super) fn path_result(
         solver: tag.into(),
         mechanism,
         proof: ProofFields {
-            fill: Vec::new(),
+            fill,
             field_factor: Some(solved.state.factor),
             thrust_line: thrust_line(assembly, &unbonded(problem, &field)),
             field: Some(field_entries(&field)),
-            ray: solved.ray.as_ref().map(|ray| field_entries(&contact_forces(problem, ray))),
+            ray: solved.ray.as_ref().map(|ray| field_entries(&contact_forces(assembly, problem, ray))),
             motion: motion.map(|motion| motion_entries(assembly, motion)),
         },
         certificate,
@@ -121,7 +123,7 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
         displacements: Some(displaced.into_iter().enumerate().map(entry).collect()),
         yielded: inelastic_state::entries(assembly, problem, &solved.state),
         joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
-        events: events(input.stages, problem, &solved.events),
+        events: events(input, problem, &solved.events),
         curve: Some(checker.curve),
     }
 }
@@ -163,9 +165,10 @@ fn coarse_note(problem: &PathProblem, assembly: &Assembly) -> Option<String> {
     })
 }
 
-/// Forces at the contact points in the form of certificates.
-fn contact_forces(problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForce> {
-    let pairs = problem.contacts.iter().zip(forces);
+/// Forces at the contact points of joints in the form of certificates; those of the fill come after them.
+fn contact_forces(assembly: &Assembly, problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForce> {
+    let joints = assembly.joints.len();
+    let pairs = problem.contacts.iter().zip(forces).filter(|(c, _)| c.joint < joints);
     pairs.map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force }).collect()
 }
 
@@ -217,7 +220,9 @@ fn stage_results(
     results
 }
 
-fn events(stages: &[Stage], problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
+/// What happened at joints; what the fill does is no event.
+fn events(input: &CaseInput, problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
+    let (stages, joints) = (input.stages, input.assembly.joints.len());
     let entry = |event: &PathEvent| {
         let (load_step, contact) = (&problem.load_steps[event.load_step], &problem.contacts[event.contact]);
         EventEntry {
@@ -229,7 +234,7 @@ fn events(stages: &[Stage], problem: &PathProblem, events: &[PathEvent]) -> Vec<
             what: event.what,
         }
     };
-    events.iter().map(entry).collect()
+    events.iter().filter(|event| problem.contacts[event.contact].joint < joints).map(entry).collect()
 }
 
 /// Displacement of every block at its centroid from the rigid motions of the path's bodies.

@@ -1,12 +1,15 @@
 //! Somebody else's answers: closed forms, published numbers, independent programs.
 
 mod arch;
+mod bridge;
+mod bridge_envelope;
 mod cap;
 mod cohesive;
 mod compare;
 mod contact;
 mod crushing;
 mod elements;
+mod energy;
 mod event;
 mod extreme_strengths;
 mod finite;
@@ -19,6 +22,7 @@ mod path_certificate;
 mod paths_read;
 mod plastic;
 mod semicircle;
+mod settled;
 mod settlements;
 mod snap_through;
 mod softening;

@@ -83,10 +83,14 @@ fn strength_rows(
     (rows, bounds, blocks): (&mut Vec<Row>, &mut Vec<f64>, &mut Vec<Block>),
 ) {
     for row in &joint.strength.rows {
-        let entries: Row = (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k])).collect();
+        let bound = if loads.strengths { row.bound / loads.force } else { 0.0 };
+        // Bounds of the fill may be far beyond all loads: their rows are kept of size one.
+        let scale = if joint.fill.is_some() { 1.0 / bound.max(1.0) } else { 1.0 };
+        let entries: Row =
+            (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k] * scale)).collect();
         if !entries.is_empty() {
             rows.push(entries);
-            bounds.push(if loads.strengths { row.bound / loads.force } else { 0.0 });
+            bounds.push(bound * scale);
         }
     }
     match joint.strength.block {
