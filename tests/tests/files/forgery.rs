@@ -131,7 +131,7 @@ fn path(solver: &str, kinematics: &str, settled: bool) -> String {
     let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"right\", displacement = [0.005, 0.0] }]\n";
     format!(
         "name = \"path\"\n[scene]\nscene = \"arch\"\nprofile = {{ shape = \"segmental\", span = 4.0, rise = 1.0 }}\n\
-         thickness = 0.4\nwidth = 1.0\nvoussoirs = 7\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n{ELASTIC}\
+         thickness = 0.3\nwidth = 1.0\nvoussoirs = 7\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n{ELASTIC}\
          [joints.dry]\nlaw = \"coulomb\"\nfriction = 0.7\n[solver]\nsolver = \"{solver}\"\nkinematics = \"{kinematics}\"\n\
          [output]\ncurve = true\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n{}[[stages]]\nname = \"live\"\n\
          until = \"collapse\"\nloads = [{{ kind = \"point\", span_fraction = 0.3, force = [0.0, -1000.0] }}]\n",
