@@ -14,6 +14,7 @@ mod observer;
 mod path;
 mod path_result;
 mod safe_theorem;
+mod settlement;
 mod side_by_side;
 mod statics;
 mod symmetric;
