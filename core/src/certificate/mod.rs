@@ -8,7 +8,7 @@ mod settlement;
 
 pub use self::limit::{Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump};
 pub use self::mechanism::{
-    CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
+    CRUSHES, CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
     mechanism_above, velocity_at,
 };
 pub use self::path::{
