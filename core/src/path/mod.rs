@@ -11,6 +11,7 @@
 
 mod build;
 mod continuation;
+mod peak;
 mod point_law;
 mod problem;
 mod sliding;
@@ -18,6 +19,7 @@ mod solver;
 mod state;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
+pub use self::peak::{Branching, ProvenPeak, StageStability};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;

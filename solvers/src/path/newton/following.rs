@@ -3,8 +3,10 @@
 use super::control::Control;
 use super::control_row::work_along;
 use super::measure::{increment_along, tangent_size};
+use super::orientation::Orientation;
 use super::response::update_at_rest;
-use super::state::Tangent;
+use super::state::{State, Tangent};
+use super::system::StepSystem;
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::contact::mode::ContactMode;
@@ -62,6 +64,8 @@ pub(super) struct Following<'d> {
     pub length: f64,
     /// Times that the step has been refined for its energy.
     pub refinements: u32,
+    /// Sense of the factor and second-order work at the last state (finite displacements).
+    pub orientation: Option<Orientation>,
     pub tried: Tried,
 }
 
@@ -104,12 +108,15 @@ impl<'d> Following<'d> {
             mixed_weight,
             linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
         };
+        let slope = tangent.factor * direction;
+        let here = tracer.state.clone();
         Ok(Following {
             load_step,
             target,
             direction,
             limits,
-            slope: tangent.factor * direction,
+            slope,
+            orientation: Orientation::of(&mut tracer.system, &here, slope > 0.0),
             branch: Branch { tangent, modes: None },
             previous: None,
             length,
@@ -119,8 +126,10 @@ impl<'d> Following<'d> {
     }
 
     /// Goes on along another branch, with short steps at first.
-    pub fn switch_to(&mut self, branch: Branch) {
+    pub fn switch_to(&mut self, system: &mut StepSystem, state: &State, branch: Branch) {
         self.slope = branch.tangent.factor * self.direction;
+        let mode = branch.modes.clone().unwrap_or_else(|| state.mode.clone());
+        self.orientation = Orientation::of(system, &State { mode, ..state.clone() }, self.slope > 0.0);
         self.branch = branch;
         self.previous = None;
         self.length = BRANCH * self.limits.first;

@@ -8,7 +8,7 @@ use crate::contact::mode::ContactMode;
 /// Branches with growing λ that are taken at one factor.
 const MOST_BRANCHES: u32 = 3;
 
-/// Looks, with small displacements, for a rate with growing λ where there should be none. Where that
+/// Looks for a rate with growing λ where there should be none. Where that
 /// is not decided, or not gone on with, the limit point is not proven. Where blocks flow, combinations
 /// of modes say nothing of their Gauss points: there the path itself shows its limit point.
 pub(super) fn test_limit_point(
@@ -16,7 +16,7 @@ pub(super) fn test_limit_point(
     state: &State,
     direction: f64,
 ) -> Option<(Tangent, Vec<ContactMode>)> {
-    if tracer.system.finite() || !tracer.system.laws.responses.is_empty() || state.yields() {
+    if !tracer.system.laws.responses.is_empty() || state.yields() {
         return None;
     }
     match limit_point_test(&mut tracer.system, state, direction) {

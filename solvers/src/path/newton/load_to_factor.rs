@@ -9,6 +9,8 @@ use super::iteration::iterate;
 use super::measure::motion_size;
 use super::peak::scaled_motion;
 use super::response::tractions_dissipate;
+use super::second_order::second_order_work;
+use super::softening::energy_accuracy;
 use super::state::{State, Tangent, in_proportion};
 use super::step::solve_step;
 use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
@@ -34,6 +36,7 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
         let slips = slips || next.yields();
         let far = !small && iterations > 12;
         let straight = !slips && !far && !tractions_dissipate(&tracer.system, &next);
+        let straight = straight && (small || is_of_the_same_branch(tracer, &next));
         if straight || (small && is_proportional(tracer)) {
             return if commit(tracer, next) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
         }
@@ -45,6 +48,13 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
         return start_proportional(tracer, load_step, factor);
     }
     follow(tracer, load_step, factor)
+}
+
+/// Whether a state that one step reached from the present one is stable, and the work of its loads is what it stores:
+/// with finite displacements others may be as well in equilibrium.
+fn is_of_the_same_branch(tracer: &mut Tracer, next: &State) -> bool {
+    let stable = second_order_work(&mut tracer.system, next).is_none_or(|work| work.turned == 0);
+    stable && energy_accuracy(tracer, next) >= 1.0
 }
 
 /// The first load step where it is proportional and no state at its factor was found: by a mixed control, which

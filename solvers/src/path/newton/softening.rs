@@ -19,13 +19,17 @@ use voussoir_core::path::PathState;
 /// Energy that the trapezoidal rule may lose in a step, as a share of all energy so far.
 const ENERGY: f64 = 1e-4;
 
+/// The same as a share of the step's own work and stored energy (finite displacements).
+const OWN_ENERGY: f64 = 1e-3;
+
 /// Times that a step is made shorter for the sake of its energy.
 pub(super) const MOST_REFINEMENTS: u32 = 6;
 
 /// By how much a step may grow (below 1: must shrink) so that the work of its loads by the
-/// trapezoidal rule misses the energy stored and dissipated by a small share; infinite without bonds that soften.
+/// trapezoidal rule misses the energy stored and dissipated by a small share; infinite with small displacements without bonds that soften.
 pub(super) fn energy_accuracy(tracer: &mut Tracer, next: &State) -> f64 {
-    if tracer.system.laws.responses.is_empty() {
+    let finite = tracer.system.finite();
+    if tracer.system.laws.responses.is_empty() && !finite {
         return f64::INFINITY;
     }
     let gradient = tracer.system.gradient(next);
@@ -34,7 +38,10 @@ pub(super) fn energy_accuracy(tracer: &mut Tracer, next: &State) -> f64 {
     let of = |state: &PathState| state.work - state.stored - state.dissipated;
     let lost = (of(&after) - of(&tracer.record.state)).abs();
     let whole = after.stored.abs() + after.dissipated.abs();
-    (ENERGY * whole / lost.max(1e-300)).sqrt()
+    let before = &tracer.record.state;
+    let own = (after.work - before.work).abs() + (after.stored - before.stored).abs();
+    let allowed = if finite { (ENERGY * whole).max(OWN_ENERGY * own) } else { ENERGY * whole };
+    (allowed / lost.max(1e-300)).sqrt()
 }
 
 /// A step controlled by the gaps of the points that the rate softens. `None` where there are none, none is found, or

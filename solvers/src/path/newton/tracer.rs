@@ -9,7 +9,9 @@ use super::system::StepSystem;
 use crate::path::energy::{EnergyBalance, WorkState};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, PathEvent, PathObserver, PathSettings, PathState};
+use voussoir_core::path::{
+    Branching, Continuation, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
+};
 
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
 /// come apart: what is left is rounding.
@@ -39,6 +41,8 @@ pub(super) struct Record {
     pub state: PathState,
     pub events: Vec<PathEvent>,
     pub notes: Vec<String>,
+    pub stability: Vec<StageStability>,
+    pub branchings: Vec<Branching>,
 }
 
 /// How a path ends.
@@ -48,10 +52,12 @@ pub(super) struct Ending {
     pub ray: Option<Vec<[f64; 2]>>,
 }
 
-/// The first limit point and what is known of it.
+/// The greatest limit point, with small displacements the first, and what is known of it.
 #[derive(Default)]
 pub(super) struct LimitPoint {
     pub peak: Option<Peak>,
+    /// Proven peaks of finite displacements in order.
+    pub proven_peaks: Vec<ProvenPeak>,
     /// Why it is not proven to be one.
     pub unproven: Option<String>,
     /// Factor at which it is proven that no rate has growing λ.
