@@ -1,6 +1,7 @@
 //! The result of a case, as it stands in `results.json`.
 
 use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Mechanism};
@@ -67,6 +68,15 @@ pub struct PathRecord {
     /// Blocks whose material has yielded at the state of the field.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub yielded: Vec<YieldedEntry>,
+    /// Proven peaks of the factor in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limit_points: Vec<LimitPointEntry>,
+    /// Factor of the first limit point of the stage that `load_factor` speaks of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_limit_point: Option<f64>,
+    /// Where the path left an equilibrium that became unstable.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub branches: Vec<BranchEntry>,
 }
 
 /// What one stage came to.
@@ -80,6 +90,9 @@ pub struct StageResult {
     pub factor: Option<f64>,
     /// Hinges of the mechanism that ended it, else empty.
     pub hinges: Vec<usize>,
+    /// Stability of its last state.
+    #[serde(flatten)]
+    pub stability: StabilityEntry,
 }
 
 /// The answer to one case with what proves it.

@@ -63,7 +63,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
 fn record_stages(done: &mut Vec<StageResult>, stages: &[Stage], index: usize, result: &CaseResult) {
     let stage = |index: usize, status, factor, hinges| {
         let name = stages[index].name.clone();
-        StageResult { name, status, factor, hinges }
+        StageResult { name, status, factor, hinges, stability: Default::default() }
     };
     let carried = !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
     let status = if carried { Status::Stands } else { result.status };

@@ -68,7 +68,12 @@ fn cell(value: &serde_json::Value) -> String {
 fn factor(case: &CaseResult) -> String {
     match (case.status, case.load_factor) {
         (Status::Unbounded, _) => "unbounded".into(),
-        (_, Some(factor)) => format_number(factor, 7),
+        (_, Some(factor)) => {
+            match case.path.first_limit_point.filter(|first| (first - factor).abs() > 1e-9 * factor.abs()) {
+                Some(first) => format!("{} (first {})", format_number(factor, 7), format_number(first, 5)),
+                None => format_number(factor, 7),
+            }
+        }
         (_, None) => "-".into(),
     }
 }
