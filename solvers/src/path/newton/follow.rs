@@ -165,6 +165,32 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     }
     let falls = fell || (falls && following.slope > 0.0);
     let orientation = Orientation::of(&mut tracer.system, &trial.next, tangent.factor * direction > 0.0);
+    if std::env::var("DBG").is_ok() {
+        let e = |st: &voussoir_core::path::PathState| st.work - st.stored - st.dissipated;
+        let g = tracer.system.gradient(&trial.next);
+        let (en, _) = super::tracer::foreseen(tracer, &trial.next, &g);
+        let af = super::recorded::recorded(&en, &tracer.system, tracer.load_step, &trial.next, &g);
+        let ch = (0..trial.next.mode.len()).filter(|c| trial.next.mode[*c] != tracer.state.mode[*c]).count();
+        eprintln!(
+            "DBG ls {} f {:.9} -> {:.9} len {:.2e} slope {:.2e} n {:?} rises {:?} sym {:?} crit {:?} lost {:.2e} own w {:.2e} s {:.2e} d {:.2e} acc {:.2e} changes {} mot {:.3e}",
+            tracer.load_step,
+            tracer.state.factor,
+            trial.next.factor,
+            following.length / following.limits.first,
+            tangent.factor * direction,
+            orientation.as_ref().map(|o| o.work.turned),
+            orientation.as_ref().map(|o| o.rises),
+            orientation.as_ref().map(|o| o.work.symmetric),
+            orientation.as_ref().map(|o| o.work.critical.1),
+            e(&af) - e(&tracer.record.state),
+            af.work - tracer.record.state.work,
+            af.stored - tracer.record.state.stored,
+            af.dissipated - tracer.record.state.dissipated,
+            accuracy,
+            ch,
+            increment_between(&tracer.system, &tracer.state, &trial.next).motion
+        );
+    }
     let first = tracer.limit.peak.is_none();
     let peak = falls && !softens && !trial.reaches && (first || (finite && following.slope > 0.0));
     let step = Step { trial, tangent, accuracy, falls, orientation };

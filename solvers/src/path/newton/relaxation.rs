@@ -95,7 +95,9 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         }
         if moved < last_moved {
             system.damping = None;
-            if let Some(next) = settled(system, &state, &control, moved, rate) {
+            let next = settled(system, &state, &control, moved, rate);
+            let in_sense = |next: &State| sense * along(system, from, next, mode) > 0.0;
+            if let Some(next) = next.filter(in_sense) {
                 return Some(Relaxation { before: state, next, released, dissipated });
             }
         }
@@ -120,6 +122,17 @@ fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
     let free = (0..a.motion.len()).filter(|body| system.unknowns.free[*body].is_some());
     let squares = free.flat_map(|body| (0..3).map(move |k| (body, k)));
     squares.map(|(body, k)| ((a.motion[body][k] - b.motion[body][k]) / units[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// How far a state lies from another along a mode, in units.
+fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 {
+    let units = system.units().motion();
+    let of_body = |body: usize| {
+        let free = system.unknowns.free[body]?;
+        let moved = |k: usize| (state.motion[body][k] - from.motion[body][k]) / units[k];
+        Some((0..3).map(|k| moved(k) * mode[3 * free + k]).sum::<f64>())
+    };
+    (0..from.motion.len()).filter_map(of_body).sum()
 }
 
 /// Whether a body has moved so far that the structure has fallen.

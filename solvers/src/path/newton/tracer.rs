@@ -162,8 +162,14 @@ fn left_its_pairing(tracer: &Tracer) -> Option<String> {
     Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))
 }
 
+/// The present state a share of a rate on.
 pub(super) fn moved_along(tracer: &Tracer, rate: &Tangent, share: f64) -> State {
-    let mut guess = tracer.state.clone();
+    moved(&tracer.state, rate, share)
+}
+
+/// A state a share of a rate on.
+pub(super) fn moved(state: &State, rate: &Tangent, share: f64) -> State {
+    let mut guess = state.clone();
     for (r, dr) in guess.force.iter_mut().zip(&rate.force) {
         (0..2).for_each(|k| r[k] += share * dr[k]);
     }
