@@ -32,6 +32,8 @@ pub(super) struct SecondOrderWork {
     pub symmetric: bool,
     /// The direction of the least second-order work, of unit size in the unknowns' units, and its eigenvalue.
     pub critical: (Vec<f64>, f64),
+    /// Magnitude of the eigenvalue nearest to nothing.
+    pub nearest: f64,
 }
 
 impl SecondOrderWork {
@@ -60,7 +62,9 @@ impl SecondOrderWork {
         let relevant = (0..eigen.eigenvalues.len()).filter(|i| eigen.eigenvalues[*i].abs() > nothing);
         let least = relevant.min_by(|a, b| curvature(a).total_cmp(&curvature(b)))?;
         let mode: DVector<f64> = eigen.eigenvectors.column(least).into();
-        Some(SecondOrderWork { negative, turned, symmetric, critical: (mode.as_slice().to_vec(), curvature(&least)) })
+        let critical = (mode.as_slice().to_vec(), curvature(&least));
+        let nearest = 1.0 / eigen.eigenvalues.amax();
+        Some(SecondOrderWork { negative, turned, symmetric, critical, nearest })
     }
 
     /// Whether second-order work is positive with the load point held, whose displacement grows by `yields` a unit of

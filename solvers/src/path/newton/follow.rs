@@ -20,7 +20,7 @@ use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
 use super::trial::{StepPlan, Trial, attempt, plan};
 use crate::path::energy::load_size;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{LoadStep, LoadStepEnd};
+use voussoir_core::path::{Branching, LoadStep, LoadStepEnd};
 
 /// Greatest number of steps of a load step.
 const MOST_STEPS: u64 = 5000;
@@ -164,54 +164,39 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         return cut_back(tracer, following, "the load falls in the step", &tangent);
     }
     let falls = fell || (falls && following.slope > 0.0);
-    let orientation = Orientation::of(&mut tracer.system, &trial.next, tangent.factor * direction > 0.0);
-    if std::env::var("DBG").is_ok() {
-        let e = |st: &voussoir_core::path::PathState| st.work - st.stored - st.dissipated;
-        let g = tracer.system.gradient(&trial.next);
-        let (en, _) = super::tracer::foreseen(tracer, &trial.next, &g);
-        let af = super::recorded::recorded(&en, &tracer.system, tracer.load_step, &trial.next, &g);
-        let ch = (0..trial.next.mode.len()).filter(|c| trial.next.mode[*c] != tracer.state.mode[*c]).count();
-        eprintln!(
-            "DBG ls {} f {:.9} -> {:.9} len {:.2e} slope {:.2e} n {:?} rises {:?} sym {:?} crit {:?} lost {:.2e} own w {:.2e} s {:.2e} d {:.2e} acc {:.2e} changes {} mot {:.3e}",
-            tracer.load_step,
-            tracer.state.factor,
-            trial.next.factor,
-            following.length / following.limits.first,
-            tangent.factor * direction,
-            orientation.as_ref().map(|o| o.work.turned),
-            orientation.as_ref().map(|o| o.rises),
-            orientation.as_ref().map(|o| o.work.symmetric),
-            orientation.as_ref().map(|o| o.work.critical.1),
-            e(&af) - e(&tracer.record.state),
-            af.work - tracer.record.state.work,
-            af.stored - tracer.record.state.stored,
-            af.dissipated - tracer.record.state.dissipated,
-            accuracy,
-            ch,
-            increment_between(&tracer.system, &tracer.state, &trial.next).motion
-        );
-    }
+    let orientation = Orientation::along(&mut tracer.system, &trial.next, &tangent, direction);
     let first = tracer.limit.peak.is_none();
-    let peak = falls && !softens && !trial.reaches && (first || (finite && following.slope > 0.0));
+    let grew = following.slope > 0.0 && following.orientation.as_ref().is_none_or(|before| !before.still);
+    let peak = falls && !softens && !trial.reaches && (first || (finite && grew));
     let step = Step { trial, tangent, accuracy, falls, orientation };
     if let Some(other) = off_the_branch(tracer, following, plan, &step) {
         return other;
     }
     match &step.orientation {
-        Some(orientation) if orientation.is_unstable() => StepEnd::Unstable(step),
+        Some(orientation) if orientation.unstable && beyond_all_peaks(tracer, following, &step) => {
+            StepEnd::Unstable(step)
+        }
         _ if peak => StepEnd::Peak(step),
         _ => StepEnd::Accepted(step),
     }
+}
+
+/// Whether the load at the end of a step is above all peaks of its load step: below them what is followed is the
+/// post-peak branch, stable or not.
+fn beyond_all_peaks(tracer: &Tracer, following: &Following, step: &Step) -> bool {
+    let own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.load_step);
+    own.map(|peak| (step.trial.next.factor - peak.factor) * following.direction).all(|above| above > 0.0)
 }
 
 /// What follows a step whose end does not lie on the branch of its start, by their second-order work: a shorter one. At
 /// the shortest a step that turns back has failed; a bifurcation is passed.
 fn off_the_branch(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, step: &Step) -> Option<StepEnd> {
     let (before, after) = (following.orientation.as_ref()?, step.orientation.as_ref()?);
-    if before.leads_to(after) {
+    if before.leads_to(after) || before.is_singular() || after.is_singular() {
         return None;
     }
     if before.rises == after.rises && following.length < PINNED * following.limits.first {
+        note_bifurcation(tracer, before, after, step.trial.next.factor);
         return None;
     }
     tracer.system.count("off_the_branch", 1);
@@ -220,6 +205,18 @@ fn off_the_branch(tracer: &mut Tracer, following: &mut Following, plan: &StepPla
     } else {
         failed(tracer, following, plan, &StepFailure::new("the step turned back, or to another branch"))
     })
+}
+
+/// Names a bifurcation that is passed on a branch that stays stable under its loads: points that slide would stick on
+/// the way to another one, which starts under growing loads only (Shanley 1947, J. Aeronaut. Sci. 14, 261-268).
+fn note_bifurcation(tracer: &mut Tracer, before: &Orientation, after: &Orientation, factor: f64) {
+    if after.rises && !after.unstable && after.work.turned > before.work.turned {
+        let load_step = tracer.load_step;
+        tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: false });
+        tracer.record.notes.push(format!(
+            "at factor {factor} another branch starts under growing load, on which points stop sliding; the one that is followed is stable under its loads"
+        ));
+    }
 }
 
 /// From an unstable equilibrium to the stable one that damped descent reaches.
@@ -240,6 +237,13 @@ fn leave(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<L
             }
             Err(ending) => Some(ending),
         },
+        Departure::Falls if tracer.limit.peak.is_some() => {
+            let factor = tracer.state.factor;
+            let why = format!(
+                "at factor {factor} the branch after the peak becomes unstable under its loads, and damped descent reaches no stable one"
+            );
+            Some(end_path(tracer, Status::Collapse, why))
+        }
         Departure::Falls => {
             note_peak(tracer, &step.tangent, following.direction);
             let factor = tracer.state.factor;
@@ -288,8 +292,11 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
     if snaps(tracer, following) && step.orientation.is_some() {
         return snap(tracer, following, state, &beyond);
     }
-    let peak = peak_at(tracer, state, &beyond);
-    note_proven_peak(tracer, peak, following.direction);
+    // What an unstable branch carries is no peak of the path under its loads.
+    if following.orientation.as_ref().is_none_or(|before| !before.unstable) {
+        let peak = peak_at(tracer, state, &beyond);
+        note_proven_peak(tracer, peak, following.direction);
+    }
     accept(tracer, following, step)
 }
 

@@ -3,7 +3,7 @@
 use super::control::Control;
 use super::following::{Following, per_tangent};
 use super::measure::{increment_along, increment_between, motion_size};
-use super::orientation::Orientation;
+use super::orientation::{Orientation, STILL};
 use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
@@ -26,7 +26,7 @@ pub(super) enum Located {
 /// Bisects the step from the present state for the peak of λ in the sense `direction`. With finite displacements the
 /// states on both sides must be close to each other and of one branch by their second-order work.
 pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> Located {
-    let (low, high) = bisect(tracer, following, direction);
+    let (low, high, share) = bisect(tracer, following, direction);
     if !tracer.system.finite() {
         let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
         return Located::Proven(low, beyond, true);
@@ -34,19 +34,27 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
     let Some((high, beyond)) = high else { return Located::Other };
     let apart = increment_between(&tracer.system, &low, &high).motion;
     let step = increment_between(&tracer.system, &tracer.state, &high).motion;
-    let oriented =
-        [(&low, true), (&high, false)].map(|(state, rises)| Orientation::of(&mut tracer.system, state, rises));
+    let oriented = [
+        Orientation::of(&mut tracer.system, &low, true),
+        Orientation::along(&mut tracer.system, &high, &beyond, direction)
+            .map(|high| Orientation { rises: false, ..high }),
+    ];
     let one_branch = match &oriented {
-        [Some(low), Some(high)] => low.leads_to(high),
+        // Where the eigenvalue passes through nothing its sign is rounding.
+        [Some(low), Some(high)] => low.leads_to(high) || [low, high].iter().any(|side| side.is_singular()),
         _ => following.orientation.is_none(),
     };
     let kinked = low.mode != high.mode;
-    if one_branch && apart <= CONTINUOUS * step { Located::Proven(low, beyond, kinked) } else { Located::Other }
+    if one_branch && apart <= (CONTINUOUS + 2.0 * share) * step {
+        Located::Proven(low, beyond, kinked)
+    } else {
+        Located::Other
+    }
 }
 
 /// Bisects the step from the present state for the point where λ stops growing in the sense `direction`: the last
-/// state before it, and the first one beyond it with its rate.
-fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State, Option<(State, Tangent)>) {
+/// state before it, the first one beyond it with its rate, and how far apart they are as a share of the step.
+fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State, Option<(State, Tangent)>, f64) {
     let (rate, previous, length) = (&following.branch.tangent, following.previous, following.length);
     let strategy = tracer.strategy.clone();
     let per_rate = per_tangent(tracer, rate, previous.as_ref());
@@ -59,7 +67,13 @@ fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State,
         let guess = moved_along(tracer, rate, middle / per_rate);
         let Ok((state, _)) = solve_step(&mut tracer.system, &tracer.state, guess, &control) else { break };
         let Some(here) = tangent_at(&mut tracer.system, &tracer.state, &state, &control) else { break };
-        if here.factor * direction > 0.0 {
+        // A load that stands still is one that does not grow, as for the step itself.
+        let still = if tracer.system.finite() {
+            STILL * tracer.system.units().factor * motion_size(&tracer.system, &here)
+        } else {
+            0.0
+        };
+        if here.factor * direction > still {
             low = middle;
             best = (state, here);
         } else {
@@ -71,7 +85,7 @@ fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State,
             break;
         }
     }
-    (best.0, beyond)
+    (best.0, beyond, (high - low) / length)
 }
 
 /// Where the load rises again after a peak with finite displacements: the least load between, if it is
@@ -81,7 +95,7 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
     let lower =
         |factor: f64| tracer.post_peak.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
     if !tracer.post_peak.risen && lower(tracer.state.factor) {
-        let (state, beyond) = bisect(tracer, following, -direction);
+        let (state, beyond, _) = bisect(tracer, following, -direction);
         let beyond = beyond.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
         tracer.post_peak.trough = Some(peak_at(tracer, state, &beyond));
     }

@@ -9,7 +9,7 @@
 //! negative; friction keeps its history from step to step. The potential falls in every step by what the wrenches and
 //! friction dissipate, so the descent ends in the equilibrium to which the state would fall slowly, never in one beyond
 //! a rise of its energy; it is one when it holds without damping and has positive second-order work. The work of the
-//! viscous wrenches is the energy that a real fall sets free.
+//! viscous wrenches is the energy that a real fall sets free: what the potential has fallen by, less what friction took.
 
 use super::control::Control;
 use super::iteration::iterate;
@@ -35,17 +35,10 @@ pub(super) struct Relaxation {
     /// The last state of the descent with its history, and the equilibrium next to it.
     pub before: State,
     pub next: State,
-    /// What viscous wrenches have dissipated \[J\].
-    pub released: f64,
+    /// How far it lies along the critical mode, in units.
+    pub side: f64,
     /// What friction has up to `before` \[J\].
     pub dissipated: f64,
-}
-
-impl Relaxation {
-    /// Fall of the potential \[J\].
-    pub fn fall(&self) -> f64 {
-        self.released + self.dissipated
-    }
 }
 
 /// The descents from a state along its critical mode, one in each sense, as far as they end in stable equilibria.
@@ -68,8 +61,8 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         let Some(free) = system.unknowns.free[body] else { continue };
         (0..3).for_each(|k| q[k] += sense * PUSH * u.motion()[k] * mode[3 * free + k] / size);
     }
-    let mut rate = (2.0 * curvature.abs()).max(1e-4);
-    let (mut state, mut released, mut dissipated, mut failures) = (from.clone(), 0.0, 0.0, 0);
+    let mut rate = (2.0 * curvature.abs()).max(LEAST);
+    let (mut state, mut dissipated, mut failures) = (from.clone(), 0.0, 0);
     let mut last_moved = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         system.damping = Some(Damping { rate, from: anchor.clone() });
@@ -85,7 +78,6 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         };
         failures = 0;
         let moved = distance(system, &state, &next);
-        released += rate * moved * moved * u.energy();
         dissipated += increment_between(system, &state, &next).dissipation * u.energy();
         let start = state.clone();
         system.keep(&start, &mut next);
@@ -96,13 +88,19 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         if moved < last_moved {
             system.damping = None;
             let next = settled(system, &state, &control, moved, rate);
-            let in_sense = |next: &State| sense * along(system, from, next, mode) > 0.0;
-            if let Some(next) = next.filter(in_sense) {
-                return Some(Relaxation { before: state, next, released, dissipated });
+            if let Some(next) = next {
+                let side = along(system, from, &next, mode);
+                return Some(Relaxation { before: state, next, dissipated, side });
             }
         }
         last_moved = moved;
-        rate = (rate * if iterations <= 10 { 0.5 } else { 1.0 }).max(LEAST);
+        system.damping = None;
+        rate = match second_order_work(system, &state) {
+            // Each step is unique, and doubles what grows.
+            Some(work) if work.turned > 0 => 2.0 * work.critical.1.abs().max(LEAST),
+            _ if iterations <= 10 => (0.5 * rate).max(LEAST),
+            _ => rate,
+        };
     }
     None
 }
@@ -110,7 +108,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
 /// The stable equilibrium next to a state of a descent whose last step has `moved` so far with a damping of `rate`.
 fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64, rate: f64) -> Option<State> {
     let (next, _) = iterate(system, state, state.clone(), control, 8, None).ok()?;
-    let work = second_order_work(system, &next).filter(|work| work.turned == 0)?;
+    let work = second_order_work(system, &next).filter(|work| work.negative == 0 || work.turned == 0)?;
     // By the damped step's own equation: what is left to go is about κ / k of it.
     let left = moved * (1.0 + rate / work.critical.1.abs().max(1e-12));
     (distance(system, state, &next) <= 4.0 * left).then_some(next)

@@ -129,6 +129,12 @@ pub(super) fn stability(system: &mut StepSystem, state: &State, settles: bool) -
     StateStability { under_load, under_control, sufficient_only }
 }
 
+/// Whether a state is unstable under its loads although the points that slide stick.
+pub(super) fn is_unstable_at_rest(system: &mut StepSystem, state: &State) -> bool {
+    let held = with_weak_points(system, state, |_, held| held);
+    second_order_work(system, &held).is_some_and(|work| work.turned > 0)
+}
+
 /// The state with its weakly active points in modes of our choice among released and held: points that slide, and
 /// stuck ones without slack.
 fn with_weak_points(

@@ -13,6 +13,7 @@ use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
+use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, LoadStep};
@@ -213,12 +214,17 @@ fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> boo
 fn stops_finite(tracer: &mut Tracer, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let length = tracer.system.units().length;
-    let Some(greatest) = tracer.limit.peak.as_ref().map(|peak| peak.factor) else { return false };
+    let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
+        return false;
+    };
     let last = tracer.limit.proven_peaks.last();
-    let (from, top) = last.map_or((displacement, greatest), |peak| (peak.displacement, peak.factor));
+    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+    let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));
     let beyond = (displacement - from).abs();
     let (stop_displacement, stop_factor) = (tracer.settings.stop_displacement, tracer.settings.stop_factor);
     let done = match (stop_displacement, stop_factor) {
+        // A support that goes no further by itself: what follows is a fall.
+        (None, None) if settles => true,
         (None, None) => {
             let halved = (factor - 0.5 * top) * direction <= 0.0;
             (halved && beyond >= MOVED_ON * length) || beyond >= FURTHEST * length
@@ -227,7 +233,7 @@ fn stops_finite(tracer: &mut Tracer, direction: f64) -> bool {
             most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
-    if done && (factor - greatest) * direction > 0.0 {
+    if done && (factor - greatest) * direction > 1e-9 * greatest.abs() {
         end_path(
             tracer,
             Status::Stalled,
