@@ -10,6 +10,9 @@ use super::system::StepSystem;
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::contact::mode::ContactMode;
+use crate::path::continuation::arc_length::ArcLength;
+use crate::path::energy::load_size;
+use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 
@@ -86,8 +89,15 @@ impl<'d> Following<'d> {
         // The rate is per unit Λ of the factor.
         let tangent = first.scaled(direction);
         let mixed_weight = mixed_weight(tracer);
+        let nothing = |one: f64, tracer: &Tracer| one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent);
+        if nothing(per_tangent(tracer, &tangent, None), tracer)
+            && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0
+        {
+            // Without a load there is no displacement of one to control.
+            tracer.strategy = Arc::new(ArcLength::default());
+        }
         let one = per_tangent(tracer, &tangent, None);
-        if one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent) {
+        if nothing(one, tracer) {
             let why = "what the continuation strategy controls does not change under this load";
             return Err(end_path(tracer, Status::Stalled, why.into()));
         }

@@ -63,9 +63,10 @@ pub(super) fn trace(
 
 /// Follows the load steps one after the other.
 fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
-    let mut earlier = Vec::new();
+    let (mut earlier, strategy) = (Vec::new(), tracer.strategy.clone());
     for (index, load_step) in problem.load_steps.iter().enumerate() {
         tracer.load_step = index;
+        tracer.strategy = strategy.clone();
         tracer.state.factor = load_step.start;
         tracer.system.load(StagedLoads {
             earlier: earlier.clone(),
