@@ -10,7 +10,14 @@ use voussoir::study::Case;
 use voussoir_benches::{compliant_ring, elastic_ring};
 
 fn settings(finite: bool) -> PathSettings {
-    PathSettings { finite, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
+    PathSettings {
+        finite,
+        tolerance: 1e-9,
+        stop_displacement: None,
+        stop_factor: None,
+        continuation: None,
+        stages: Vec::new(),
+    }
 }
 
 fn traced(solver: &dyn PathSolver, case: &Case, finite: bool) -> Option<f64> {

@@ -80,6 +80,9 @@ enum Command {
     Verify {
         /// Folder written by `run`
         dir: PathBuf,
+        /// Cases worked on side by side
+        #[arg(long, default_value_t = 1)]
+        jobs: usize,
     },
 }
 
@@ -104,7 +107,7 @@ pub fn main() -> ExitCode {
         Command::Explain { what } => commands::explain::explain(&what),
         Command::List { kind } => commands::explain::list(kind.as_deref()),
         Command::Schema => commands::explain::schema(),
-        Command::Verify { dir } => commands::verify::verify(&dir),
+        Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),
     };
     ExitCode::from(code)
 }

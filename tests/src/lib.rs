@@ -7,10 +7,12 @@
 
 mod arch;
 pub mod by_hand;
+pub mod energy;
 pub mod known;
 pub mod random;
 pub mod samples;
 pub mod seen;
+pub mod settled;
 mod wall;
 pub mod written;
 
@@ -51,7 +53,14 @@ pub fn collapse_factor(text: &str) -> f64 {
 
 /// What a path with small displacements is asked for where nothing else is.
 pub fn small_displacements() -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation: None }
+    PathSettings {
+        finite: false,
+        tolerance: 1e-9,
+        stop_displacement: None,
+        stop_factor: None,
+        continuation: None,
+        stages: Vec::new(),
+    }
 }
 
 /// Asserts |a − b| ≤ tolerance × |b|.

@@ -2,27 +2,44 @@
 
 use crate::study;
 use serde_json::Value;
-use voussoir::results::StudyResults;
-use voussoir::solve_case;
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex};
+use voussoir::kinds::kind;
+use voussoir::results::{CaseResult, StudyResults};
+use voussoir::solve::Unobserved;
 use voussoir::study::{Study, load};
-use voussoir::verify::verify;
+use voussoir::verify::{solve_again, verify_against};
 
 /// Results of a study, as they are written, and the study as it is read back from resolved.toml.
 pub fn results(text: &str) -> (Study, Value) {
     let original = study(text);
     let resolved = toml::to_string(&original.resolved).expect("a study can be written");
     let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
-    let cases = original.cases.iter().map(solve_case).collect();
-    let results =
-        StudyResults { study: original.name, version: "test".into(), cases, comparison: None, own: Default::default() };
+    let (kind, wanted) =
+        (kind(&original.kind).expect("a registered kind"), (0..original.cases.len()).collect::<Vec<_>>());
+    let results = original.results("test", kind.solve(&original, &wanted, 1, &Unobserved));
     (again, serde_json::to_value(&results).expect("results can be written"))
+}
+
+/// The cases of a study solved again: once for all changes of its results that a test tries.
+fn again(study: &Study, results: &StudyResults) -> Arc<Vec<CaseResult>> {
+    static SOLVED: LazyLock<Mutex<HashMap<String, Arc<Vec<CaseResult>>>>> = LazyLock::new(Mutex::default);
+    let key = format!("{} {:?}", study.resolved, results.only_cases);
+    if let Some(found) = SOLVED.lock().expect("no test has panicked here").get(&key) {
+        return found.clone();
+    }
+    let solved = Arc::new(solve_again(study, results, 1, &Unobserved));
+    SOLVED.lock().expect("no test has panicked here").entry(key).or_insert(solved).clone()
 }
 
 /// What `verify` says of results; also where they cannot be read.
 pub fn findings(study: &Study, results: &Value) -> Vec<String> {
-    let text = serde_json::to_string(results).expect("JSON");
-    match serde_json::from_str::<StudyResults>(&text) {
-        Ok(results) => verify(study, &results).into_iter().map(|(_, why)| why).collect(),
-        Err(why) => vec![why.to_string()],
+    let read = match serde_json::from_value::<StudyResults>(results.clone()) {
+        Ok(read) => read,
+        Err(why) => return vec![why.to_string()],
+    };
+    match verify_against(study, results, &again(study, &read)) {
+        Ok(found) => found.into_iter().map(|(_, why)| why).collect(),
+        Err(why) => vec![why],
     }
 }

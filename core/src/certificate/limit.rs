@@ -7,12 +7,12 @@
 //! combinations of the facets' flow directions and their power with the field's distance from the
 //! yield surface must vanish, joint by joint.
 
-use super::mechanism::{CentroidVelocity, Jump, jumps};
+use super::mechanism::{CentroidVelocity, Jump, jumps, velocity_at};
 use super::products::proved;
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::limit::{LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, StageLoads, add_force};
+use crate::model::{Assembly, Bond, FillReaction, StageLoads, add_force};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -51,6 +51,8 @@ pub struct Claim<'a> {
     pub start: f64,
     /// Contact forces.
     pub field: Option<&'a [ContactForce]>,
+    /// Forces of the fill that belong to the field, one for each reaction of the assembly \[N\].
+    pub fill: &'a [f64],
     /// Velocity of every body.
     pub motion: Option<&'a [CentroidVelocity]>,
     /// Contact forces that balance the varying load alone.
@@ -200,9 +202,9 @@ impl Check<'_> {
         (0..self.groups.len()).filter(|&body| self.groups[body].is_some())
     }
 
-    /// Greatest resultant left on any free group by contact forces and `fixed × dead + factor ×
+    /// Greatest resultant left on any free group by contact forces, forces of the fill and `fixed × dead + factor ×
     /// varying`, moments about the group's first body and divided by the scene's size \[N\].
-    fn imbalance(&self, forces: &[ContactForce], dead: f64, factor: f64) -> f64 {
+    fn imbalance(&self, forces: &[ContactForce], fill: &[f64], dead: f64, factor: f64) -> f64 {
         let count = self.groups.iter().flatten().max().map_or(0, |g| g + 1);
         let mut pole: Vec<Option<Vec2>> = vec![None; count];
         let mut sums = vec![[0.0f64; 3]; count];
@@ -230,10 +232,17 @@ impl Check<'_> {
                 }
             }
         }
+        for (reaction, force) in self.assembly.fill_reactions().iter().zip(fill) {
+            if let Some(group) = self.groups[reaction.body]
+                && let Some(pole) = pole[group]
+            {
+                add_force(&mut sums[group], reaction.point - pole, reaction.direction, *force);
+            }
+        }
         sums.iter().map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size)).fold(0.0, f64::max)
     }
 
-    /// Greatest violation of strength \[N\]; in the recession cone where `strengths` is false.
+    /// Greatest violation of strength \[N\], of sliding as the distance from its facet; in the recession cone where `strengths` is false.
     fn violation(&self, forces: &[ContactForce], strengths: bool) -> f64 {
         let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for contact in forces {
@@ -265,7 +274,8 @@ impl Check<'_> {
                 worst = worst.max(arm - block.max(0.0) * (1.0 - depth));
             }
             for facet in self.facets[law].iter().filter(|f| f.normal[1] != 0.0) {
-                worst = worst.max(facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale);
+                let beyond = facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale;
+                worst = worst.max(beyond / facet.normal[0].hypot(facet.normal[1]));
             }
         }
         worst
@@ -278,8 +288,26 @@ impl Check<'_> {
         };
         let at = claim.field_factor;
         let scale = self.residual_scale(at);
-        let balanced = self.residual("equilibrium", self.imbalance(field, 1.0, at) / scale, ROUNDING);
-        self.residual("strength", self.violation(field, true) / scale, ROUNDING) && balanced
+        let balanced = self.residual("equilibrium", self.imbalance(field, claim.fill, 1.0, at) / scale, ROUNDING);
+        let pressed = self.fill(claim, scale);
+        self.residual("strength", self.violation(field, true) / scale, ROUNDING) && balanced && pressed
+    }
+
+    /// Whether the forces of the fill lie between their least and greatest values.
+    fn fill(&mut self, claim: &Claim, scale: f64) -> bool {
+        let bounds = &self.loads.fill_bounds;
+        if claim.fill.len() != bounds.len() {
+            self.fail("the forces of the fill are not one for each of its reactions");
+            return false;
+        }
+        if bounds.is_empty() {
+            return true;
+        }
+        let beyond = |(force, [least, greatest]): (&f64, &[f64; 2])| (least - force).max(force - greatest);
+        // NaN counts as beyond.
+        let worse = |worst: f64, x: f64| if x <= worst { worst } else { x };
+        let worst = claim.fill.iter().zip(bounds).map(beyond).fold(0.0, worse);
+        self.residual("fill", worst / scale, ROUNDING)
     }
 
     fn ray(&mut self, claim: &Claim) {
@@ -289,7 +317,7 @@ impl Check<'_> {
         let largest = ray.iter().map(|c| c.force[0].hypot(c.force[1])).fold(0.0, f64::max);
         let load = self.load_scale(1.0) - self.load_scale(0.0);
         let scale = load.max(largest).max(f64::MIN_POSITIVE);
-        self.residual("ray_equilibrium", self.imbalance(ray, 0.0, 1.0) / scale, ROUNDING);
+        self.residual("ray_equilibrium", self.imbalance(ray, &[], 0.0, 1.0) / scale, ROUNDING);
         self.residual("ray_strength", self.violation(ray, false) / scale, ROUNDING);
     }
 
@@ -321,7 +349,28 @@ impl Check<'_> {
             let strongest = polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
             uncertain += 8.0 * f64::EPSILON * strongest * area * jump.size();
         }
+        for (reaction, bounds) in self.assembly.fill_reactions().iter().zip(&self.loads.fill_bounds) {
+            let speed = self.fill_speed(reaction, motion);
+            dissipated += fill_dissipation(*bounds, speed);
+            uncertain += 8.0 * f64::EPSILON * bounds[1] * speed.abs();
+        }
         Powers { fixed, varying, dissipated, uncertain, impossible: impossible / largest }
+    }
+
+    /// Velocity of the point where the fill presses, towards the ring.
+    fn fill_speed(&self, reaction: &FillReaction, motion: &[CentroidVelocity]) -> f64 {
+        let centroid = self.assembly.inertia(reaction.body).centroid;
+        velocity_at(centroid, motion[reaction.body], reaction.point).dot(&reaction.direction)
+    }
+
+    /// Σ |H u + dissipation| over the forces H of the fill: zero where each flows only on its bound.
+    fn idle_fill(&self, fill: &[f64], motion: &[CentroidVelocity]) -> f64 {
+        let reactions = self.assembly.fill_reactions().iter().zip(&self.loads.fill_bounds).zip(fill);
+        let idle = reactions.map(|((reaction, bounds), force)| {
+            let speed = self.fill_speed(reaction, motion);
+            (force * speed + fill_dissipation(*bounds, speed)).abs()
+        });
+        idle.sum()
     }
 
     /// Field and mechanism with the laws' own flow: both exist at one factor, each joint moves only
@@ -341,7 +390,8 @@ impl Check<'_> {
         let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
         let jumps = jumps(self.assembly, motion);
         let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
-        let (impossible, idle) = self.idle_power(field, &jumps);
+        let (impossible, mut idle) = self.idle_power(field, &jumps, largest);
+        idle += self.idle_fill(claim.fill, motion);
         let flows = self.residual("flow", impossible / largest, ROUNDING);
         let scale = self.residual_scale(factor) * largest;
         let complementary = self.residual("complementarity", idle / scale, ROUNDING);
@@ -391,7 +441,7 @@ impl Check<'_> {
     /// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
     /// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
     /// multiplier of its sliding facet; what is left of the opening is associated.
-    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump]) -> (f64, f64) {
+    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump], largest: f64) -> (f64, f64) {
         let mut resultants = vec![[0.0f64; 3]; jumps.len()];
         for contact in field {
             let joint = &self.assembly.joints[contact.joint];
@@ -409,16 +459,17 @@ impl Check<'_> {
             };
             let (height, area) = (joint.height(), joint.height() * self.assembly.width);
             let mut open = jump.open;
+            // Slip that is rounding is none, however far a facet is from yielding.
+            let slip = if jump.slip.abs() > 8.0 * f64::EPSILON * largest { jump.slip } else { 0.0 };
             let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
-            let sliding =
-                self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * jump.slip < 0.0);
+            let sliding = self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * slip < 0.0);
             match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
                 Some(facet) => {
-                    let gamma = -jump.slip / facet.flow[1];
+                    let gamma = -slip / facet.flow[1];
                     open.iter_mut().for_each(|o| *o += gamma * facet.flow[0]);
                     idle += gamma * slack(facet).abs();
                 }
-                None => impossible = impossible.max(jump.slip.abs()),
+                None => impossible = impossible.max(slip.abs()),
             }
             let polygon = &self.polygons[law];
             let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
@@ -497,9 +548,15 @@ struct Powers {
     impossible: f64,
 }
 
+/// Power that goes into fill whose point of action moves towards the ring at a speed: its greatest force resists motion
+/// into the fill, its least force drives motion away from it.
+fn fill_dissipation([least, greatest]: [f64; 2], speed: f64) -> f64 {
+    (-speed * least).max(-speed * greatest)
+}
+
 /// ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area.
 /// The maximum of linear functions is integrated exactly between their crossings.
-fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
+pub(super) fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
     let end = |v: &[f64; 2], i: usize| -(v[0] * jump.open[i] + v[1] * jump.slip);
     let lines: Vec<[f64; 2]> = vertices.iter().map(|v| [end(v, 0), end(v, 1)]).collect();
     let mut cuts = vec![0.0, 1.0];

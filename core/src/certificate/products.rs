@@ -23,7 +23,7 @@
 use crate::law::{Facet, YieldPolygon};
 use crate::limit::{FIRST, LAST, ProductStep};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, Joint, StageLoads};
+use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, add_force};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -128,6 +128,15 @@ impl<'a> Groups<'a> {
         })
     }
 
+    /// Column of a unit force of the fill; `None` where the ground holds the body.
+    fn fill_column(&self, reaction: &FillReaction) -> Option<Vec<f64>> {
+        let group = self.of_body[reaction.body]?;
+        let mut column = vec![0.0; 3 * self.poles.len()];
+        let moment = cross(reaction.point - self.poles[group], reaction.direction) / self.size;
+        column[3 * group..3 * group + 3].copy_from_slice(&[reaction.direction.x, reaction.direction.y, moment]);
+        Some(column)
+    }
+
     /// Rows of a joint's law over (N_0, N_1, T), and whether T is a variable: without friction T = 0 and slip is free.
     fn rows(&self, index: usize, first: usize) -> Result<(Vec<Row>, bool), String> {
         let joint = &self.assembly.joints[index];
@@ -162,7 +171,12 @@ impl<'a> Groups<'a> {
 impl Rows {
     fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
         let groups = Groups::new(assembly);
-        let (fixed, varying) = (groups.gather(&loads.fixed), groups.gather(&loads.varying));
+        // The least force of the fill is a fixed load; what it may press beyond is a variable.
+        let mut fixed = loads.fixed.clone();
+        for (reaction, [least, _]) in assembly.fill_reactions().iter().zip(&loads.fill_bounds) {
+            add_force(&mut fixed[reaction.body], reaction.point, reaction.direction, *least);
+        }
+        let (fixed, varying) = (groups.gather(&fixed), groups.gather(&loads.varying));
         let sum = |w: &[[f64; 3]]| w.iter().flatten().map(|x| x.abs()).sum::<f64>();
         let (dead, live) = (sum(&fixed), sum(&varying));
         if live == 0.0 {
@@ -180,6 +194,19 @@ impl Rows {
             rows.extend(own.into_iter().map(|row| Row { bound: row.bound / force, ..row }));
             columns.extend(groups.columns(joint).into_iter().take(width));
             forces += width;
+        }
+        for (index, (reaction, [least, greatest])) in
+            assembly.fill_reactions().iter().zip(&loads.fill_bounds).enumerate()
+        {
+            let Some(column) = groups.fill_column(reaction).filter(|_| greatest > least) else { continue };
+            let code = 4 * (assembly.joints.len() + index) as i64;
+            let row = |sign: f64, bound: f64, slot: i64| {
+                let normal = [sign, 0.0, 0.0];
+                Row { code: code + slot, first: forces, normal, flow: normal, bound: bound / force }
+            };
+            rows.extend([row(-1.0, 0.0, 0), row(1.0, greatest - least, 1)]);
+            columns.push(column);
+            forces += 1;
         }
         let scaled = |w: &[[f64; 3]], by: f64| w.iter().flatten().map(|x| x * by).collect::<Vec<f64>>();
         columns.push(scaled(&varying, unit / force));

@@ -188,7 +188,7 @@ impl InelasticBody {
     pub fn initial(&self) -> InelasticState {
         let (count, size) = (self.gauss_points(), self.update.state_size());
         let mut history = vec![0.0; count * size];
-        history.chunks_mut(size).for_each(|state| self.update.initial_state(state));
+        history.chunks_mut(size.max(1)).for_each(|state| self.update.initial_state(state));
         InelasticState {
             history,
             plastic_strain: vec![[0.0; 4]; count],

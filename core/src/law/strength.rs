@@ -82,6 +82,15 @@ pub enum Tangential {
     Friction,
 }
 
+/// A coefficient of friction from which on a joint does not slide at all: T would be bounded only where N is
+/// less than the rounding of T.
+const NO_SLIDING: f64 = 1e11;
+
+/// Whether a facet bounds T with a sense of its own, other than by friction too great to be told from none.
+fn bounds_sliding(facet: &Facet, sense: f64) -> bool {
+    facet.normal[1] * sense > 0.0 && -facet.normal[0] < NO_SLIDING * facet.normal[1].abs()
+}
+
 /// Integrates facets over a joint of area `area` \[m²\]. An error says what cannot be integrated.
 pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
     let polygon = YieldPolygon::of(facets);
@@ -96,7 +105,7 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
         rows.push(ForceRow::associated(FacetMode::Opening, [0.0, -1.0, 0.0], tension / 2.0));
     }
     for sense in [1.0, -1.0] {
-        let on_side: Vec<&Facet> = facets.iter().filter(|f| f.normal[1] * sense > 0.0).collect();
+        let on_side: Vec<&Facet> = facets.iter().filter(|f| bounds_sliding(f, sense)).collect();
         // A facet counts where it bounds the polygon in more than a corner.
         let bounding: Vec<&Facet> = on_side
             .iter()
@@ -188,6 +197,15 @@ mod tests {
         assert_eq!(integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap().tangential(), Tangential::Free);
         let stuck = integrate(&[Facet::opening(0.0)], 1.0).unwrap();
         assert_eq!((stuck.tangential(), stuck.block, stuck.rows.len()), (Tangential::Stuck, None, 2));
+    }
+
+    #[test]
+    fn friction_beyond_rounding_does_not_slide() {
+        for (mu, rows) in [(1e9, 4), (1e12, 2), (1e30, 2)] {
+            let [left, right] = Facet::friction(mu, 0.0, mu);
+            let strength = integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap();
+            assert_eq!(strength.rows.len(), rows, "{mu:e}");
+        }
     }
 
     #[test]

@@ -6,9 +6,9 @@
 //! Rows carry the flow of their facets too ([`crate::law::ForceRow::flow`]). Solvers that read
 //! it answer with [`NonAssociated`]; all others read joints with associated flow.
 
-use crate::law::{Facet, JointStrength, integrate, is_associated};
-use crate::model::geometry::{Vec2, bounding_box, cross};
-use crate::model::{Assembly, Bond, StageLoads, Wrenches};
+use crate::law::{Facet, FacetMode, ForceRow, JointStrength, Tangential, integrate, is_associated};
+use crate::model::geometry::{Vec2, bounding_box, cross, turned};
+use crate::model::{Assembly, Bond, StageLoads, Wrenches, add_force};
 use std::collections::BTreeMap;
 
 /// Forces carried by a joint: normal forces at its two ends, shear along it \[N\].
@@ -23,11 +23,14 @@ pub struct JointForce {
 /// Velocity of a body as a rigid motion seen at the origin: \[v_x, v_y, ω\].
 pub type Velocity = [f64; 3];
 
-/// A joint between two free groups, or a group and the ground (`None`).
+/// A joint between two free groups, or a group and the ground (`None`); or the fill at a chord, which presses its
+/// group with N_0 along the normal.
 #[derive(Debug, Clone)]
 pub struct LimitJoint {
-    /// Index of the joint in the assembly.
+    /// Index of the joint in the assembly; reactions of the fill follow after all joints.
     pub joint: usize,
+    /// Index of the reaction, for fill. N_0 is its force beyond the least one, which is a fixed load.
+    pub fill: Option<usize>,
     /// Group on the minus side.
     pub minus: Option<usize>,
     /// Group on the plus side.
@@ -43,6 +46,15 @@ pub struct LimitJoint {
 }
 
 impl LimitJoint {
+    /// Number of forces among N_0, N_1, T that it has.
+    pub fn components(&self) -> usize {
+        match (self.fill, self.strength.tangential()) {
+            (Some(_), _) => 1,
+            (None, Tangential::Free) => 2,
+            (None, _) => 3,
+        }
+    }
+
     /// Wrenches about `pole` on the plus body per unit of N_0, N_1 and T; minus gets the opposite.
     pub fn wrenches(&self, pole: Vec2) -> [[f64; 3]; 3] {
         let at = |point: Vec2, direction: Vec2| [direction.x, direction.y, cross(point - pole, direction)];
@@ -102,8 +114,18 @@ impl LimitProblem {
             let strength = integrate(facets, joint.height() * assembly.width)
                 .map_err(|why| format!("joint law \"{name}\": {why}"))?;
             let (normal, tangent) = joint.frame();
-            joints.push(LimitJoint { joint: index, minus, plus, ends: joint.ends, normal, tangent, strength });
+            joints.push(LimitJoint {
+                joint: index,
+                fill: None,
+                minus,
+                plus,
+                ends: joint.ends,
+                normal,
+                tangent,
+                strength,
+            });
         }
+        let least = fill_joints(assembly, loads, &group_of, &mut joints);
         let gather = |wrenches: &Wrenches| {
             let mut sum = vec![[0.0; 3]; groups];
             for (group, wrench) in group_of.iter().zip(wrenches) {
@@ -117,7 +139,7 @@ impl LimitProblem {
             sum
         };
         Ok(LimitProblem {
-            fixed: gather(&loads.fixed),
+            fixed: gather(&least),
             varying: gather(&loads.varying),
             group_of,
             groups,
@@ -128,8 +150,54 @@ impl LimitProblem {
         })
     }
 
+    /// Forces of the fill \[N\] given those of the problem's joints: one for each of its reactions, of which `bounds`
+    /// are the least and greatest.
+    pub fn fill_forces(&self, forces: &[JointForce], bounds: &[[f64; 2]]) -> Vec<f64> {
+        let mut fill: Vec<f64> = bounds.iter().map(|bounds| bounds[0]).collect();
+        for (joint, force) in self.joints.iter().zip(forces) {
+            if let Some(index) = joint.fill {
+                fill[index] += force.normal[0];
+            }
+        }
+        fill
+    }
+
     /// Sum of the sizes of some wrenches as forces \[N\], moments divided by the scene's length.
     pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
         wrenches.iter().map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length)).sum()
     }
+}
+
+/// Adds the reactions of the fill as joints, and returns the fixed loads with the least force of each: what is left
+/// of a reaction lies between zero and what its law allows beyond.
+fn fill_joints(
+    assembly: &Assembly,
+    loads: &StageLoads,
+    group_of: &[Option<usize>],
+    joints: &mut Vec<LimitJoint>,
+) -> Wrenches {
+    let mut fixed = loads.fixed.clone();
+    for (index, (reaction, [least, greatest])) in assembly.fill_reactions().iter().zip(&loads.fill_bounds).enumerate() {
+        add_force(&mut fixed[reaction.body], reaction.point, reaction.direction, *least);
+        let plus = group_of[reaction.body];
+        if plus.is_none() || greatest <= least {
+            continue;
+        }
+        let (normal, tangent) = (reaction.direction, turned(reaction.direction));
+        let rows = vec![
+            ForceRow::associated(FacetMode::Opening, [-1.0, 0.0, 0.0], 0.0),
+            ForceRow::associated(FacetMode::Crushing, [1.0, 0.0, 0.0], greatest - least),
+        ];
+        joints.push(LimitJoint {
+            joint: assembly.joints.len() + index,
+            fill: Some(index),
+            minus: None,
+            plus,
+            ends: [reaction.point, reaction.point + tangent],
+            normal,
+            tangent,
+            strength: JointStrength { rows, block: None },
+        });
+    }
+    fixed
 }

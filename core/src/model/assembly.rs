@@ -1,5 +1,6 @@
 //! Bodies and joints with their materials and laws, before any solver sees them.
 
+use super::bridge::{Bridge, Chord, FillReaction};
 use super::geometry::{Vec2, area_and_centroid, bounding_box};
 use super::joints::{Bond, Joint};
 use crate::elastic::{MeshDensity, largest_element};
@@ -71,6 +72,8 @@ pub struct Assembly {
     pub mesh: MeshDensity,
     /// Present for arches.
     pub arch: Option<ArchLayout>,
+    /// Present for bridges: road and fill.
+    pub bridge: Option<Bridge>,
 }
 
 /// Mass and centroid of a body.
@@ -146,6 +149,26 @@ impl Assembly {
     pub fn deforms(&self) -> bool {
         (0..self.bodies.len()).any(|body| self.is_deformable(body))
             || self.joints.iter().any(|j| self.law(j).is_some_and(|law| law.stiffness().is_some()))
+    }
+
+    /// The straight upper faces on which loads and fill stand: of arches their extrados, of bridges also the tops of
+    /// piers; empty where there is none. From left to right.
+    pub fn extrados(&self) -> Vec<Chord> {
+        if let Some(bridge) = &self.bridge {
+            return bridge.extrados.clone();
+        }
+        let Some(arch) = &self.arch else { return Vec::new() };
+        let chord = |k: usize| Chord {
+            body: arch.first + k,
+            ends: [self.joints[k].ends[1], self.joints[k + 1].ends[1]],
+            from_middle: (2 * k + 1).abs_diff(arch.voussoirs),
+        };
+        (0..arch.voussoirs).map(chord).collect()
+    }
+
+    /// What the fill presses with, element by element.
+    pub fn fill_reactions(&self) -> &[FillReaction] {
+        self.bridge.as_ref().map_or(&[], |bridge| &bridge.reactions)
     }
 
     /// Diagonal of the box around everything \[m\].

@@ -65,6 +65,20 @@ pub struct StageLoads {
     pub fixed: Wrenches,
     /// Wrench per body, about the origin, for factor 1.
     pub varying: Wrenches,
+    /// Least and greatest force of each element of the fill under the gravity of the stage \[N\].
+    pub fill_bounds: Vec<[f64; 2]>,
+}
+
+/// Weight of the fill on the blocks under it; accelerations of blocks do not move it.
+pub fn fill_weights(assembly: &Assembly, gravity: Vec2) -> Vec<PointForce> {
+    let masses = assembly.bridge.iter().flat_map(|bridge| &bridge.masses);
+    masses.map(|fill| PointForce { body: fill.body, point: fill.point, force: gravity * fill.mass }).collect()
+}
+
+/// Least and greatest force of each element of the fill \[N\]; only the downward part of gravity presses fill.
+pub fn fill_bounds(assembly: &Assembly, gravity: Vec2) -> Vec<[f64; 2]> {
+    let down = (-gravity.y).max(0.0);
+    assembly.fill_reactions().iter().map(|reaction| reaction.bounds(down)).collect()
 }
 
 /// The loads of each stage, those of earlier stages at the factors they reached included.
@@ -85,6 +99,9 @@ pub fn stage_loads(assembly: &Assembly, stages: &[Stage]) -> Vec<StageLoads> {
             gravity = stage.gravity.unwrap_or(gravity);
             let mut fixed = earlier.clone();
             accelerate(&mut fixed, gravity);
+            for weight in fill_weights(assembly, gravity) {
+                add_force(&mut fixed[weight.body], weight.point, weight.force, 1.0);
+            }
             let mut varying: Wrenches = vec![[0.0; 3]; count];
             for force in &stage.forces {
                 add_force(&mut varying[force.body], force.point, force.force, 1.0);
@@ -97,7 +114,8 @@ pub fn stage_loads(assembly: &Assembly, stages: &[Stage]) -> Vec<StageLoads> {
                     (0..3).for_each(|i| sum[i] += factor * add[i]);
                 }
             }
-            StageLoads { fixed, varying }
+            let fill_bounds = fill_bounds(assembly, gravity);
+            StageLoads { fixed, varying, fill_bounds }
         })
         .collect()
 }

@@ -1,13 +1,15 @@
 //! Building the path problem: groups of bodies, contact points, flexibilities, load steps.
 
+use super::fill::{add_fill, least_forces};
 use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
+use super::response_check::check_response;
 use super::sliding::Sliding;
 use crate::elastic::{Condenser, breaks_on_joint, joint_points, union_breaks};
 use crate::law::PlanarUpdate;
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
-use crate::model::{Assembly, Bond, Joint, Stage, Target, root};
+use crate::model::{Assembly, Bond, Joint, PointForce, Stage, Target, fill_weights, root};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
@@ -29,6 +31,7 @@ impl PathProblem {
         };
         let nonmatching = contact_points(&mut problem, assembly)?;
         regularise_nonmatching_joints(&mut problem, assembly, nonmatching);
+        add_fill(&mut problem, assembly, stages)?;
         // What turns about a point has its pole there, so that the point's displacement is the pole's
         // however far the body turns.
         for settlement in stages.iter().flat_map(|stage| &stage.settlements).rev() {
@@ -103,6 +106,7 @@ fn points_of_joint(assembly: &Assembly, joint: &Joint) -> Result<(Vec<f64>, Vec<
 fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTreeSet<usize>, String> {
     let laws: Vec<Option<PointLaw>> = assembly.catalogue.laws.iter().map(|(_, law)| PointLaw::of(&**law)).collect();
     let mut nonmatching = BTreeSet::new();
+    let mut checked = BTreeSet::new();
     for (index, joint) in assembly.joints.iter().enumerate() {
         if problem.body_of[joint.minus] == problem.body_of[joint.plus] {
             continue;
@@ -118,6 +122,12 @@ fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTre
             Bond::Bonded => &PointLaw::Bonded,
             Bond::Law(law) => laws[law].as_ref().ok_or("a joint law gives neither facets nor tractions from gaps")?,
         };
+        if let (PointLaw::Response(response), Bond::Law(own)) = (law, joint.bond)
+            && checked.insert(own)
+        {
+            let (name, interface) = &assembly.catalogue.laws[own];
+            check_response((name, &**interface), &**response, (index, joint.middle()))?;
+        }
         for (position, weight) in positions.into_iter().zip(weights) {
             let point = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * position;
             let area = weight * height * assembly.width;
@@ -179,7 +189,19 @@ fn regularise_nonmatching_joints(problem: &mut PathProblem, assembly: &Assembly,
 /// What grows in a stage besides gravity; points of deformable blocks at which it acts become points of bodies.
 fn loading(problem: &mut PathProblem, assembly: &Assembly, stage: &Stage) -> Loading {
     let mut loading = Loading { acceleration: stage.accelerations.iter().sum(), ..Loading::default() };
-    for force in &stage.forces {
+    add_forces(problem, assembly, &stage.forces, &mut loading);
+    for settlement in &stage.settlements {
+        let body = problem.body_of[settlement.body];
+        let pole = problem.bodies[body].pole;
+        let u = settlement.displacement + turned(pole - settlement.about) * settlement.rotation;
+        loading.settlements.push((body, [u.x, u.y, settlement.rotation]));
+    }
+    loading
+}
+
+/// Forces at points, which become points of bodies where these deform.
+fn add_forces(problem: &mut PathProblem, assembly: &Assembly, forces: &[PointForce], loading: &mut Loading) {
+    for force in forces {
         let body = problem.body_of[force.body];
         let slot = assembly.is_deformable(force.body).then(|| {
             let points = &mut problem.bodies[body].points;
@@ -190,13 +212,6 @@ fn loading(problem: &mut PathProblem, assembly: &Assembly, stage: &Stage) -> Loa
         });
         loading.forces.push((body, slot, force.point, force.force));
     }
-    for settlement in &stage.settlements {
-        let body = problem.body_of[settlement.body];
-        let pole = problem.bodies[body].pole;
-        let u = settlement.displacement + turned(pole - settlement.about) * settlement.rotation;
-        loading.settlements.push((body, [u.x, u.y, settlement.rotation]));
-    }
-    loading
 }
 
 /// Load steps in order: of each stage its change of gravity, then its loads.
@@ -207,7 +222,9 @@ fn load_steps(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
         let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);
         if change != Vec2::zeros() {
             gravity += change;
-            let loading = Loading { acceleration: change, ..Loading::default() };
+            let mut loading = Loading { acceleration: change, ..Loading::default() };
+            add_forces(problem, assembly, &fill_weights(assembly, change), &mut loading);
+            add_forces(problem, assembly, &least_forces(assembly, change), &mut loading);
             let end = LoadStepEnd::Factor(1.0);
             steps.push(LoadStep { stage: index, gravity: true, loading, start: 0.0, end });
         }

@@ -11,17 +11,20 @@
 
 mod build;
 mod continuation;
+mod fill;
 mod peak;
 mod point_law;
 mod problem;
+mod response_check;
 mod sliding;
 mod solver;
 mod state;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
+pub use self::fill::fill_gravity;
 pub use self::peak::{Branching, ProvenPeak, StageStability};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;
-pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, Unobserved};
+pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, StageSettings, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};

@@ -6,6 +6,7 @@ use super::problem::PathProblem;
 use super::state::{PathEvent, PathState};
 use crate::limit::{Counters, Status};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// How a path ended.
 #[derive(Debug, Clone)]
@@ -53,7 +54,38 @@ pub struct PathSettings {
     /// Where to stop a falling branch: a factor.
     pub stop_factor: Option<f64>,
     /// The continuation strategy, where the study names one.
-    pub continuation: Option<std::sync::Arc<dyn Continuation>>,
+    pub continuation: Option<Arc<dyn Continuation>>,
+    /// What stages ask for besides, by index: a list that is too short stands for stages that ask for nothing.
+    pub stages: Vec<StageSettings>,
+}
+
+/// What a stage asks for where it differs from the rest.
+#[derive(Debug, Clone, Default)]
+pub struct StageSettings {
+    /// Its continuation strategy.
+    pub continuation: Option<Arc<dyn Continuation>>,
+    /// How far to go beyond a peak in it: displacement of its load \[m\], and a factor. Both together take the place
+    /// of those of all stages, where one of them is given.
+    pub stop: Option<[Option<f64>; 2]>,
+}
+
+impl PathSettings {
+    /// The continuation strategy of a stage, where one is named.
+    pub fn strategy(&self, stage: usize) -> Option<&Arc<dyn Continuation>> {
+        let own = self.stages.get(stage).and_then(|own| own.continuation.as_ref());
+        own.or(self.continuation.as_ref())
+    }
+
+    /// How far to go beyond a peak in a stage: displacement of its load \[m\], and a factor.
+    pub fn stop(&self, stage: usize) -> [Option<f64>; 2] {
+        let own = self.stages.get(stage).and_then(|own| own.stop);
+        own.unwrap_or([self.stop_displacement, self.stop_factor])
+    }
+
+    /// All continuation strategies that are named.
+    pub fn strategies(&self) -> impl Iterator<Item = &Arc<dyn Continuation>> {
+        self.stages.iter().filter_map(|own| own.continuation.as_ref()).chain(&self.continuation)
+    }
 }
 
 /// Looks on: sees every state in equilibrium that a solver reaches. Returns whether to go on.
@@ -79,4 +111,9 @@ pub trait PathSolver: Debug + Send + Sync {
 
     /// Why this solver cannot take this problem, if so.
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String>;
+
+    /// How much of the energy of a stage its steps may lose.
+    fn energy_tolerance(&self) -> f64 {
+        1e-3
+    }
 }

@@ -73,6 +73,8 @@ pub enum PluginKind {
     LoadKind,
     /// How a live load spreads: `dispersion = { law = … }`.
     Dispersion,
+    /// How fill resists the ring: `resistance = { law = … }`.
+    FillResistance,
     /// What is done with the cases: `kind = …`.
     StudyKind,
     /// A kind of result file.
@@ -81,7 +83,7 @@ pub enum PluginKind {
 
 impl PluginKind {
     /// All kinds, in the order of `voussoir list`.
-    pub const ALL: [PluginKind; 10] = [
+    pub const ALL: [PluginKind; 11] = [
         PluginKind::InterfaceLaw,
         PluginKind::BulkMaterial,
         PluginKind::Scene,
@@ -90,6 +92,7 @@ impl PluginKind {
         PluginKind::Continuation,
         PluginKind::LoadKind,
         PluginKind::Dispersion,
+        PluginKind::FillResistance,
         PluginKind::StudyKind,
         PluginKind::Writer,
     ];
@@ -97,7 +100,10 @@ impl PluginKind {
     /// The key whose value is the tag.
     pub fn tag_key(self) -> &'static str {
         match self {
-            PluginKind::InterfaceLaw | PluginKind::BulkMaterial | PluginKind::Dispersion => "law",
+            PluginKind::InterfaceLaw
+            | PluginKind::BulkMaterial
+            | PluginKind::Dispersion
+            | PluginKind::FillResistance => "law",
             PluginKind::Scene => "scene",
             PluginKind::LimitSolver | PluginKind::PathSolver => "solver",
             PluginKind::Continuation => "strategy",
@@ -117,6 +123,7 @@ impl PluginKind {
             PluginKind::Continuation => "continuation strategy",
             PluginKind::LoadKind => "load kind",
             PluginKind::Dispersion => "dispersion",
+            PluginKind::FillResistance => "fill resistance",
             PluginKind::StudyKind => "study kind",
             PluginKind::Writer => "writer",
         }
@@ -133,6 +140,7 @@ impl PluginKind {
             PluginKind::Continuation => "strategies",
             PluginKind::LoadKind => "loads",
             PluginKind::Dispersion => "dispersions",
+            PluginKind::FillResistance => "fill_resistances",
             PluginKind::StudyKind => "kinds",
             PluginKind::Writer => "writers",
         }

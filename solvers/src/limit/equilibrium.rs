@@ -1,16 +1,16 @@
 //! Equilibrium of groups over the joints' force variables, scaled: forces in units of F, moments in F × length.
 
-use voussoir_core::law::Tangential;
 use voussoir_core::limit::{JointForce, LimitProblem};
 
 /// Entries of a row: (variable, coefficient).
 pub type Row = Vec<(usize, f64)>;
 
-/// The force variables of all joints: N_0 and N_1 of each, T where it is not zero.
+/// The force variables of all joints: N_0 and N_1 of each, T where it is not zero; of the fill at a
+/// chord N_0 alone.
 #[derive(Debug, Clone)]
 pub struct ForceVariables {
-    /// First variable of each joint and whether T is one.
-    pub joints: Vec<(usize, bool)>,
+    /// First variable of each joint and their number.
+    pub joints: Vec<(usize, usize)>,
     /// Their number.
     pub count: usize,
 }
@@ -20,9 +20,9 @@ impl ForceVariables {
     pub fn new(problem: &LimitProblem) -> Self {
         let mut count = 0;
         let joints = problem.joints.iter().map(|joint| {
-            let (first, shear) = (count, joint.strength.tangential() != Tangential::Free);
-            count += if shear { 3 } else { 2 };
-            (first, shear)
+            let (first, own) = (count, joint.components());
+            count += own;
+            (first, own)
         });
         ForceVariables { joints: joints.collect(), count }
     }
@@ -30,11 +30,11 @@ impl ForceVariables {
     /// Rows of equilibrium, three for each group, moments about the pole divided by the problem's length.
     pub fn equilibrium(&self, problem: &LimitProblem) -> Vec<Row> {
         let mut rows = vec![Row::new(); 3 * problem.groups];
-        for (joint, &(first, shear)) in problem.joints.iter().zip(&self.joints) {
+        for (joint, &(first, own)) in problem.joints.iter().zip(&self.joints) {
             let wrenches = joint.wrenches(problem.pole);
             for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
                 let Some(group) = group else { continue };
-                for (k, wrench) in wrenches.iter().enumerate().take(if shear { 3 } else { 2 }) {
+                for (k, wrench) in wrenches.iter().enumerate().take(own) {
                     for (i, scale) in [1.0, 1.0, 1.0 / problem.length].into_iter().enumerate() {
                         if wrench[i] != 0.0 {
                             rows[3 * group + i].push((first + k, sign * wrench[i] * scale));
@@ -48,9 +48,9 @@ impl ForceVariables {
 
     /// Joint forces \[N\] of variables in units of `force`.
     pub fn joint_forces(&self, x: &[f64], force: f64) -> Vec<JointForce> {
-        let of = |&(first, shear): &(usize, bool)| JointForce {
-            normal: [x[first] * force, x[first + 1] * force],
-            shear: if shear { x[first + 2] * force } else { 0.0 },
+        let of = |&(first, own): &(usize, usize)| {
+            let component = |k: usize| if k < own { x[first + k] * force } else { 0.0 };
+            JointForce { normal: [component(0), component(1)], shear: component(2) }
         };
         self.joints.iter().map(of).collect()
     }

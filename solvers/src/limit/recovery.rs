@@ -112,11 +112,9 @@ impl Systems {
     /// Force variables of joint forces \[N\].
     pub fn force_variables(&self, forces: &[JointForce]) -> Vec<f64> {
         let mut z = Vec::with_capacity(self.forces + 1);
-        for (force, &(_, shear)) in forces.iter().zip(&self.variables.joints) {
-            z.extend(force.normal.map(|n| n / self.force));
-            if shear {
-                z.push(force.shear / self.force);
-            }
+        for (force, &(_, own)) in forces.iter().zip(&self.variables.joints) {
+            let components = [force.normal[0], force.normal[1], force.shear];
+            z.extend(components.iter().take(own).map(|n| n / self.force));
         }
         z
     }

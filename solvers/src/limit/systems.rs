@@ -76,8 +76,7 @@ impl Systems {
         let variables = ForceVariables::new(problem);
         let equilibrium = variables.equilibrium(problem);
         let mut pairs = Vec::new();
-        for (joint, &(first, shear)) in problem.joints.iter().zip(&variables.joints) {
-            let count = if shear { 3 } else { 2 };
+        for (joint, &(first, count)) in problem.joints.iter().zip(&variables.joints) {
             let (opens, before) = (|mode| mode == FacetMode::Opening, pairs.len());
             for row in &joint.strength.rows {
                 let entries = |a: &[f64; 3]| -> Vec<(usize, f64)> {

@@ -1,14 +1,51 @@
 //! Energy along a path: the work of loads and of settled supports by the trapezoidal rule, exact where everything
 //! changes linearly during a step, and what dissipates.
 
-use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Loading, PathProblem};
+use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::path::{Loading, PathProblem, PathState};
 
 /// Energies so far \[J\].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct EnergyBalance {
     pub dissipated: f64,
     pub work: f64,
+}
+
+/// The energy balance of a stage.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct StageBalance {
+    stage: usize,
+    /// Σ|work| over its steps, and what it has dissipated \[J\].
+    work: f64,
+    dissipated: f64,
+    /// What work leaves of the energy stored and dissipated \[J\].
+    left: f64,
+}
+
+impl StageBalance {
+    /// After a step of a stage between two states, and what the step leaves over itself.
+    pub fn after(&self, stage: usize, from: &PathState, to: &PathState) -> (Self, f64) {
+        let before = if stage == self.stage { *self } else { StageBalance { stage, ..Self::default() } };
+        let (work, dissipated) = (to.work - from.work, to.dissipated - from.dissipated);
+        let left = work - (to.stored - from.stored) - dissipated;
+        let after = StageBalance {
+            stage,
+            work: before.work + work.abs(),
+            dissipated: before.dissipated + dissipated.abs(),
+            left: before.left + left,
+        };
+        (after, left)
+    }
+
+    /// What is left over \[J\].
+    pub fn left(&self) -> f64 {
+        self.left
+    }
+
+    /// What that is compared with, for what is stored now \[J\].
+    pub fn scale(&self, stored: f64) -> f64 {
+        self.work + stored.abs() + self.dissipated
+    }
 }
 
 /// What the work of a step needs of the state at one of its ends.
@@ -53,16 +90,27 @@ pub(super) fn load_size(problem: &PathProblem, loading: &Loading) -> f64 {
     forces + masses * loading.acceleration.norm()
 }
 
-/// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point).
+/// By how much a loading moves the contact points of supports, at most, per unit of its factor \[m\].
+pub(super) fn settlement_size(problem: &PathProblem, loading: &Loading) -> f64 {
+    let moves = |&(body, [x, y, theta]): &(usize, [f64; 3])| {
+        let pole = problem.bodies[body].pole;
+        let own = problem.contacts.iter().filter(move |c| c.minus.body == body || c.plus.body == body);
+        own.map(move |c| (Vec2::new(x, y) + turned(c.position - pole) * theta).norm()).fold(0.0, f64::max)
+    };
+    loading.settlements.iter().map(moves).fold(0.0, f64::max)
+}
+
+/// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). Of a
+/// loading that only moves supports, how far it has moved them at its factor.
 pub(super) fn load_displacement(
     problem: &PathProblem,
-    loading: &Loading,
+    (loading, factor): (&Loading, f64),
     motion: &[[f64; 3]],
     rigid: impl Fn(usize, Vec2) -> Vec2,
 ) -> f64 {
     let size = load_size(problem, loading);
     if size == 0.0 {
-        return 0.0;
+        return factor * settlement_size(problem, loading);
     }
     let forces: f64 = loading.forces.iter().map(|(body, _, point, f)| f.dot(&rigid(*body, *point))).sum();
     let free = problem.bodies.iter().zip(motion).filter(|(b, _)| !b.held);

@@ -158,6 +158,7 @@ mod tests {
             stop_displacement: None,
             stop_factor: None,
             continuation: None,
+            stages: Vec::new(),
         };
         NewtonPath {}.trace(problem, &settings, &mut Unobserved)
     }

@@ -1,4 +1,4 @@
-//! Reading and writing files: written aside and renamed, so that a killed run leaves no half file.
+//! Reading files and studies, and saying what is wrong with them.
 
 use super::codes::{NO_ACCESS, WRONG_INPUT};
 use crate::config::diagnostic::LocatedDiagnostic;
@@ -7,25 +7,20 @@ use std::path::Path;
 
 /// Reads a file, or says why not.
 pub fn read(path: &Path) -> Result<String, u8> {
-    std::fs::read_to_string(path).map_err(|error| {
+    let bytes = std::fs::read(path).map_err(|error| {
         eprintln!("voussoir: cannot read {}: {error}", path.display());
         NO_ACCESS
-    })
-}
-
-/// Writes a file whole or not at all.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), u8> {
-    let aside = path.with_extension(format!("{}.tmp", path.extension().unwrap_or_default().to_string_lossy()));
-    let attempt = || -> std::io::Result<()> {
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        std::fs::write(&aside, bytes)?;
-        std::fs::rename(&aside, path)
-    };
-    attempt().map_err(|error| {
-        eprintln!("voussoir: cannot write {}: {error}", path.display());
-        NO_ACCESS
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let (bytes, at) = (error.as_bytes(), error.utf8_error().valid_up_to());
+        let (line, column) = (bytes[..at].iter().filter(|b| **b == b'\n').count() + 1, bytes[..at].iter().rev().take_while(|b| **b != b'\n').count() + 1);
+        eprintln!(
+            "{}:{line}:{column}: this byte is not UTF-8 (0x{:02x}); save the file as UTF-8, as TOML asks for (it may be in \
+             Latin-1 or UTF-16)",
+            path.display(),
+            bytes[at]
+        );
+        WRONG_INPUT
     })
 }
 

@@ -4,6 +4,7 @@ pub mod check;
 mod codes;
 pub mod explain;
 pub mod files;
+mod folder;
 mod progress;
 pub mod run;
 pub mod verify;

@@ -4,7 +4,6 @@ use crate::results::CaseResult;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::Write;
-use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -25,14 +24,14 @@ const LONG: u64 = 10;
 
 impl Progress {
     /// Progress of the study called `name`; finished cases are added to the file `journal`.
-    pub fn new(name: &str, quiet: bool, journal: &Path) -> Self {
+    pub fn new(name: &str, quiet: bool, journal: Option<std::fs::File>) -> Self {
         Progress {
             bar: ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
             quiet,
             name: name.into(),
             started: Instant::now(),
             shown: AtomicU64::new(0),
-            journal: Mutex::new(std::fs::OpenOptions::new().create(true).append(true).open(journal).ok()),
+            journal: Mutex::new(journal),
         }
     }
 
@@ -59,9 +58,13 @@ impl Observer for Progress {
     fn answered(&self, case: &CaseResult) {
         self.bar.inc(1);
         let Ok(mut journal) = self.journal.lock() else { return };
-        // A journal that cannot be written costs only the chance to resume.
         if let (Some(file), Ok(line)) = (journal.as_mut(), serde_json::to_string(case)) {
-            let _ = writeln!(file, "{line}");
+            // A line of its own even after one that was cut short, and in one piece.
+            if let Err(error) = file.write_all(format!("\n{line}\n").as_bytes()) {
+                // It costs only the chance to go on after an interruption.
+                eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
+                *journal = None;
+            }
         }
     }
 

@@ -2,31 +2,41 @@
 
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
 use super::files;
+use super::progress::Progress;
+use super::run::useful_jobs;
+use crate::kinds::StoredResults;
 use std::path::Path;
 
-/// Checks a results folder.
-pub fn verify(dir: &Path) -> u8 {
-    match confirm(dir) {
+/// Checks a results folder, `jobs` cases side by side.
+pub fn verify(dir: &Path, jobs: usize) -> u8 {
+    match confirm(dir, jobs) {
         Ok(code) | Err(code) => code,
     }
 }
 
-fn confirm(dir: &Path) -> Result<u8, u8> {
+fn confirm(dir: &Path, jobs: usize) -> Result<u8, u8> {
     let path = dir.join("results.json");
     let results = files::read(&path)?;
     let study = files::study(&dir.join("resolved.toml"), &[])?;
-    let found = study.verify(&results).map_err(|error| {
+    let progress = Progress::new(study.name(), false, None);
+    let file = |name: &str| std::fs::read(dir.join(name)).ok();
+    let stored = StoredResults { results: &results, jobs: useful_jobs(jobs), file: &file };
+    let found = study.verify_stored(&stored, &progress);
+    progress.finish();
+    let found = found.map_err(|error| {
         eprintln!("{}: not a results file: {error}", path.display());
         WRONG_INPUT
     })?;
-    for (id, why) in &found.findings {
-        say(format!("case {id}: {why}"));
-    }
-    if found.findings.is_empty() {
+    found.findings.iter().for_each(|(id, why)| say(format!("case {id}: {why}")));
+    found.files.iter().for_each(say);
+    let wrong = found.findings.len() + found.files.len();
+    if wrong == 0 {
         let confirmed = found.cases - found.stalled;
-        say(format!("{}: {confirmed} case(s) confirmed, {} stalled", path.display(), found.stalled));
+        let of = if found.cases < found.of { format!(" of the study's {}", found.of) } else { String::new() };
+        say(format!("{}: {confirmed} case(s){of} confirmed, {} stalled", path.display(), found.stalled));
+        say(found.how);
     } else {
-        say(format!("{}: {} finding(s); the results do not hold", path.display(), found.findings.len()));
+        say(format!("{}: {wrong} finding(s); the results do not hold", path.display()));
     }
-    Ok(if found.findings.is_empty() && found.stalled == 0 { FINE } else { NOT_PROVEN })
+    Ok(if wrong == 0 && found.stalled == 0 { FINE } else { NOT_PROVEN })
 }

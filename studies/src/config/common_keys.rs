@@ -6,7 +6,8 @@ const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) ->
     Parameter { name, doc, shape, need }
 }
 
-static STOP: Shape = Shape::Table(&[
+/// How far to go after a peak.
+pub static STOP: Shape = Shape::Table(&[
     Parameter::number("displacement", Quantity::Length, Range::POSITIVE, "displacement of the load point after a peak")
         .optional("not a limit"),
     Parameter::number("factor", Quantity::Ratio, Range::ANY, "load factor at which a path ends")

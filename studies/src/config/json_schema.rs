@@ -16,6 +16,7 @@ pub fn definitions() -> Map<String, Json> {
         PluginKind::LimitSolver,
         PluginKind::Continuation,
         PluginKind::Dispersion,
+        PluginKind::FillResistance,
     ] {
         let mut choices = Vec::new();
         for word in common_words(kind) {

@@ -1,6 +1,7 @@
 //! A scene with what its answer says of it: blocks, supports, loads, thrust line or joint forces,
 //! hinges, sliding and crushing joints.
 
+use super::fill;
 use super::format::{case_title, format_force, headline};
 use super::loads::Loads;
 use super::svg_canvas::SvgCanvas;
@@ -27,7 +28,11 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     let titles = [case_title(study, result), headline(result, stages)];
     let mut canvas = SvgCanvas::new(low, high, loads.margins(low, high), &titles);
     let mut legend = Legend::new();
+    let filled = fill::draw(&mut canvas, assembly);
     blocks(&mut canvas, assembly);
+    if filled {
+        legend.push((Symbol::Fill, "fill".into()));
+    }
     if assembly.bodies.iter().any(|body| body.fixed) {
         legend.push((Symbol::Ground, "support".into()));
     }
@@ -36,10 +41,19 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     } else {
         forces(&mut canvas, assembly, result, &mut legend);
     }
+    if let Some(greatest) = fill::draw_forces(&mut canvas, &result.proof.fill) {
+        legend.push((Symbol::Pressure, format!("force of the fill (greatest {})", format_force(greatest))));
+    }
     loads.draw(&mut canvas);
     if loads.has_arrows() {
         let meaning = if reached.is_some() { "load at this factor" } else { "load, λ is its factor" };
         legend.push((Symbol::Load, meaning.into()));
+    }
+    if loads.has_earlier() {
+        legend.push((Symbol::EarlierLoad, "load of an earlier stage".into()));
+    }
+    if loads.has_settlements() {
+        legend.push((Symbol::Settlement, "support that moves".into()));
     }
     if let Some(mechanism) = &result.mechanism {
         legend.extend(mark(&mut canvas, assembly, mechanism, false, |_, point| point));
@@ -55,8 +69,9 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
 /// Corners of the box around everything \[m\], with further points.
 pub(super) fn extent(assembly: &Assembly, further: &[Vec2]) -> (Vec2, Vec2) {
     let vertices = assembly.bodies.iter().flat_map(|body| &body.vertices);
+    let fill = assembly.bridge.as_ref().map(fill::outline).unwrap_or_default();
     let points: Vec<&Vec2> =
-        vertices.chain(assembly.joints.iter().flat_map(|joint| &joint.ends)).chain(further).collect();
+        vertices.chain(&fill).chain(assembly.joints.iter().flat_map(|joint| &joint.ends)).chain(further).collect();
     if points.is_empty() { (Vec2::zeros(), Vec2::repeat(1.0)) } else { bounding_box(points) }
 }
 

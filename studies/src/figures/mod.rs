@@ -8,6 +8,8 @@ pub mod comparison;
 pub mod curve;
 pub mod displaced;
 pub mod drawing;
+pub mod envelope;
+mod fill;
 pub mod format;
 pub mod hinge_closure;
 pub mod loads;

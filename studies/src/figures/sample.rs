@@ -68,6 +68,7 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
         plane: Plane::Strain,
         mesh: MeshDensity::default(),
         arch,
+        bridge: None,
     }
 }
 
@@ -323,6 +324,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         plane: Plane::Strain,
         mesh: MeshDensity::default(),
         arch: None,
+        bridge: None,
     };
     let answer = wall_answer(&assembly, top, Vec2::new(BRICK[0] * bricks as f64, height * (courses / 2) as f64));
     (assembly, stages, answer)

@@ -2,16 +2,24 @@
 
 use super::svg_canvas::{LegendSymbol, SvgCanvas};
 use super::text_layout::{Area, Spot};
-use voussoir_core::certificate::Mechanism;
+use voussoir_core::certificate::{CRUSHES, Mechanism};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint};
 
 /// Fill of free blocks.
 pub const STONE: &str = "#e9dfcb";
+/// Fill above the rings.
+pub const FILL: &str = "#f4eede";
+/// Forces of the fill.
+pub const PRESSURE: &str = "#a05a00";
 /// Outline of blocks.
 pub const OUTLINE: &str = "#6b6150";
 /// Loads.
 pub const LOAD: &str = "#0072b2";
+/// Loads of stages before the last.
+pub const EARLIER: &str = "#86b8d8";
+/// Supports that move.
+pub const SETTLEMENT: &str = "#d55e00";
 /// Thrust line and joint forces.
 pub const THRUST: &str = "#009e73";
 /// Strut of an unbounded case.
@@ -32,8 +40,16 @@ pub enum Symbol {
     Block,
     /// The ground.
     Ground,
+    /// The fill of a bridge.
+    Fill,
+    /// A force of the fill.
+    Pressure,
     /// A load's arrow.
     Load,
+    /// An arrow of a load before the last stage.
+    EarlierLoad,
+    /// An arrow along which a support moves.
+    Settlement,
     /// The thrust line.
     Thrust,
     /// A joint's force.
@@ -62,7 +78,11 @@ impl LegendSymbol for Symbol {
             Symbol::Block => boxed(canvas, [x, y], STONE, OUTLINE, ""),
             Symbol::Ground => boxed(canvas, [x, y], "url(#ground)", OUTLINE, ""),
             Symbol::Before => boxed(canvas, [x, y], "none", "#999999", "4 3"),
+            Symbol::Fill => boxed(canvas, [x, y], FILL, "#b9ad93", ""),
+            Symbol::Pressure => canvas.arrow(ends[0], ends[1], PRESSURE, 1.6, 7.0),
             Symbol::Load => canvas.arrow(ends[0], ends[1], LOAD, 2.2, 10.0),
+            Symbol::EarlierLoad => canvas.arrow(ends[0], ends[1], EARLIER, 2.2, 10.0),
+            Symbol::Settlement => canvas.arrow(ends[0], ends[1], SETTLEMENT, 3.0, 10.0),
             Symbol::Thrust => canvas.line(&ends, THRUST, 2.2, ""),
             Symbol::Force => canvas.line(&[[x + 6.0, y], [x + 28.0, y]], THRUST, 5.0, ""),
             Symbol::Strut => canvas.line(&ends, STRUT, 3.0, "9 5"),
@@ -137,7 +157,8 @@ pub fn mark(
 ) -> Vec<(Symbol, String)> {
     let mut legend = Vec::new();
     let joint_of = |index: usize| assembly.joints.get(index);
-    for crushing in &mechanism.crushing {
+    let crushes = || mechanism.crushing.iter().filter(|crushing| crushing.share > CRUSHES);
+    for crushing in crushes() {
         let Some(joint) = joint_of(crushing.joint) else { continue };
         let ends = joint.ends.map(|end| canvas.at(place(joint, end)));
         canvas.line(&ends, CRUSH, 6.0, "");
@@ -183,8 +204,8 @@ pub fn mark(
     if !mechanism.sliding.is_empty() {
         legend.push((Symbol::Sliding, "sliding joint".into()));
     }
-    if !mechanism.crushing.is_empty() {
-        legend.push((Symbol::Crushing, "crushing joint".into()));
+    if crushes().next().is_some() {
+        legend.push((Symbol::Crushing, "joint that crushes over more than half its height".into()));
     }
     legend
 }

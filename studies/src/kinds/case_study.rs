@@ -1,27 +1,19 @@
 //! Studies with a scene as commands see them: their cases are solved as their kind says, certified, and written by
 //! all writers.
 
-use super::kind::{LoadedStudy, RunOutput, RunRequest, Verification, kind};
+use super::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification, kind};
 use crate::results::{CaseLabel, CaseResult, StudyResults};
-use crate::solve::Observer;
 use crate::solve::explain::explain;
+use crate::solve::{Observer, side_by_side};
 use crate::study::{Case, Study};
-use crate::verify::verify;
+use crate::verify::{solve_again, verify_against};
 use crate::writers::comparison::comparison_table;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
+use serde_json::Value as Json;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use voussoir_core::limit::Status;
-
-/// Cases that an interrupted run of the same study has finished.
-fn finished([results, journal]: &[String; 2]) -> BTreeMap<usize, CaseResult> {
-    let whole = serde_json::from_str::<StudyResults>(results).map(|results| results.cases).unwrap_or_default();
-    // The last line of a killed run may be cut short: it does not parse and is done again.
-    let lines = journal.lines().filter_map(|line| serde_json::from_str::<CaseResult>(line).ok());
-    let done = whole.into_iter().chain(lines).filter(|case| case.status != Status::Stalled);
-    done.map(|case| (case.label.id, case)).collect()
-}
 
 impl Study {
     /// The case that a result belongs to, as the study's kind finds it.
@@ -33,7 +25,18 @@ impl Study {
     pub fn results(&self, version: &str, cases: Vec<CaseResult>) -> StudyResults {
         let own = kind(&self.kind).map(|kind| kind.own_results(self, &cases)).unwrap_or_default();
         let (study, version) = (self.name.clone(), version.to_string());
-        StudyResults { study, version, cases, comparison: own.comparison, own: own.other }
+        let ids: Vec<usize> = cases.iter().map(|case| case.label.id).filter(|id| *id < self.cases.len()).collect();
+        let only_cases = (ids.len() < self.cases.len()).then_some(ids);
+        StudyResults { study, version, only_cases, cases, comparison: own.comparison, own: own.other }
+    }
+
+    /// Stored cases that are this study's own: of the same label, and of the same resolved case.
+    fn own_cases(&self, [results, journal]: &[String; 2]) -> BTreeMap<usize, CaseResult> {
+        let whole = serde_json::from_str::<StudyResults>(results).map(|results| results.cases).unwrap_or_default();
+        // The last line of a killed run may be cut short: it does not parse and is done again.
+        let lines = journal.lines().filter_map(|line| serde_json::from_str::<CaseResult>(line).ok());
+        let own = |case: &CaseResult| self.case_of(&case.label).is_some_and(|own| own.hash() == case.label.case_hash);
+        whole.into_iter().chain(lines).filter(own).map(|case| (case.label.id, case)).collect()
     }
 }
 
@@ -55,8 +58,14 @@ impl LoadedStudy for Study {
     }
 
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
-        let mut done = request.stored.as_ref().map(finished).unwrap_or_default();
-        done.retain(|id, _| request.wanted.contains(id));
+        let stored = request.stored.as_ref().map(|stored| self.own_cases(stored)).unwrap_or_default();
+        let is_wanted = |id: &usize| request.wanted.binary_search(id).is_ok();
+        let kept = |case: &CaseResult| match is_wanted(&case.label.id) {
+            true => request.resume && case.status != Status::Stalled,
+            false => request.keep,
+        };
+        let mut done: BTreeMap<usize, CaseResult> = stored.into_iter().filter(|(_, case)| kept(case)).collect();
+        let others = done.keys().filter(|id| !is_wanted(id)).count();
         let rest: Vec<usize> = request.wanted.iter().copied().filter(|id| !done.contains_key(id)).collect();
         observer.begins(rest.len());
         if let Some(kind) = kind(&self.kind) {
@@ -66,18 +75,51 @@ impl LoadedStudy for Study {
         let results = self.results(&request.version, done.into_values().collect());
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
-        let files = written(&output);
+        let files = side_by_side(request.jobs, || written(&output));
         let mut table = results_table(&output);
         if let Some(comparison) = &results.comparison {
             table += "\n";
             table += &comparison_table(comparison);
         }
-        RunOutput { files, table, certified: results.cases.iter().all(|case| case.certificate.passed) }
+        let certified = results.cases.iter().all(|case| case.certificate.passed);
+        RunOutput { files, table, remarks: remarks(request, others, self.count()), certified }
     }
 
-    fn verify(&self, results: &str) -> Result<Verification, String> {
-        let results: StudyResults = serde_json::from_str(results).map_err(|error| error.to_string())?;
-        let stalled = results.cases.iter().filter(|case| case.status == Status::Stalled).count();
-        Ok(Verification { cases: results.cases.len(), stalled, findings: verify(self, &results) })
+    fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
+        let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
+        let results: StudyResults = serde_json::from_value(json.clone()).map_err(|error| error.to_string())?;
+        let again = solve_again(self, &results, stored.jobs, observer);
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        let files = if cases.len() == results.cases.len() {
+            let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));
+            stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
+        } else {
+            Vec::new()
+        };
+        Ok(Verification {
+            cases: results.cases.len(),
+            stalled: results.cases.iter().filter(|case| case.status == Status::Stalled).count(),
+            findings: verify_against(self, &json, &again)?,
+            files,
+            of: self.count(),
+            how: HOW,
+        })
+    }
+}
+
+/// What `verify` has done with each case.
+const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver; then every number \
+and word against solving the case again (the histories of paths are not stored); tables and figures against results.json. \
+Not checked: counters, seconds, version";
+
+/// What a run of one case says of the others.
+pub(super) fn remarks(request: &RunRequest, others: usize, of: usize) -> Vec<String> {
+    match request.wanted.as_slice() {
+        [id] if request.keep && of > 1 => {
+            let words =
+                if others == 0 { "no other case is there".into() } else { format!("{others} other(s) are kept") };
+            vec![format!("case {id} of {of} was solved; of the study as it stands {words}")]
+        }
+        _ => Vec::new(),
     }
 }

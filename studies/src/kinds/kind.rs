@@ -2,7 +2,7 @@
 
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult, Comparison};
-use crate::solve::{Observer, solve_cases};
+use crate::solve::{Observer, Unobserved, solve_cases};
 use crate::study::{Case, Outline, Study, StudySource};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
@@ -73,8 +73,13 @@ pub trait LoadedStudy: Send + Sync {
     /// Solves what is wanted and turns it into the texts of files.
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
 
-    /// Checks the text of a results.json; an error where it cannot be read.
-    fn verify(&self, results: &str) -> Result<Verification, String>;
+    /// Checks stored results; an error where they cannot be read.
+    fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String>;
+
+    /// Checks the text of a results.json alone.
+    fn verify(&self, results: &str) -> Result<Verification, String> {
+        self.verify_stored(&StoredResults { results, jobs: 1, file: &|_| None }, &Unobserved)
+    }
 }
 
 /// What is asked of a run.
@@ -84,8 +89,12 @@ pub struct RunRequest {
     pub wanted: Vec<usize>,
     /// Cases side by side.
     pub jobs: usize,
-    /// Results of an interrupted run of the same study: results.json, and a line of JSON for each case that
-    /// was finished later.
+    /// Whether a wanted case that is stored is taken as it stands.
+    pub resume: bool,
+    /// Whether stored cases that are not wanted stay in the results.
+    pub keep: bool,
+    /// What an earlier run has left: results.json, and a line of JSON for each case that was finished later. Only
+    /// cases of this very study count, whatever the folder held.
     pub stored: Option<[String; 2]>,
     /// Version of the program, for results.json.
     pub version: String,
@@ -98,8 +107,29 @@ pub struct RunOutput {
     pub files: Vec<(String, Vec<u8>)>,
     /// The table for the terminal.
     pub table: String,
+    /// What a user should know of the run, line by line.
+    pub remarks: Vec<String>,
     /// Whether every case is answered and certified.
     pub certified: bool,
+}
+
+/// What `verify` is given.
+pub struct StoredResults<'a> {
+    /// The text of results.json.
+    pub results: &'a str,
+    /// Cases side by side.
+    pub jobs: usize,
+    /// The bytes of another file of the result folder; `None` where there is none.
+    pub file: &'a dyn Fn(&str) -> Option<Vec<u8>>,
+}
+
+impl StoredResults<'_> {
+    /// What is wrong with the files beside results.json: each that is there must be the one that is made from it.
+    pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<String> {
+        let others = made.filter(|(name, _)| *name != "results.json");
+        let altered = others.filter(|(name, bytes)| (self.file)(name).is_some_and(|stored| stored != *bytes));
+        altered.map(|(name, _)| format!("{name} is not what results.json gives")).collect()
+    }
 }
 
 /// What a check of results has found.
@@ -111,6 +141,12 @@ pub struct Verification {
     pub stalled: usize,
     /// What is wrong, by case.
     pub findings: Vec<(usize, String)>,
+    /// What is wrong with the other files.
+    pub files: Vec<String>,
+    /// Number of cases of the study.
+    pub of: usize,
+    /// What was checked how.
+    pub how: &'static str,
 }
 
 /// Connects a tag with a study kind.

@@ -2,12 +2,17 @@
 
 mod case_study;
 pub mod compare;
+pub mod envelope;
 pub mod json_schema;
 mod kind;
 pub mod map;
+pub mod optimise;
 pub mod point;
 mod read;
 pub mod run;
+mod search;
 
-pub use kind::{KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StudyKind, Verification, kind, kinds};
+pub use kind::{
+    KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
+};
 pub use read::read_study;

@@ -18,7 +18,7 @@ pub struct BodyLoad {
 impl LoadKind for BodyLoad {
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
         site.finite(&[("acceleration", &self.acceleration)])?;
-        Ok(Placed { forces: Vec::new(), accelerations: vec![Vec2::from(self.acceleration)] })
+        Ok(Placed { accelerations: vec![Vec2::from(self.acceleration)], ..Placed::default() })
     }
 }
 

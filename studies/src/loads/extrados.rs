@@ -1,100 +1,69 @@
-//! The extrados of an arch, on which loads stand.
+//! The extrados of an arch or a bridge, on which loads stand.
 //!
 //! On arches `span_fraction` f counts along the intrados span from the left springing, and a load
 //! acts on the straight extrados chord above (or below) that x; where a vertical meets two chords,
 //! on the upper one. A force on the boundary of two voussoirs goes to the one nearer to midspan,
 //! and exactly at midspan half to each, so that mirrored loads load mirrored blocks.
 
+use super::dispersion::{Dispersion, Patch, Through};
 use super::site::LoadSite;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{ArchLayout, Assembly, CONTACT_TOLERANCE, PointForce};
+use voussoir_core::model::{CONTACT_TOLERANCE, Chord, PointForce, carried};
 use voussoir_core::plugin::Diagnostic;
 
 /// Share of the scene's size within which a load is at a vertex.
 const ROUNDING: f64 = 1e-12;
 
-/// The straight extrados of a voussoir.
-#[derive(Clone, Copy)]
-struct Chord {
-    body: usize,
-    ends: [Vec2; 2],
-}
-
-impl Chord {
-    fn left(&self) -> f64 {
-        self.ends[0].x.min(self.ends[1].x)
-    }
-
-    fn right(&self) -> f64 {
-        self.ends[0].x.max(self.ends[1].x)
-    }
-
-    /// Its point at x, or the nearest one; of an upright chord the upper end.
-    fn at(&self, x: f64) -> Vec2 {
-        let [a, b] = self.ends;
-        // An end is returned as it is, so that a load at a vertex acts at that vertex.
-        if a.x == b.x {
-            return if a.y > b.y { a } else { b };
-        }
-        let share = (x - a.x) / (b.x - a.x);
-        if share <= 0.0 {
-            a
-        } else if share >= 1.0 {
-            b
-        } else {
-            Vec2::new(x, a.y + share * (b.y - a.y))
-        }
-    }
-}
-
-fn arch<'a>(site: &'a LoadSite, key: &str) -> Result<&'a ArchLayout, Vec<Diagnostic>> {
-    site.assembly.arch.as_ref().ok_or_else(|| {
+/// The faces on which loads stand.
+fn faces(site: &LoadSite, key: &str) -> Result<Vec<Chord>, Vec<Diagnostic>> {
+    let faces = site.assembly.extrados();
+    if faces.is_empty() {
         let message = "counts along the span of an arch, but this scene is not one";
-        vec![Diagnostic::new(site.key(key), message).help("give block and point, or block and edge")]
-    })
+        let wrong = Diagnostic::new(site.key(key), message).help("give block and point, or block and edge");
+        return Err(vec![wrong]);
+    }
+    Ok(faces)
 }
 
-/// x of a span fraction, between the intrados ends of the first and last joint.
+/// x of a span fraction, between the intrados ends of the first and last joint across a ring.
 pub fn x_at(site: &LoadSite, fraction: f64, key: &str) -> Result<f64, Vec<Diagnostic>> {
-    let arch = arch(site, key)?;
+    faces(site, key)?;
     site.finite(&[(key, &[fraction])])?;
-    let left = site.assembly.joints[0].ends[0].x;
-    Ok(left + fraction * arch.span)
-}
-
-fn chords(assembly: &Assembly, arch: &ArchLayout) -> Vec<Chord> {
-    let chord =
-        |k: usize| Chord { body: arch.first + k, ends: [assembly.joints[k].ends[1], assembly.joints[k + 1].ends[1]] };
-    (0..arch.voussoirs).map(chord).collect()
+    let [left, span] = match (&site.assembly.bridge, &site.assembly.arch) {
+        (Some(bridge), _) => [bridge.springings[0], bridge.springings[1] - bridge.springings[0]],
+        (None, Some(arch)) => [site.assembly.joints[0].ends[0].x, arch.span],
+        (None, None) => [0.0; 2],
+    };
+    Ok(left + fraction * span)
 }
 
 /// A force at x: on the upper chord, at the boundary of two on the one nearer to midspan, at midspan half on each.
 pub fn on_extrados(site: &LoadSite, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
-    let arch = arch(site, key)?;
-    let tolerance = ROUNDING * site.assembly.size();
-    let chords = chords(site.assembly, arch);
-    let here: Vec<_> = chords
-        .iter()
-        .enumerate()
-        .filter(|(_, chord)| chord.left() - tolerance <= x && x <= chord.right() + tolerance)
-        .map(|(k, chord)| (k, chord.body, chord.at(x)))
-        .collect();
-    let Some(top) = here.iter().map(|(_, _, point)| point.y).max_by(f64::total_cmp) else {
+    let chords = faces(site, key)?;
+    let chosen = upper_at(&chords, x, ROUNDING * site.assembly.size());
+    if chosen.is_empty() {
         let (left, right) = extent(&chords);
         let message = format!("x = {x} m hits no block: the extrados reaches from {left} to {right} m");
         return site.fail(key, message);
-    };
-    let from_middle = |k: usize| (2 * k + 1).abs_diff(arch.voussoirs);
-    // Chords that meet at x have their common vertex there, to within the tolerance and its slope.
-    let near = |point: &Vec2| here.iter().any(|(_, _, p)| p.y == top && (point - p).norm() <= 4.0 * tolerance);
-    let upper: Vec<_> = here.iter().filter(|(_, _, point)| point.y == top || near(point)).collect();
-    let nearest = upper.iter().map(|&&(k, _, _)| from_middle(k)).min().unwrap_or(0);
-    let chosen: Vec<_> = upper.into_iter().filter(|&&(k, _, _)| from_middle(k) == nearest).collect();
+    }
     let share = force / chosen.len() as f64;
-    chosen
-        .into_iter()
-        .map(|&(_, body, point)| Ok(PointForce { body: site.movable(body, key)?, point, force: share }))
-        .collect()
+    let on = |chord: Chord| Ok(PointForce { body: site.movable(chord.body, key)?, point: chord.at(x), force: share });
+    chosen.into_iter().map(on).collect()
+}
+
+/// The upper chords at x: one, or two alike where they meet in the middle of a ring; none beyond the ends.
+fn upper_at(chords: &[Chord], x: f64, tolerance: f64) -> Vec<Chord> {
+    let here: Vec<_> = chords
+        .iter()
+        .filter(|chord| chord.left() - tolerance <= x && x <= chord.right() + tolerance)
+        .map(|chord| (chord, chord.at(x)))
+        .collect();
+    let Some(top) = here.iter().map(|(_, point)| point.y).max_by(f64::total_cmp) else { return Vec::new() };
+    // Chords that meet at x have their common vertex there, to within the tolerance and its slope.
+    let near = |point: &Vec2| here.iter().any(|(_, p)| p.y == top && (point - p).norm() <= 4.0 * tolerance);
+    let upper: Vec<_> = here.iter().filter(|(_, point)| point.y == top || near(point)).collect();
+    let nearest = upper.iter().map(|(chord, _)| chord.from_middle).min().unwrap_or(0);
+    upper.into_iter().filter(|(chord, _)| chord.from_middle == nearest).map(|(chord, _)| **chord).collect()
 }
 
 /// Forces of an even load per plan length \[N/m\] between two x; each voussoir gets one force at the middle of what
@@ -105,7 +74,7 @@ pub fn on_patch(
     density: Vec2,
     keys: [&str; 2],
 ) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
-    let chords = chords(site.assembly, arch(site, keys[0])?);
+    let chords = faces(site, keys[0])?;
     let tolerance = CONTACT_TOLERANCE * site.assembly.size();
     let (left, right) = extent(&chords);
     for (key, x) in keys.into_iter().zip([start, end]) {
@@ -122,30 +91,86 @@ pub fn on_patch(
     Ok(forces)
 }
 
-/// The upper chords between two x, each with the part of it that lies there.
-fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(Chord, f64, f64)> {
-    let mut cuts: Vec<f64> = chords.iter().flat_map(|chord| chord.ends.map(|p| p.x)).collect();
-    // An end that is a vertex but for rounding is that vertex: no sliver on the next voussoir.
-    let vertex = |x: f64| cuts.iter().copied().find(|cut| (cut - x).abs() <= rounding).unwrap_or(x);
-    let (start, end) = (vertex(start), vertex(end));
-    cuts.extend([start, end]);
-    cuts.retain(|&x| start <= x && x <= end);
-    cuts.sort_by(f64::total_cmp);
-    // Between two cuts one chord is the upper one all along. Its parts are joined again, so that
-    // each voussoir gets one force at the middle of what it carries.
-    let mut parts: Vec<(Chord, f64, f64)> = Vec::new();
-    for pair in cuts.windows(2).filter(|pair| pair[0] < pair[1]) {
-        let middle = (pair[0] + pair[1]) / 2.0;
-        let above = chords.iter().filter(|chord| chord.left() <= middle && middle <= chord.right());
-        let Some(&top) = above.max_by(|a, b| a.at(middle).y.total_cmp(&b.at(middle).y)) else {
+/// Forces of an even load per plan length \[N/m\] between two x; what lies beyond the bridge, or on what the ground
+/// holds, goes to the ground.
+pub fn on_faces(site: &LoadSite, ends: [f64; 2], density: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
+    let chords = faces(site, key)?;
+    let carried = carried(&chords, ends, ROUNDING * site.assembly.size());
+    let movable = carried.into_iter().filter(|(chord, ..)| site.moves(chord.body));
+    let on = |(chord, low, high): (Chord, f64, f64)| {
+        site.spread(chord.body, [chord.at(low), chord.at(high)], density * (high - low))
+    };
+    Ok(movable.flat_map(on).collect())
+}
+
+/// What a load on the road does to the blocks.
+#[derive(Debug)]
+pub struct FromRoad {
+    /// Forces for a load of 1 N downwards.
+    pub forces: Vec<PointForce>,
+    /// How far the patch reaches beyond its own ends after its way through the fill \[m\].
+    pub reach: f64,
+}
+
+/// A load of 1 N, even over a patch of the road, spread in the fill; `None` where its centre is off the bridge.
+pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<FromRoad>, Vec<Diagnostic>> {
+    let chords = faces(site, key)?;
+    let tolerance = ROUNDING * site.assembly.size();
+    let centre = (patch.from + patch.to) / 2.0;
+    let Some(chord) = upper_at(&chords, centre, tolerance).first().copied() else { return Ok(None) };
+    let fill = fill_layers(site, centre, chord.at(centre).y);
+    let dispersion: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
+    let spread = dispersion.map_or_else(|| vec![patch], |law| law.spread(patch, &fill));
+    let reach = spread.iter().map(|part| patch.from - part.from).fold(0.0, f64::max);
+    let mut forces = Vec::new();
+    for Patch { from, to, share } in spread {
+        let force = Vec2::new(0.0, -share);
+        if to > from {
+            forces.extend(on_faces(site, [from, to], force / (to - from), key)?);
             continue;
-        };
-        match parts.last_mut() {
-            Some((chord, _, high)) if chord.body == top.body && *high == pair[0] => *high = pair[1],
-            _ => parts.push((top, pair[0], pair[1])),
+        }
+        let under = upper_at(&chords, from, tolerance);
+        let each = force / under.len().max(1) as f64;
+        let movable = under.into_iter().filter(|chord| site.moves(chord.body));
+        forces.extend(movable.map(|chord| PointForce { body: chord.body, point: chord.at(from), force: each }));
+    }
+    Ok(Some(FromRoad { forces, reach }))
+}
+
+/// The layers between the road and a level at x, from the lowest.
+pub fn fill_layers(site: &LoadSite, x: f64, level: f64) -> Vec<Through> {
+    let Some((bridge, road)) = site.assembly.bridge.as_ref().and_then(|bridge| Some((bridge, bridge.road_at(x)?)))
+    else {
+        return Vec::new();
+    };
+    let mut bottom = level;
+    let mut through = Vec::new();
+    for &(top, angle) in &bridge.layers {
+        let thickness = top.min(road) - bottom;
+        if thickness > 0.0 {
+            through.push(Through { thickness, angle });
+            bottom = top.min(road);
         }
     }
-    parts
+    through
+}
+
+/// How a load above the extrados at x spreads by a law of its own; a mistake at `key` where the law gives no depth and
+/// there is no fill.
+pub fn dispersed(
+    site: &LoadSite,
+    law: &dyn Dispersion,
+    patch: Patch,
+    key: &str,
+) -> Result<Vec<Patch>, Vec<Diagnostic>> {
+    let chords = faces(site, key)?;
+    let centre = (patch.from + patch.to) / 2.0;
+    let chord = upper_at(&chords, centre, ROUNDING * site.assembly.size()).first().copied();
+    let fill = chord.map(|chord| fill_layers(site, centre, chord.at(centre).y)).unwrap_or_default();
+    if fill.is_empty() && !law.has_depth() {
+        return site.fail("dispersion.depth", "is missing: there is no fill above the extrados that would give it");
+    }
+    Ok(law.spread(patch, &fill))
 }
 
 /// Least and greatest x of the extrados.

@@ -13,11 +13,13 @@ pub struct Placed {
     pub forces: Vec<PointForce>,
     /// Accelerations of all blocks \[m/s²\].
     pub accelerations: Vec<Vec2>,
+    /// What a user should know of where the load went.
+    pub notes: Vec<String>,
 }
 
 impl From<Vec<PointForce>> for Placed {
     fn from(forces: Vec<PointForce>) -> Self {
-        Placed { forces, accelerations: Vec::new() }
+        Placed { forces, ..Placed::default() }
     }
 }
 

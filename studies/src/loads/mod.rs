@@ -5,6 +5,7 @@ pub mod body;
 pub mod dispersion;
 mod extrados;
 mod keys;
+pub mod lane;
 mod load_kind;
 pub mod point;
 pub mod pressure;
@@ -12,7 +13,11 @@ mod site;
 pub mod strip;
 #[cfg(test)]
 mod tests;
+pub mod vehicle;
+mod vehicle_axles;
 
+pub use extrados::fill_layers;
 pub use keys::load_shape;
 pub use load_kind::{LoadKind, Placed};
-pub use site::{BlockName, LoadSite};
+pub use site::{BlockName, LoadSite, LoadTables};
+pub use vehicle_axles::{Axle, VEHICLE, VehicleAxles};

@@ -1,7 +1,7 @@
 //! `point`: a force at a point.
 
 use super::dispersion::{Dispersion, Patch};
-use super::extrados::{on_extrados, on_patch, x_at};
+use super::extrados::{dispersed, on_extrados, on_patch, x_at};
 use super::keys::{BLOCK, DISPERSION, FRACTION, POINT, VECTOR};
 use super::load_kind::{LoadKind, Placed};
 use super::site::{BlockName, LoadSite};
@@ -37,7 +37,8 @@ impl LoadKind for PointLoad {
                     return Ok(on_extrados(site, x, force, "span_fraction")?.into());
                 };
                 let mut forces = Vec::new();
-                for Patch { from, to, share } in dispersion.spread(Patch { from: x, to: x, share: 1.0 }) {
+                let patch = Patch { from: x, to: x, share: 1.0 };
+                for Patch { from, to, share } in dispersed(site, dispersion.as_ref(), patch, "span_fraction")? {
                     forces.extend(if from == to {
                         on_extrados(site, from, force * share, "span_fraction")?
                     } else {

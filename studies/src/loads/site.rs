@@ -1,7 +1,10 @@
 //! Where a load is being placed: the blocks, the key of the load in the study, and what is wrong there.
 
+use super::dispersion::Dispersion;
+use super::vehicle_axles::VehicleAxles;
 use crate::scenes::unknown;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use voussoir_core::model::geometry::{Vec2, contains};
 use voussoir_core::model::{Assembly, CONTACT_TOLERANCE, PointForce};
 use voussoir_core::plugin::Diagnostic;
@@ -36,14 +39,30 @@ pub struct LoadSite<'a> {
     pub assembly: &'a Assembly,
     /// Key of the load in the study.
     path: &'a str,
+    /// What the study says of loads elsewhere.
+    pub tables: &'a LoadTables,
     /// Free group of each body; `None` where bonds hold it to the ground.
     held: Vec<Option<usize>>,
 }
 
+/// What a study says of loads outside the list of a stage.
+#[derive(Debug, Default)]
+pub struct LoadTables {
+    /// `[vehicles.NAME]`.
+    pub vehicles: BTreeMap<String, VehicleAxles>,
+    /// How loads on the road spread in the fill.
+    pub dispersion: Option<Box<dyn Dispersion>>,
+}
+
 impl<'a> LoadSite<'a> {
     /// The blocks of an assembly; `path` is the key of the load in the study.
-    pub fn new(assembly: &'a Assembly, path: &'a str) -> Self {
-        LoadSite { assembly, path, held: assembly.rigid_groups().0 }
+    pub fn new(assembly: &'a Assembly, tables: &'a LoadTables, path: &'a str) -> Self {
+        LoadSite { assembly, path, tables, held: assembly.rigid_groups().0 }
+    }
+
+    /// Whether a force can move a block.
+    pub fn moves(&self, body: usize) -> bool {
+        !self.assembly.bodies[body].fixed && (self.held[body].is_some() || !self.assembly.is_rigid(body))
     }
 
     /// A key of the load from the study's root.

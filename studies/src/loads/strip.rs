@@ -1,7 +1,7 @@
 //! `strip`: vertical pressure on the extrados of an arch, over the full width.
 
 use super::dispersion::{Dispersion, Patch};
-use super::extrados::{on_patch, x_at};
+use super::extrados::{dispersed, on_patch, x_at};
 use super::keys::{DISPERSION, FRACTION};
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
@@ -36,7 +36,8 @@ impl LoadKind for Strip {
             return Ok(on_patch(site, ends, density, ["from", "to"])?.into());
         };
         let mut forces = Vec::new();
-        for Patch { from, to, share } in dispersion.spread(Patch { from: ends[0], to: ends[1], share: 1.0 }) {
+        let patch = Patch { from: ends[0], to: ends[1], share: 1.0 };
+        for Patch { from, to, share } in dispersed(site, dispersion.as_ref(), patch, "from")? {
             let density = density * (share * (ends[1] - ends[0]) / (to - from));
             forces.extend(on_patch(site, [from, to], density, ["from", "to"])?);
         }

@@ -1,6 +1,6 @@
 //! What is proved of placed loads.
 
-use super::{LoadKind, LoadSite, Placed};
+use super::{LoadKind, LoadSite, LoadTables, Placed};
 use crate::scenes::test_catalogue::catalogue;
 use serde_json::{Value, json};
 use voussoir_core::model::geometry::Vec2;
@@ -17,7 +17,7 @@ fn arch(span: f64, rise: f64, voussoirs: usize, ends: &str, material: &str) -> A
 
 fn placed(value: Value, assembly: &Assembly) -> Result<Placed, Vec<Diagnostic>> {
     let load: Box<dyn LoadKind> = serde_json::from_value(value).unwrap();
-    load.place(&LoadSite::new(assembly, "stages.1.loads.0"))
+    load.place(&LoadSite::new(assembly, &LoadTables::default(), "stages.1.loads.0"))
 }
 
 fn path(value: Value, assembly: &Assembly) -> String {
@@ -103,7 +103,7 @@ fn pressure_on_all_edges_of_a_block_is_in_equilibrium_and_pushes_inwards() {
 #[test]
 fn accelerations_and_forces_on_named_blocks_are_passed_on() {
     let arch = arch(4.0, 1.0, 5, "jointed", "stone");
-    let Placed { forces, accelerations } =
+    let Placed { forces, accelerations, .. } =
         placed(json!({ "kind": "body", "acceleration": [1.0, 0.0] }), &arch).unwrap();
     assert!(forces.is_empty() && accelerations == [Vec2::new(1.0, 0.0)]);
     let vertex = arch.bodies[3].vertices[2];

@@ -46,7 +46,8 @@ fn end_state(
     let first =
         problem.load_steps.iter().position(|d| d.stage == stage).filter(|_| result.status == Status::NoEquilibrium);
     let load_step = first.or(problem.load_steps.iter().rposition(|d| d.stage <= stage)).ok_or("no load was applied")?;
-    let force = path_forces(assembly, problem, result.proof.field.as_deref().ok_or("no contact forces")?)?;
+    let force =
+        path_forces(assembly, problem, result.proof.field.as_deref().ok_or("no contact forces")?, &result.proof.fill)?;
     let motion = path_motion(assembly, problem, result, finite)?;
     let factor = result.proof.field_factor.ok_or("no factor of the contact forces")?;
     let yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;

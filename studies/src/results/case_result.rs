@@ -1,10 +1,10 @@
 //! The result of a case, as it stands in `results.json`.
 
-use super::entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+use super::entries::{DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, YieldedEntry};
 use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
-use voussoir_core::certificate::{Certificate, Mechanism};
+use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{Counters, LowerProof, Status};
 
 /// Which case of its study it is.
@@ -12,6 +12,9 @@ use voussoir_core::limit::{Counters, LowerProof, Status};
 pub struct CaseLabel {
     /// Index from 0, variants outermost.
     pub id: usize,
+    /// Which resolved case it answers: [`crate::study::Case::hash`].
+    #[serde(default)]
+    pub case_hash: String,
     /// Name of the variant, if the study has variants.
     pub variant: Option<String>,
     /// Name of the scene, where the study compares several.
@@ -41,6 +44,9 @@ pub struct ProofFields {
     pub field_factor: Option<f64>,
     /// Contact forces.
     pub field: Option<Vec<FieldEntry>>,
+    /// Forces of the fill that belong to `field`, where fill resists.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fill: Vec<FillEntry>,
     /// Velocities of the mechanism.
     pub motion: Option<Vec<MotionEntry>>,
     /// Contact forces that balance the live load alone, for `unbounded`.
@@ -79,6 +85,16 @@ pub struct PathRecord {
     pub branches: Vec<BranchEntry>,
 }
 
+/// What proves that a case stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Proof {
+    /// An admissible field: flow is associated and displacements are small.
+    Static,
+    /// The path to its loads.
+    Path,
+}
+
 /// What one stage came to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageResult {
@@ -88,8 +104,9 @@ pub struct StageResult {
     pub status: Status,
     /// The factor it reached; `null` where it reached none, or any.
     pub factor: Option<f64>,
-    /// Hinges of the mechanism that ended it, else empty.
-    pub hinges: Vec<usize>,
+    /// Hinges of the mechanism that ended it, rotations per unit of motion; of a path's stage that stands the joints
+    /// that are open over three quarters of their height at its end, with their rotation \[rad\].
+    pub hinges: Vec<Hinge>,
     /// Stability of its last state.
     #[serde(flatten)]
     pub stability: StabilityEntry,
@@ -114,6 +131,9 @@ pub struct CaseResult {
     pub feasible_interval: Option<[Option<f64>; 2]>,
     /// `"associated"` where a non-associated law was read so.
     pub flow_read_as: Option<String>,
+    /// What proves that it stands, where it does.
+    #[serde(rename = "proof", default, skip_serializing_if = "Option::is_none")]
+    pub proved_by: Option<Proof>,
     /// The solver that answered.
     pub solver: String,
     /// What a user should know.
@@ -134,6 +154,9 @@ pub struct CaseResult {
     /// What a path leaves.
     #[serde(flatten)]
     pub path: PathRecord,
+    /// On bridges, what stands on which block.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<LoadEntry>,
 }
 
 impl CaseResult {
@@ -152,6 +175,7 @@ impl CaseResult {
             non_associated: NonAssociatedAnswer::default(),
             feasible_interval: None,
             flow_read_as: None,
+            proved_by: None,
             solver: String::new(),
             notes: Vec::new(),
             mechanism: None,
@@ -165,6 +189,7 @@ impl CaseResult {
             seconds: 0.0,
             stages: Vec::new(),
             path: PathRecord::default(),
+            loads: Vec::new(),
         }
     }
 }

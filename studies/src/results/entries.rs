@@ -14,6 +14,48 @@ pub struct FieldEntry {
     pub force: [f64; 2],
 }
 
+/// Where a load comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LoadOrigin {
+    /// The block's own weight.
+    Weight,
+    /// The weight of the fill on it.
+    Fill,
+    /// Loads of the stage, at factor 1.
+    Load,
+}
+
+/// What stands on a block.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoadEntry {
+    /// Name of the stage.
+    pub stage: String,
+    /// Where it comes from.
+    pub what: LoadOrigin,
+    /// Name of the block.
+    pub block: String,
+    /// \[x, y\] \[N\].
+    pub resultant: [f64; 2],
+    /// On its line of action \[m\].
+    pub point: [f64; 2],
+}
+
+/// What the fill presses with beside a block.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FillEntry {
+    /// Name of the block.
+    pub block: String,
+    /// Where it acts \[m\].
+    pub point: [f64; 2],
+    /// Unit vector towards the ring.
+    pub direction: [f64; 2],
+    /// H \[N\].
+    pub force: f64,
+    /// Least and greatest H \[N\].
+    pub bounds: [f64; 2],
+}
+
 /// Velocity of a body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionEntry {

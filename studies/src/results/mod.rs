@@ -6,13 +6,18 @@ pub mod convert;
 mod entries;
 pub mod inelastic_state;
 mod limit_points;
+pub mod load_entries;
 pub mod path_state;
+mod rank;
 pub mod stage_start;
 mod study_results;
 pub mod thrust_line;
 
-pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, ProofFields, StageResult};
+pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult};
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
-pub use entries::{DisplacementEntry, EventEntry, FieldEntry, MotionEntry, YieldedEntry};
+pub use entries::{
+    DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, YieldedEntry,
+};
 pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
+pub use rank::load_rank;
 pub use study_results::StudyResults;

@@ -2,7 +2,7 @@
 //! mechanism of a motion, and the bounds of residuals.
 
 use super::inelastic_state::with_crushing;
-use voussoir_core::certificate::{CentroidVelocity, Mechanism, mechanism, mechanism_above, tolerance};
+use voussoir_core::certificate::{CentroidVelocity, Hinge, Mechanism, Side, mechanism, mechanism_above, tolerance};
 use voussoir_core::law::FlowRule;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -54,4 +54,46 @@ pub fn motion_of_body(
     let pole = problem.bodies[problem.body_of[block]].pole;
     let u = carried(displacement, assembly.inertia(block).centroid, pole, finite);
     [u.x, u.y, displacement[2]]
+}
+
+/// Share of a joint's height next to the end where its blocks touch within which it is pressed, at a hinge.
+const TOE: f64 = 0.25;
+
+/// Hinges of a state: joints that are pressed within a quarter of their height from one end, and open at the other.
+/// Rotations are those of the plus body relative to the minus body \[rad\].
+pub fn open_hinges(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<Hinge> {
+    let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0].abs()));
+    let mut hinges = Vec::new();
+    for points in problem.contacts.chunk_by(|a, b| a.joint == b.joint) {
+        let index = points[0].joint;
+        // Contact points of the fill come after those of all joints.
+        let Some(joint) = assembly.joints.get(index) else { break };
+        let from = problem.contacts.partition_point(|c| c.joint < index);
+        if points[0].law.is_bonded() {
+            continue;
+        }
+        let along = joint.ends[1] - joint.ends[0];
+        let place = |k: usize| (points[k].position - joint.ends[0]).dot(&along) / along.norm_squared();
+        let pressed: Vec<f64> =
+            (0..points.len()).filter(|k| state.force[from + k][0] > 1e-9 * largest).map(place).collect();
+        let open = |end: usize| {
+            let at = (0..points.len()).find(|k| (place(*k) - end as f64).abs() < 1e-9);
+            at.is_some_and(|k| state.gap[from + k][0] > 0.0 && state.force[from + k][0] <= 1e-9 * largest)
+        };
+        let touching = match pressed.iter().copied().fold((1.0f64, 0.0f64), |(a, b), s| (a.min(s), b.max(s))) {
+            _ if pressed.is_empty() => continue,
+            (_, greatest) if greatest <= TOE && open(1) => 0,
+            (least, _) if least >= 1.0 - TOE && open(0) => 1,
+            _ => continue,
+        };
+        let turn = |block: usize| state.motion[problem.body_of[block]][2];
+        hinges.push(Hinge {
+            joint: index,
+            between: [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone()),
+            side: assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]),
+            point: joint.ends[touching].into(),
+            rotation: turn(joint.plus) - turn(joint.minus),
+        });
+    }
+    hinges
 }

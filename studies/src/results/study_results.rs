@@ -6,12 +6,15 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 /// All results of a study.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct StudyResults {
     /// Name of the study.
     pub study: String,
     /// Version of the program.
     pub version: String,
+    /// Ids of the cases, where the run was asked for some of them only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub only_cases: Option<Vec<usize>>,
     /// One entry per case, by `id`.
     pub cases: Vec<CaseResult>,
     /// Of `kind = "compare"` and `"map"`: the cases beside each other.

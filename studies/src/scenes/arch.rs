@@ -129,6 +129,7 @@ impl Scene for Arch {
             plane: self.plane.into(),
             mesh: density(self.mesh),
             arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),
+            bridge: None,
         })
     }
 }

@@ -319,7 +319,7 @@ impl Scene for Blocks {
             return Err(from_root(diagnostics));
         }
         let (width, plane, mesh) = (self.width, self.plane.into(), density(self.mesh));
-        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None })
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None, bridge: None })
     }
 }
 

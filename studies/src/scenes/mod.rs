@@ -2,6 +2,7 @@
 
 pub mod arch;
 pub mod blocks;
+pub mod bridge;
 mod curve;
 mod keys;
 mod lookup;

@@ -222,7 +222,7 @@ impl Scene for Wall {
         let (joints, overlaps) = find_joints(&bodies, (high - low).norm(), |_, _| (Bond::Law(law), Gap::default()));
         debug_assert!(overlaps.is_empty(), "bricks of a wall overlap: {overlaps:?}");
         let (width, plane, mesh) = (self.width, self.plane.into(), density(self.mesh));
-        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None })
+        Ok(Assembly { catalogue: catalogue.clone(), bodies, joints, width, plane, mesh, arch: None, bridge: None })
     }
 }
 

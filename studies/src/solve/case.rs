@@ -3,21 +3,27 @@
 use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
+use super::side_by_side::side_by_side;
+use super::statics::stands_by_statics;
 use super::{limit, path};
+use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
 use crate::study::{Case, Study};
+use crate::verify::case::verify_case;
 use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
+use voussoir_core::limit::Status;
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
+use voussoir_core::plugin::{PluginKind, card};
 
 /// Solves a case; an observer sees the states of a path. The label and `seconds` are left for the caller to fill.
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
     let solvers = path_solvers(input);
     if solvers.is_empty() {
-        limit::solve_by_limit_analysis(input)
-    } else {
-        path::solve_by_path(input, &solvers, observer)
+        return limit::solve_by_limit_analysis(input);
     }
+    stands_by_statics(input).unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
 }
 
 /// Solves one case.
@@ -25,21 +31,51 @@ pub fn solve_case(case: &Case) -> CaseResult {
     solve_observed(case, &mut Unobserved)
 }
 
+/// The answer, or what a panic in a plug-in or a solver said: it ends its case, never the run.
+fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
+    catch_unwind(AssertUnwindSafe(solve)).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        CaseResult::stalled(format!("a panic ended the case: {}", said.unwrap_or("it said nothing")))
+    })
+}
+
 fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
-    let mut result = solve_input(&CaseInput::of(case), observer);
+    let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
     result.label = CaseLabel {
         id: case.id,
+        case_hash: case.hash(),
         variant: case.variant.clone(),
         scene: case.scene.clone(),
         parameters: case.parameters.clone(),
     };
+    result.loads = load_entries(case);
+    if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
+        let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
+        let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
+        withdraw(&mut result, wrong);
+    }
     result.notes.extend(case.notes.iter().cloned());
     if !case.output_curve {
         result.path.curve = None;
     }
     result.seconds = started.elapsed().as_secs_f64();
     result
+}
+
+/// An answer in which `verify` finds something wrong is no answer: what decides there decides here.
+fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
+    if wrong.is_empty() {
+        return;
+    }
+    result.status = Status::Stalled;
+    (result.load_factor, result.proved_by) = (None, None);
+    if let Some(last) = result.stages.last_mut() {
+        (last.status, last.factor) = (Status::Stalled, None);
+    }
+    result.notes.push(format!("{}: {}", result.solver, wrong.join("; ")));
+    result.certificate.passed = false;
+    result.certificate.failures.extend(wrong);
 }
 
 /// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`.
@@ -50,9 +86,10 @@ pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn 
         observer.answered(&result);
         result
     };
-    match rayon::ThreadPoolBuilder::new().num_threads(jobs.max(1)).build() {
-        Ok(pool) if jobs > 1 => pool.install(|| wanted.par_iter().map(one).collect()),
-        _ => wanted.iter().map(one).collect(),
+    if jobs > 1 {
+        side_by_side(jobs, || wanted.par_iter().map(one).collect())
+    } else {
+        wanted.iter().map(one).collect()
     }
 }
 

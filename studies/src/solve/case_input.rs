@@ -13,6 +13,10 @@ pub struct CaseInput<'a> {
     pub stages: &'a [Stage],
     /// Which solver.
     pub solver: &'a SelectedSolver,
+    /// Which limit solver answers a stage that names its own, by index.
+    pub of_stages: &'a [Option<SelectedSolver>],
+    /// Whether the points of a path are asked for.
+    pub curve: bool,
     /// What a path solver is told; its tolerance is the greatest relative gap between bounds too.
     pub settings: &'a PathSettings,
 }
@@ -24,6 +28,8 @@ impl<'a> CaseInput<'a> {
             assembly: &case.assembly,
             stages: &case.stages,
             solver: &case.solver.solver,
+            of_stages: &case.solver.of_stages,
+            curve: case.output_curve,
             settings: &case.solver.settings,
         }
     }

@@ -43,14 +43,16 @@ fn explain_case(case: &Case, text: &mut String) {
                 continue;
             }
         };
-        let count = |kind: Tangential| problem.joints.iter().filter(|j| j.strength.tangential() == kind).count();
+        let fill = problem.joints.iter().filter(|joint| joint.fill.is_some()).count();
+        let joints = || problem.joints.iter().filter(|joint| joint.fill.is_none());
+        let count = |kind: Tangential| joints().filter(|j| j.strength.tangential() == kind).count();
         let blocks = problem.joints.iter().filter(|joint| joint.strength.block.is_some()).count();
         let _ = writeln!(
             text,
             "stage \"{}\": {} free bodies (rigid: no mesh), {} joints: {} with friction, {} stuck and {} frictionless (no tangential rows), {blocks} that can crush",
             stage.name,
             problem.groups,
-            problem.joints.len(),
+            problem.joints.len() - fill,
             count(Tangential::Friction),
             count(Tangential::Stuck),
             count(Tangential::Free),

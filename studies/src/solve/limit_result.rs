@@ -2,6 +2,7 @@
 
 use super::case_input::CaseInput;
 use crate::results::convert::{field_entries, motion_entries};
+use crate::results::load_entries::fill_entries;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields};
 use voussoir_core::certificate::{
@@ -23,6 +24,8 @@ pub(super) fn certified(
     let assembly = input.assembly;
     let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
     let ray = solved.ray.as_ref().map(|forces| contact_forces(problem, forces));
+    let forces = solved.field.as_deref().unwrap_or_default();
+    let fill = problem.fill_forces(forces, &loads.fill_bounds);
     let motion = scaled_motion(assembly, problem, &solved);
     let own = solved.non_associated.as_ref();
     let associated_motion =
@@ -37,6 +40,7 @@ pub(super) fn certified(
             LimitQuestion::Collapse { start, .. } => start,
         },
         field: field.as_deref(),
+        fill: &fill,
         motion: motion.as_deref(),
         ray: ray.as_deref(),
         feasible_interval: solved.feasible_interval,
@@ -63,6 +67,7 @@ pub(super) fn certified(
         proof: ProofFields {
             field_factor: field.is_some().then_some(solved.field_factor),
             thrust_line: field.as_ref().and_then(|field| thrust_line(assembly, field)),
+            fill: if field.is_some() { fill_entries(assembly, &fill, &loads.fill_bounds) } else { Vec::new() },
             field: field.as_deref().map(field_entries),
             ray: ray.as_deref().map(field_entries),
             motion: motion.map(|motion| motion_entries(assembly, motion)),
@@ -91,9 +96,9 @@ fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnsw
 
 /// Forces at the two ends of every joint; shear goes with the normal forces, so that each end's
 /// force lies in the cone of dry friction where the sum does.
-fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactForce> {
+pub(super) fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactForce> {
     let mut contacts = Vec::with_capacity(2 * forces.len());
-    for (joint, force) in problem.joints.iter().zip(forces) {
+    for (joint, force) in problem.joints.iter().zip(forces).filter(|(joint, _)| joint.fill.is_none()) {
         let sum = force.normal[0] + force.normal[1];
         let share = |end: usize| {
             if force.normal[0] >= 0.0 && force.normal[1] >= 0.0 && sum > 0.0 { force.normal[end] / sum } else { 0.5 }
@@ -107,7 +112,12 @@ fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactF
     contacts
 }
 
-fn body_velocities(assembly: &Assembly, problem: &LimitProblem, motion: &[Velocity]) -> Vec<CentroidVelocity> {
+/// Velocity of every block at its centroid.
+pub(super) fn body_velocities(
+    assembly: &Assembly,
+    problem: &LimitProblem,
+    motion: &[Velocity],
+) -> Vec<CentroidVelocity> {
     let velocity = |body: usize| match problem.group_of[body] {
         None => [0.0; 3],
         Some(group) => {

@@ -13,7 +13,13 @@ mod limit_result;
 mod observer;
 mod path;
 mod path_result;
+mod safe_theorem;
+mod settlement;
+mod side_by_side;
+mod statics;
+mod symmetric;
 
 pub use case::{solve_case, solve_cases, solve_input};
 pub use case_input::CaseInput;
-pub use observer::{Observer, PathProgress};
+pub use observer::{Observer, PathProgress, Unobserved};
+pub use side_by_side::side_by_side;

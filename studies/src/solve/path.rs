@@ -2,7 +2,7 @@
 
 use super::auto::{TaggedPathSolver, willing};
 use super::case_input::CaseInput;
-use super::path_result::path_result;
+use super::path_result::{Seen, path_result};
 use crate::results::CaseResult;
 use voussoir_core::certificate::PathChecker;
 use voussoir_core::path::{PathObserver, PathProblem, PathState};
@@ -11,10 +11,13 @@ use voussoir_core::path::{PathObserver, PathProblem, PathState};
 struct Watched<'a> {
     checker: PathChecker,
     observer: &'a mut dyn PathObserver,
+    /// The last state of each stage, by index.
+    ends: Vec<Option<PathState>>,
 }
 
 impl PathObserver for Watched<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
         self.checker.state(problem, state) && self.observer.state(problem, state)
     }
 }
@@ -37,9 +40,10 @@ pub(super) fn solve_by_path(
         Ok(checker) => checker,
         Err(why) => return failed(tag, why),
     };
-    let mut watched = Watched { checker, observer };
+    let mut watched = Watched { checker, observer, ends: vec![None; input.stages.len()] };
     let solved = solver.trace(&problem, input.settings, &mut watched);
-    path_result(input, tag, &problem, solved, watched.checker)
+    let energy = solver.energy_tolerance();
+    path_result(input, tag, &problem, solved, Seen { checker: watched.checker, ends: watched.ends, energy })
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

@@ -2,33 +2,46 @@
 
 use super::case_input::CaseInput;
 use super::coarse_joints::coarse_joints;
+use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
-use crate::results::path_state::{carried, mechanism_of, small};
+use crate::results::load_entries::path_fill;
+use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{
-    BranchEntry, CaseResult, DisplacementEntry, EventEntry, LimitPointEntry, PathRecord, ProofFields, StabilityEntry,
-    StageResult,
+    BranchEntry, CaseResult, DisplacementEntry, EventEntry, LimitPointEntry, PathRecord, Proof, ProofFields,
+    StabilityEntry, StageResult,
 };
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, ContactForce, PathChecker, flow_residual, jumps, largest_jump,
+    CentroidVelocity, Certificate, ContactForce, Hinge, PathChecker, flow_residual, jumps, largest_jump, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, ProvenPeak, StageStability};
+use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability};
 
-/// The result of a path that `checker` has looked on.
+/// What was seen of a path.
+pub(super) struct Seen {
+    /// Residuals of all states.
+    pub checker: PathChecker,
+    /// The last state of each stage, by index.
+    pub ends: Vec<Option<PathState>>,
+    /// How much of the energy of a stage its steps may lose.
+    pub energy: f64,
+}
+
+/// The result of a path.
 pub(super) fn path_result(
     input: &CaseInput,
     tag: &str,
     problem: &PathProblem,
-    solved: PathAnswer,
-    checker: PathChecker,
+    mut solved: PathAnswer,
+    Seen { checker, ends, energy }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
-    let certificate = certificate(&solved, &checker, finite);
+    prefer_symmetric(assembly, &checker, finite, &mut solved);
+    let certificate = certificate(&solved, &checker, finite, energy);
     let (mut status, mut notes) = (solved.status, solved.notes.clone());
     notes.extend(coarse_note(problem, assembly));
     if !certificate.passed && status != Status::Stalled {
@@ -52,24 +65,32 @@ pub(super) fn path_result(
         (Status::Stands, Target::Collapse) => solved.factor,
         _ => load_factor,
     };
-    let hinges = mechanism.iter().flat_map(|m| &m.hinges).map(|hinge| hinge.joint).collect();
+    let at_end = |stage: usize| ends[stage].as_ref().map(|state| open_hinges(assembly, problem, state));
+    let mut hinges: Vec<Vec<Hinge>> = (0..=load_step.stage).map(|stage| at_end(stage).unwrap_or_default()).collect();
+    if let (Some(mechanism), Some(last)) = (mechanism.as_ref().filter(|_| status != Status::Stands), hinges.last_mut())
+    {
+        last.clone_from(&mechanism.hinges);
+    }
     let motion = match (finite, &rates) {
         (true, Some(rates)) => Some(velocities(assembly, problem, rates, Some(&solved.state.motion))),
         _ => motion,
     };
-    let field = contact_forces(problem, &solved.state.force);
+    let field = contact_forces(assembly, problem, &solved.state.force);
+    let fill = path_fill(assembly, problem, input.stages, &solved.state.force);
     let mut counters = solved.counters.clone();
     counters.insert("states".into(), checker.states);
     CaseResult {
         status,
         load_factor,
+        proved_by: (status == Status::Stands).then_some(Proof::Path),
         solver: tag.into(),
         mechanism,
         proof: ProofFields {
+            fill,
             field_factor: Some(solved.state.factor),
             thrust_line: thrust_line(assembly, &unbonded(problem, &field)),
             field: Some(field_entries(&field)),
-            ray: solved.ray.as_ref().map(|ray| field_entries(&contact_forces(problem, ray))),
+            ray: solved.ray.as_ref().map(|ray| field_entries(&contact_forces(assembly, problem, ray))),
             motion: motion.map(|motion| motion_entries(assembly, motion)),
         },
         certificate,
@@ -81,6 +102,20 @@ pub(super) fn path_result(
         notes,
         path: path_record(input, problem, solved, checker),
         ..CaseResult::empty()
+    }
+}
+
+/// Replaces the mechanism of a symmetric scene by the symmetric one of its load.
+fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, finite: bool, solved: &mut PathAnswer) {
+    let (Status::Collapse, false, Some(structure), Some(rates)) =
+        (solved.status, finite, checker.structure(), &solved.motion)
+    else {
+        return;
+    };
+    let loading = &structure.load_steps[solved.load_step].loading;
+    if let Some(mean) = symmetric(assembly, &structure, loading, &solved.state.force, rates) {
+        // Its mirror image is another.
+        (solved.motion, solved.unique) = (Some(mean), Some(false));
     }
 }
 
@@ -97,7 +132,7 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
         displacements: Some(displaced.into_iter().enumerate().map(entry).collect()),
         yielded: inelastic_state::entries(assembly, problem, &solved.state),
         joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
-        events: events(input.stages, problem, &solved.events),
+        events: events(input, problem, &solved.events),
         curve: Some(checker.curve),
         first_limit_point: first,
         limit_points,
@@ -152,11 +187,12 @@ fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Ve
 }
 
 /// Residuals of all states and of the mechanism's flow, against their bounds.
-fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool) -> Certificate {
+fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy: f64) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
-        if !small(name, *value) {
+        let bound = if *name == "path_energy" { energy } else { tolerance(name).result };
+        if value.is_nan() || *value > bound {
             certificate.passed = false;
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
@@ -187,9 +223,10 @@ fn coarse_note(problem: &PathProblem, assembly: &Assembly) -> Option<String> {
     })
 }
 
-/// Forces at the contact points in the form of certificates.
-fn contact_forces(problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForce> {
-    let pairs = problem.contacts.iter().zip(forces);
+/// Forces at the contact points of joints in the form of certificates; those of the fill come after them.
+fn contact_forces(assembly: &Assembly, problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForce> {
+    let joints = assembly.joints.len();
+    let pairs = problem.contacts.iter().zip(forces).filter(|(c, _)| c.joint < joints);
     pairs.map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force }).collect()
 }
 
@@ -215,26 +252,36 @@ fn stage_results(
     last: usize,
     status: Status,
     reached: Option<f64>,
-    hinges: Vec<usize>,
+    hinges: Vec<Vec<Hinge>>,
 ) -> Vec<StageResult> {
-    let stood = |stage: &Stage| {
+    let mut hinges = hinges.into_iter();
+    let mut stood = |stage: &Stage| {
         let factor = match stage.target {
             Target::Factor(factor) => Some(factor),
             Target::Collapse => None,
         };
-        let (name, stability) = (stage.name.clone(), StabilityEntry::default());
-        StageResult { name, status: Status::Stands, factor, hinges: Vec::new(), stability }
+        StageResult {
+            name: stage.name.clone(),
+            status: Status::Stands,
+            factor,
+            hinges: hinges.next().unwrap_or_default(),
+            stability: StabilityEntry::default(),
+        }
     };
-    let mut results: Vec<StageResult> = stages[..last].iter().map(stood).collect();
-    let (name, stability) = (stages[last].name.clone(), StabilityEntry::default());
-    results.push(StageResult { name, status, factor: reached, hinges, stability });
+    let mut results: Vec<StageResult> = stages[..last].iter().map(&mut stood).collect();
+    let end = stood(&stages[last]);
+    results.push(StageResult { status, factor: reached, ..end });
     if status == Status::Stands {
-        results.extend(stages[last + 1..].iter().map(stood).filter(|idle| idle.factor.is_some()));
+        let after = results[last].hinges.clone();
+        let idle = stages[last + 1..].iter().map(stood).filter(|idle| idle.factor.is_some());
+        results.extend(idle.map(|idle| StageResult { hinges: after.clone(), ..idle }));
     }
     results
 }
 
-fn events(stages: &[Stage], problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
+/// What happened at joints; what the fill does is no event.
+fn events(input: &CaseInput, problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
+    let (stages, joints) = (input.stages, input.assembly.joints.len());
     let entry = |event: &PathEvent| {
         let (load_step, contact) = (&problem.load_steps[event.load_step], &problem.contacts[event.contact]);
         EventEntry {
@@ -246,7 +293,7 @@ fn events(stages: &[Stage], problem: &PathProblem, events: &[PathEvent]) -> Vec<
             what: event.what,
         }
     };
-    events.iter().map(entry).collect()
+    events.iter().filter(|event| problem.contacts[event.contact].joint < joints).map(entry).collect()
 }
 
 /// Displacement of every block at its centroid from the rigid motions of the path's bodies.

@@ -4,6 +4,7 @@ use super::assemble::{assembly, catalogue};
 use super::diagnostics::DiagnosticList;
 use super::keys::{kind_tables, study_keys};
 use super::model::{Case, SelectedSolver};
+use super::plausibility::warnings;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::stages::build_stages;
 use crate::config::check::{Checker, Unused};
@@ -23,7 +24,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     check_kind(&mut diagnostics, &resolved);
     let catalogue = catalogue(&mut diagnostics, &resolved);
     let assembly = catalogue.and_then(|catalogue| assembly(&mut diagnostics, &resolved, &catalogue));
-    let stages = resolved.get("stages").and_then(|stages| build_stages(&mut diagnostics, stages, assembly.as_ref()));
+    let stages = build_stages(&mut diagnostics, &resolved, assembly.as_ref(), &mut notes);
     let solver =
         resolved.get("solver").and_then(|solver| choose_solver(&mut diagnostics, solver, &resolved, assembly.as_ref()));
     let limit = solver.as_ref().is_some_and(|choice| matches!(choice.solver, SelectedSolver::Limit(..)));
@@ -34,8 +35,10 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
+            notes.extend(warnings(&resolved, &assembly));
             let resolved = Json::Object(resolved);
-            Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, resolved })
+            let brief = false;
+            Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, brief, resolved })
         }
         _ => Err(diagnostics.found),
     }

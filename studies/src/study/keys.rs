@@ -1,7 +1,8 @@
 //! The keys of a study file.
 
+use crate::config::common_keys::STOP;
 use crate::kinds::kinds;
-use crate::loads::load_shape;
+use crate::loads::{VEHICLE, load_shape};
 use std::sync::LazyLock;
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, card, cards_of};
 
@@ -55,6 +56,14 @@ static STAGE: &[Parameter] = &[
         Need::Default("[]"),
         "movements of supports",
     ),
+    key(
+        "continuation",
+        Shape::Plugin(PluginKind::Continuation),
+        Need::Optional("that of [solver]"),
+        "strategy of path solvers in this stage",
+    ),
+    key("stop", STOP, Need::Optional("that of [solver]"), "how far to go after a peak in this stage"),
+    key("solver", Shape::Text, Need::Optional("that of [solver]"), "tag of the limit solver that answers this stage"),
 ];
 
 static AXIS: Shape = Shape::Table(&[
@@ -80,7 +89,12 @@ pub static VARIANT: Shape = Shape::Table(&[
 /// Keys of `[output]` that studies of every kind have.
 static OUTPUT_KEYS: &[Parameter] = &[
     key("curve", Shape::Boolean, Need::Default("false"), "force-displacement points"),
-    key("figures", Shape::Boolean, Need::Default("true"), "figures and the report"),
+    key(
+        "figures",
+        Shape::Either(&[Shape::Boolean, Shape::Choice(&["all", "worst", "none"])]),
+        Need::Default("true"),
+        "figures: of all cases, of the worst of each variant, of none; true: of all up to 50 cases, else of the worst",
+    ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ];
 
@@ -158,6 +172,12 @@ static COMMON: &[Parameter] = &[
         Shape::Plugin(PluginKind::LimitSolver),
         Need::Default("{ solver = \"auto\" }"),
         "how the cases are answered",
+    ),
+    key(
+        "vehicles",
+        Shape::Map(&VEHICLE),
+        Need::Optional("no vehicles"),
+        "vehicles by name, for loads of kind \"vehicle\"",
     ),
     key(
         "sweep",

@@ -3,12 +3,12 @@
 use super::case::build_case;
 use super::diagnostics::located;
 use super::keys::{VARIANT, kind_tables, study_keys};
-use super::model::{Case, Output, Study};
+use super::model::{Case, Drawn, Output, Study};
 use super::outline::Outline;
-use super::source::{StudySource, kind_of};
+use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
 use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
-use crate::config::document::Node;
+use crate::config::document::{Node, Value};
 use crate::config::expand::{Expanded, Expansion};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
@@ -61,39 +61,47 @@ impl Study {
             return Err(diagnostics);
         }
         let first = cases.first().map(|case| &case.resolved);
+        // A sweep or a variant may have changed it.
+        if let Some(why) = first.and_then(|case| case["name"].as_str()).and_then(no_file_name) {
+            return Err(vec![LocatedDiagnostic::new(&root.place("name"), "name", why).help(FILE_NAME)]);
+        }
         let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
         Ok(Study {
             name: text_of("name"),
             kind: text_of("kind"),
             outline,
-            output: first.map(|case| output(&case["output"])).unwrap_or_default(),
+            output: first.map(|case| output(&case["output"], expansion.count())).unwrap_or_default(),
             cases,
             resolved: root.to_toml(),
             expansion,
         })
     }
 
-    /// Case `id` with other values of some keys, as a study kind needs it that chooses values itself. Its `id`
+    /// Case `id` with other values of some keys, numbers or texts, as a study kind needs it that chooses values itself. Its `id`
     /// and `parameters` are those of the case, with the keys that are set.
-    pub fn at(&self, id: usize, values: &[(&str, f64)]) -> Result<Case, Vec<LocatedDiagnostic>> {
+    pub fn at(&self, id: usize, values: &[(&str, Json)]) -> Result<Case, Vec<LocatedDiagnostic>> {
         let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {
             let origin = Origin::Set((*key).into());
-            let node = Node { value: crate::config::document::Value::Float(*value), origin: origin.clone() };
+            let written = match value {
+                Json::String(text) => Value::String(text.clone()),
+                number => Value::Float(number.as_f64().unwrap_or(f64::NAN)),
+            };
+            let node = Node { value: written, origin: origin.clone() };
             set(&mut expanded.root, key, node, &origin).map_err(|wrong| vec![*wrong])?;
-            expanded.parameters.insert((*key).into(), Json::from(*value));
+            expanded.parameters.insert((*key).into(), value.clone());
         }
         build_case(id, expanded)
     }
 }
 
 /// What is written besides the results, from the checked table `[output]`.
-fn output(table: &Json) -> Output {
+fn output(table: &Json, cases: usize) -> Output {
     let flag = |name: &str| table[name].as_bool().unwrap_or(false);
     let tags = |list: &Vec<Json>| list.iter().filter_map(|tag| tag.as_str().map(str::to_string)).collect();
     Output {
         curve: flag("curve"),
-        figures: flag("figures"),
+        figures: Drawn::read(&table["figures"], cases),
         vtu: flag("vtu"),
         writers: table["writers"].as_array().map(tags),
         options: table["options"].as_object().cloned().unwrap_or_default(),

@@ -27,6 +27,8 @@ pub struct SolverChoice {
     pub solver: SelectedSolver,
     /// What a path solver is told; its tolerance is that of certificates too.
     pub settings: PathSettings,
+    /// Who solves a stage that names its own limit solver, by index.
+    pub of_stages: Vec<Option<SelectedSolver>>,
 }
 
 /// One case, ready to be solved.
@@ -50,8 +52,56 @@ pub struct Case {
     pub output_curve: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
+    /// One of many made from another case, which has the weights that both have: its results leave them out.
+    pub brief: bool,
     /// The case's own study file: numbers in SI units, defaults filled in.
     pub resolved: Json,
+}
+
+impl Case {
+    /// What tells this case from any other: the version of the program, its label and its whole resolved study, as
+    /// 128 bits of FNV-1a in hexadecimal. No seal: it finds confusion, not malice.
+    pub fn hash(&self) -> String {
+        let label = (self.id, &self.variant, &self.scene, &self.parameters);
+        let text = format!("{} {label:?} {}", env!("CARGO_PKG_VERSION"), self.resolved);
+        const OFFSET: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+        const PRIME: u128 = (1 << 88) + 0x13b;
+        let hash = text.bytes().fold(OFFSET, |hash, byte| (hash ^ u128::from(byte)).wrapping_mul(PRIME));
+        format!("{hash:032x}")
+    }
+}
+
+/// Which cases of a study are drawn, in figures and in the report.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Drawn {
+    /// Every one.
+    #[default]
+    All,
+    /// The worst of each variant.
+    Worst,
+    /// None.
+    Nothing,
+}
+
+impl Drawn {
+    /// Cases up to which all are drawn where a study does not say.
+    const MOST: usize = 50;
+
+    /// As the checked key `figures` says of a study of so many cases.
+    pub fn read(key: &Json, cases: usize) -> Drawn {
+        match (key.as_bool(), key.as_str()) {
+            (Some(false), _) | (_, Some("none")) => Drawn::Nothing,
+            (_, Some("all")) => Drawn::All,
+            (_, Some("worst")) => Drawn::Worst,
+            _ if cases > Drawn::MOST => Drawn::Worst,
+            _ => Drawn::All,
+        }
+    }
+
+    /// Whether anything is drawn.
+    pub fn anything(self) -> bool {
+        self != Drawn::Nothing
+    }
 }
 
 /// What is written besides the results.
@@ -59,8 +109,8 @@ pub struct Case {
 pub struct Output {
     /// Force-displacement points.
     pub curve: bool,
-    /// Figures and the report.
-    pub figures: bool,
+    /// Which cases are drawn.
+    pub figures: Drawn,
     /// Files for ParaView.
     pub vtu: bool,
     /// Tags of the writers that are wanted; all where there is no list.

@@ -3,13 +3,14 @@
 
 use super::diagnostics::DiagnosticList;
 use super::model::{SelectedSolver, SolverChoice};
+use crate::config::default_table::default_table;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Bond};
-use voussoir_core::path::{Continuation, PathSettings, PathSolver};
+use voussoir_core::path::{Continuation, PathSettings, PathSolver, StageSettings};
 use voussoir_core::plugin::{
     Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
 };
@@ -46,8 +47,63 @@ pub(super) fn choose_solver(
         }
     }
     let built = build_solver(diagnostics, solver, chosen);
-    let settings = build_settings(diagnostics, solver, finite);
-    Some(SolverChoice { solver: built?, settings: settings? })
+    let settings = build_settings(diagnostics, solver, resolved, finite);
+    let stages = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let own = stages.iter().enumerate().map(|(index, stage)| stage_solver(diagnostics, stage, index, chosen)).collect();
+    Some(SolverChoice { solver: built?, settings: settings?, of_stages: own })
+}
+
+/// The solver of a stage that names its own. A path is followed by one solver from its first stage to its last.
+fn stage_solver(
+    diagnostics: &mut DiagnosticList<'_>,
+    stage: &Json,
+    index: usize,
+    chosen: Option<&Card>,
+) -> Option<SelectedSolver> {
+    let tag = stage.get("solver")?.as_str()?;
+    let at = format!("stages.{index}.solver");
+    let Some(card) = candidate(PluginKind::LimitSolver, tag) else {
+        let tags: Vec<_> = candidates(PluginKind::LimitSolver).into_iter().map(|card| card.tag).collect();
+        diagnostics.wrong(&at, format!("there is no solver \"{tag}\""), suggest(tag, &tags, "solvers"));
+        return None;
+    };
+    let path = |card: &Card| card.kind == PluginKind::PathSolver;
+    if chosen.is_some_and(|chosen| chosen.tag == card.tag) {
+        return None;
+    }
+    if path(card) || chosen.is_some_and(path) {
+        let message = format!(
+            "\"{tag}\" cannot answer one stage of a study that [solver] gives to another solver: a path is followed by one solver from its first stage to its last"
+        );
+        diagnostics.wrong(&at, message, format!("set [solver] solver = \"{tag}\" for all stages, or remove this key"));
+        return None;
+    }
+    let table = default_table(card);
+    let solver: Box<dyn LimitSolver> = read_solver(diagnostics, &at, &table, card)?;
+    Some(SelectedSolver::Limit(tag.to_string(), Arc::from(solver)))
+}
+
+/// What each stage asks a path solver for besides.
+fn stage_settings(diagnostics: &mut DiagnosticList<'_>, stages: &[Json]) -> Option<Vec<StageSettings>> {
+    let one = |(index, stage): (usize, &Json)| -> Option<StageSettings> {
+        let stop = stage.get("stop").map(|stop| ["displacement", "factor"].map(|key| stop[key].as_f64()));
+        let at = format!("stages.{index}.continuation");
+        let continuation = strategy(diagnostics, stage.get("continuation"), &at)?;
+        Some(StageSettings { continuation, stop })
+    };
+    stages.iter().enumerate().map(one).collect()
+}
+
+/// The continuation strategy of a table, where there is one; `None` where it cannot be read.
+fn strategy(
+    diagnostics: &mut DiagnosticList<'_>,
+    table: Option<&Json>,
+    at: &str,
+) -> Option<Option<Arc<dyn Continuation>>> {
+    let Some(table) = table else { return Some(None) };
+    let card = card(PluginKind::Continuation, table["strategy"].as_str().unwrap_or_default())?;
+    let strategy: Box<dyn Continuation> = read_solver(diagnostics, at, table, card)?;
+    Some(Some(Arc::from(strategy)))
 }
 
 /// The solver that the table configures; without a card it is `auto`.
@@ -66,21 +122,22 @@ fn build_solver(diagnostics: &mut DiagnosticList<'_>, solver: &Json, chosen: Opt
 }
 
 /// What a path solver is told.
-fn build_settings(diagnostics: &mut DiagnosticList<'_>, solver: &Json, finite: bool) -> Option<PathSettings> {
-    let continuation = match solver.get("continuation") {
-        None => None,
-        Some(table) => {
-            let card = card(PluginKind::Continuation, table["strategy"].as_str().unwrap_or_default())?;
-            let strategy: Box<dyn Continuation> = read_solver(diagnostics, "solver.continuation", table, card)?;
-            Some(Arc::from(strategy))
-        }
-    };
+fn build_settings(
+    diagnostics: &mut DiagnosticList<'_>,
+    solver: &Json,
+    resolved: &Map<String, Json>,
+    finite: bool,
+) -> Option<PathSettings> {
+    let continuation = strategy(diagnostics, solver.get("continuation"), "solver.continuation");
+    let stages = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let stages = stage_settings(diagnostics, stages);
     Some(PathSettings {
         finite,
         tolerance: solver["tolerance"].as_f64().unwrap_or(1e-9),
         stop_displacement: solver["stop"]["displacement"].as_f64(),
         stop_factor: solver["stop"]["factor"].as_f64(),
-        continuation,
+        continuation: continuation?,
+        stages: stages?,
     })
 }
 
@@ -183,13 +240,8 @@ fn needs_deformation(
         if stage["settlement"].as_array().is_none_or(Vec::is_empty) {
             continue;
         }
-        let at = format!("stages.{index}.settlement");
-        if limit {
-            let able = solvers_that(|card| card.offers(Capability::SETTLEMENT));
-            let help = format!("remove the settlement, or take a path solver: {}", or_none(&able));
-            diagnostics.wrong(&at, "limit analysis of rigid blocks knows loads only", help);
-        } else if rigid {
-            diagnostics.wrong(&at, reason, help);
+        if rigid && !limit && (finite || path) {
+            diagnostics.wrong(&format!("stages.{index}.settlement"), reason, help);
         }
     }
     if rigid && finite && !limit {
@@ -214,6 +266,11 @@ pub(super) fn unused_by_limit_analysis(resolved: &Map<String, Json>) -> Vec<Stri
     for key in ["continuation", "stop"] {
         if resolved.get("solver").is_some_and(|solver| solver.get(key).is_some()) {
             notes.push(format!("solver.{key} is not used by limit analysis"));
+        }
+        for (index, stage) in resolved.get("stages").and_then(Json::as_array).into_iter().flatten().enumerate() {
+            if stage.get(key).is_some() {
+                notes.push(format!("stages.{index}.{key} is not used by limit analysis"));
+            }
         }
     }
     notes

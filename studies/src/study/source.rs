@@ -26,6 +26,11 @@ impl StudySource {
             let origin = Origin::Set(path.as_str().into());
             diagnostics.extend(set(&mut root, path, value_of(value, &origin), &origin).err().map(|wrong| *wrong));
         }
+        if let Some(node) = root.table().and_then(|table| table.get("name"))
+            && let Some(wrong) = node.text().and_then(no_file_name)
+        {
+            diagnostics.push(LocatedDiagnostic::new(&node.origin, "name", wrong).help(FILE_NAME));
+        }
         Ok(StudySource { root, sets: sets.to_vec(), diagnostics })
     }
 
@@ -45,4 +50,22 @@ fn value_of(text: &str, origin: &Origin) -> Node {
 /// The word after `kind`.
 pub fn kind_of(root: &Node) -> &str {
     root.table().and_then(|table| table.get("kind")?.text()).unwrap_or("run")
+}
+
+/// What to do about a name that is none of a folder.
+pub(super) const FILE_NAME: &str = "results go into a folder of this name: use letters, digits, blanks, - and _";
+
+/// Why a study's name cannot be that of a folder beside others.
+pub(super) fn no_file_name(name: &str) -> Option<String> {
+    let unfit = |c: char| c.is_control() || "/\\:*?\"<>|".contains(c);
+    match name {
+        "" => Some("is empty".into()),
+        "." | ".." => Some(format!("\"{name}\" is no name of a folder")),
+        _ if name.trim() != name => Some("begins or ends with a blank".into()),
+        _ if name.starts_with('.') || name.ends_with('.') => Some("begins or ends with a point".into()),
+        _ if name.len() > 200 => Some("is longer than 200 bytes".into()),
+        _ => {
+            name.chars().find(|c| unfit(*c)).map(|c| format!("holds {c:?}, which no folder's name can hold everywhere"))
+        }
+    }
 }

@@ -3,17 +3,20 @@
 use super::diagnostics::DiagnosticList;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
-use crate::loads::{LoadKind, LoadSite, Placed};
-use serde_json::Value as Json;
+use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
+use serde_json::{Map, Value as Json};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{Assembly, Joint, PointForce, Settlement, Stage, Target};
+use voussoir_core::model::{Assembly, Joint, Settlement, Stage, Target};
 
 /// All stages, or `None` where there is no list of them.
 pub(super) fn build_stages(
     diagnostics: &mut DiagnosticList<'_>,
-    stages: &Json,
+    resolved: &Map<String, Json>,
     assembly: Option<&Assembly>,
+    notes: &mut Vec<String>,
 ) -> Option<Vec<Stage>> {
+    let stages = resolved.get("stages")?;
+    let tables = load_tables(resolved);
     let stages = stages.as_array()?;
     let before = diagnostics.found.len();
     let mut out: Vec<Stage> = Vec::new();
@@ -22,7 +25,7 @@ pub(super) fn build_stages(
         let (target, factors) = build_target(diagnostics, stages, index, &at);
         let settlements = assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
         let settlements = settlements.unwrap_or_default();
-        let (forces, accelerations) = build_loads(diagnostics, stage, assembly, &at);
+        let Placed { forces, accelerations, notes: own } = build_loads(diagnostics, stage, assembly, &tables, &at);
         let stage = Stage {
             name: stage["name"].as_str().unwrap_or_default().to_string(),
             gravity: gravity(&stage["gravity"]),
@@ -33,7 +36,10 @@ pub(super) fn build_stages(
             factor_min: factors[0],
             factor_max: factors[1],
         };
-        if assembly.is_some() && diagnostics.found.len() == before && raises_nothing(&stage) {
+        // A vehicle that is off the bridge is no mistake: its note says so.
+        let stands_off = !own.is_empty();
+        notes.extend(own);
+        if assembly.is_some() && diagnostics.found.len() == before && !stands_off && raises_nothing(&stage) {
             let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
             let message = "\"collapse\" needs a load to raise, but this stage has none";
             diagnostics.wrong(&join(&at, "until"), message, help);
@@ -49,6 +55,14 @@ fn raises_nothing(stage: &Stage) -> bool {
         && stage.forces.iter().all(|force| force.force.norm() == 0.0)
         && stage.accelerations.iter().all(|acceleration| acceleration.norm() == 0.0)
         && stage.settlements.is_empty()
+}
+
+/// What loads need besides their own keys: vehicles, and how the fill spreads loads. The tables have passed their check.
+fn load_tables(resolved: &Map<String, Json>) -> LoadTables {
+    let vehicles = resolved.get("vehicles").cloned().and_then(|vehicles| serde_json::from_value(vehicles).ok());
+    let dispersion = resolved.get("scene").and_then(|scene| scene.get("fill")?.get("dispersion"));
+    let dispersion = dispersion.cloned().and_then(|law| serde_json::from_value(law).ok());
+    LoadTables { vehicles: vehicles.unwrap_or_default(), dispersion }
 }
 
 /// Where a stage goes, and the least and greatest factor searched; its name is checked too.
@@ -91,9 +105,10 @@ fn build_loads(
     diagnostics: &mut DiagnosticList<'_>,
     stage: &Json,
     assembly: Option<&Assembly>,
+    tables: &LoadTables,
     at: &str,
-) -> (Vec<PointForce>, Vec<Vec2>) {
-    let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
+) -> Placed {
+    let mut all = Placed::default();
     for (number, table) in stage["loads"].as_array().into_iter().flatten().enumerate() {
         let path = format!("{at}.loads.{number}");
         let load: Option<Box<dyn LoadKind>> = match serde_json::from_value(table.clone()) {
@@ -104,8 +119,8 @@ fn build_loads(
             }
         };
         let (Some(load), Some(assembly)) = (load, assembly) else { continue };
-        match load.place(&LoadSite::new(assembly, &path)) {
-            Ok(Placed { forces: placed, accelerations: accelerated }) => {
+        match load.place(&LoadSite::new(assembly, tables, &path)) {
+            Ok(Placed { forces: placed, accelerations: accelerated, notes }) => {
                 let (groups, _) = assembly.rigid_groups();
                 let held = placed.iter().find(|f| groups[f.body].is_none() && assembly.is_rigid(f.body));
                 if let Some(force) = held {
@@ -116,13 +131,14 @@ fn build_loads(
                     let help = "move the load to a block that can move, or join the ends: ends = \"jointed\"";
                     diagnostics.wrong(&path, message, help);
                 }
-                forces.extend(placed);
-                accelerations.extend(accelerated);
+                all.forces.extend(placed);
+                all.accelerations.extend(accelerated);
+                all.notes.extend(notes);
             }
             Err(wrong) => diagnostics.extend(wrong),
         }
     }
-    (forces, accelerations)
+    all
 }
 
 /// The movements of supports of a stage.

@@ -1,7 +1,7 @@
 //! Stored forces and motions, read back with their checks: they stand on the scene and hold finite numbers.
 
 use crate::results::path_state::motion_of_body;
-use crate::results::{CaseResult, FieldEntry, MotionEntry};
+use crate::results::{CaseResult, FieldEntry, FillEntry, MotionEntry};
 use voussoir_core::certificate::{CentroidVelocity, ContactForce};
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, distance_to_segment};
@@ -33,23 +33,29 @@ pub fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<Contact
         .collect()
 }
 
-/// Forces of a stored field at the contact points of a path's problem, in their order.
+/// Forces of a stored field, and of the fill that belongs to it, at the contact points of a path's problem, in their order.
 pub fn path_forces(
     assembly: &Assembly,
     problem: &PathProblem,
     entries: &[FieldEntry],
+    fill: &[FillEntry],
 ) -> Result<Vec<[f64; 2]>, String> {
     let forces = contacts(assembly, entries)?;
-    let same = forces.len() == problem.contacts.len()
+    let (joints, beside): (Vec<_>, Vec<_>) = problem.contacts.iter().partition(|c| c.joint < assembly.joints.len());
+    let same = forces.len() == joints.len()
         && forces
             .iter()
-            .zip(&problem.contacts)
+            .zip(joints)
             .all(|(f, c)| f.joint == c.joint && (f.point - c.position).norm() <= 1e-9 * problem.length);
-    if same {
-        Ok(forces.iter().map(|f| f.force).collect())
-    } else {
-        Err("field: not the contact points of the scene".into())
+    if !same {
+        return Err("field: not the contact points of the scene".into());
     }
+    // Contact points of the fill come last; a field that carries the load alone has none of it.
+    let pressed = beside.iter().map(|c| {
+        let entry = fill.get(c.joint - assembly.joints.len());
+        [entry.map_or(0.0, |entry| entry.force - entry.bounds[0]), 0.0]
+    });
+    Ok(forces.iter().map(|f| f.force).chain(pressed).collect())
 }
 
 /// Rigid motions of a path's bodies from the stored displacements of the blocks.

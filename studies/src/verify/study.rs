@@ -1,33 +1,95 @@
-//! All results of a study.
+//! All results of a study: proofs from the stored numbers, then every number against solving again.
 
 use super::case::verify_case;
+use super::repeat::differences;
 use crate::kinds::kind;
-use crate::results::StudyResults;
+use crate::results::{CaseResult, StudyResults};
+use crate::solve::{Observer, Unobserved};
 use crate::study::Study;
+use serde_json::Value as Json;
+use std::collections::BTreeMap;
 
-/// What is wrong with a set of results, by case; empty when everything is confirmed.
+/// What is wrong with a set of results, by case; empty when everything is confirmed. Solves all its cases again.
 pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
+    let again = solve_again(study, results, 1, &Unobserved);
+    match serde_json::to_value(results) {
+        Ok(stored) => verify_against(study, &stored, &again).unwrap_or_else(|why| vec![(0, why)]),
+        Err(why) => vec![(0, why.to_string())],
+    }
+}
+
+/// The cases that a set of results must hold, solved again.
+pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+    let wanted = match &results.only_cases {
+        Some(ids) => ids.iter().copied().filter(|id| *id < study.cases.len()).collect(),
+        None => (0..study.cases.len()).collect::<Vec<_>>(),
+    };
+    observer.begins(wanted.len());
+    kind(&study.kind).map(|kind| kind.solve(study, &wanted, jobs, observer)).unwrap_or_default()
+}
+
+/// What is wrong with results as they are stored, against the same cases solved `again`; an error where they are
+/// no results.
+pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Result<Vec<(usize, String)>, String> {
+    let results: StudyResults = serde_json::from_value(stored.clone()).map_err(|error| error.to_string())?;
+    let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
+    let mut wrong = study_findings(study, &results);
+    wrong.extend(id_findings(study, &results, again));
+    let by_id: BTreeMap<usize, &CaseResult> = again.iter().map(|case| (case.label.id, case)).collect();
+    for (result, entry) in results.cases.iter().zip(entries) {
+        let id = result.label.id;
+        let Some(case) = study.case_of(&result.label) else {
+            wrong.push((id, "the study has no such case".into()));
+            continue;
+        };
+        let mut found = verify_case(&case, result);
+        if let Some(again) = by_id.get(&id) {
+            let again = serde_json::to_value(again).map_err(|error| error.to_string())?;
+            found.extend(differences(entry, &again));
+        }
+        wrong.extend(found.into_iter().map(|why| (id, why)));
+    }
+    Ok(wrong)
+}
+
+/// What stands beside the cases.
+fn study_findings(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
     let mut wrong = Vec::new();
     if results.study != study.name {
         wrong.push((0, format!("results of \"{}\", study \"{}\"", results.study, study.name)));
     }
-    let kind = kind(&study.kind);
-    let mut seen = std::collections::BTreeSet::new();
-    for result in &results.cases {
-        if !seen.insert(result.label.id) {
-            wrong.push((result.label.id, "appears twice".into()));
-        }
-        match kind.and_then(|kind| kind.case(study, &result.label)) {
-            Some(case) => wrong.extend(verify_case(&case, result).into_iter().map(|why| (result.label.id, why))),
-            None => wrong.push((result.label.id, "the study has no such case".into())),
-        }
-    }
-    let own = kind.map(|kind| kind.own_results(study, &results.cases)).unwrap_or_default();
+    let own = kind(&study.kind).map(|kind| kind.own_results(study, &results.cases)).unwrap_or_default();
     if own.comparison != results.comparison {
         wrong.push((0, "the comparison is not that of the cases".into()));
     }
     if own.other != results.own {
         wrong.push((0, format!("what kind = \"{}\" adds is not that of the cases", study.kind)));
+    }
+    wrong
+}
+
+/// Every case of the study once, in order, and no other; of a run of some cases only these.
+fn id_findings(study: &Study, results: &StudyResults, again: &[CaseResult]) -> Vec<(usize, String)> {
+    let mut wrong = Vec::new();
+    let mut seen = std::collections::BTreeSet::new();
+    let ids: Vec<usize> = results.cases.iter().map(|case| case.label.id).collect();
+    for id in &ids {
+        if !seen.insert(*id) {
+            wrong.push((*id, "appears twice".into()));
+        }
+    }
+    if !ids.is_sorted() {
+        wrong.push((ids[0], "the cases are not in their order".into()));
+    }
+    let missing = again.iter().map(|case| case.label.id).filter(|id| !seen.contains(id));
+    wrong.extend(missing.map(|id| (id, "is missing".into())));
+    let expected: std::collections::BTreeSet<usize> = again.iter().map(|case| case.label.id).collect();
+    wrong.extend(seen.difference(&expected).map(|id| (*id, "is not among the cases that were asked for".into())));
+    if let Some(only) = &results.only_cases {
+        let whole = only.is_empty() || (0..study.cases.len()).all(|id| only.contains(&id));
+        if whole || only.iter().any(|id| *id >= study.cases.len()) || !only.is_sorted() {
+            wrong.push((0, "only_cases is no choice of the study's cases".into()));
+        }
     }
     wrong
 }

@@ -1,5 +1,6 @@
 //! `comparison.csv` and the figures of comparisons and maps: the cases beside each other.
 
+use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
@@ -18,7 +19,7 @@ impl Writer for ComparisonFiles {
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
         let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison).into_bytes())];
-        if study.output.figures {
+        if study.output.figures.anything() {
             files.extend(
                 figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())),
             );
@@ -42,7 +43,6 @@ fn swept(comparison: &Comparison) -> Vec<String> {
 /// One row per scene and swept value; for each variant status, factor, bounds, ratio and mechanism.
 pub fn comparison_csv(comparison: &Comparison) -> String {
     let keys = swept(comparison);
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header = vec!["scene".to_string()];
     header.extend(keys.iter().map(|key| key_with_unit(key)));
     for variant in &comparison.variants {
@@ -57,9 +57,8 @@ pub fn comparison_csv(comparison: &Comparison) -> String {
         ];
         header.extend(columns.map(|column| format!("{variant}: {column}")));
     }
-    writer.write_record(header).expect("writing to memory does not fail");
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
-    for row in &comparison.rows {
+    let rows = comparison.rows.iter().map(|row| {
         let mut cells = vec![row.scene.clone().unwrap_or_default()];
         cells.extend(keys.iter().map(|key| row.parameters.get(key).map(format_value).unwrap_or_default()));
         for cell in &row.cells {
@@ -73,10 +72,9 @@ pub fn comparison_csv(comparison: &Comparison) -> String {
                 cell.case.to_string(),
             ]);
         }
-        writer.write_record(cells).expect("every row is as long as the header");
-    }
-    let bytes = writer.into_inner().expect("writing to memory does not fail");
-    String::from_utf8(bytes).expect("every cell is text")
+        cells
+    });
+    csv_table(header, rows)
 }
 
 /// A load factor with what must be said of it: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`.

@@ -1,5 +1,6 @@
 //! `results.csv`: one row per case, units in the names of columns.
 
+use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
@@ -42,17 +43,11 @@ const AFTER: [&str; 18] = [
 /// The table of a study: a cell is empty where a case has no such value; lists are separated by
 /// blanks, notes by ` | `.
 pub fn results_csv(study: &StudyOutput) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let keys = study.sweep_keys.iter().map(|key| key_with_unit(key));
     let scenes = study.results.cases.iter().any(|case| case.label.scene.is_some());
     let before = BEFORE.iter().copied().chain(scenes.then_some("scene"));
     let header = before.map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string()));
-    writer.write_record(header).expect("writing to memory does not fail");
-    for case in &study.results.cases {
-        writer.write_record(row(case, scenes, &study.sweep_keys)).expect("every row is as long as the header");
-    }
-    let bytes = writer.into_inner().expect("writing to memory does not fail");
-    String::from_utf8(bytes).expect("every cell is text")
+    csv_table(header.collect(), study.results.cases.iter().map(|case| row(case, scenes, &study.sweep_keys)))
 }
 
 fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! `curve.csv`: the points of load-displacement curves, where a study asks for them.
 
+use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
@@ -19,11 +20,10 @@ impl Writer for CurveCsv {
 
 /// One row per point of each case's curve, in the order of the path.
 pub fn curve_csv(study: &StudyOutput) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header = vec!["id".to_string(), "variant".into()];
     header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
     header.extend(["stage", "displacement [m]", "load_factor [-]"].map(String::from));
-    writer.write_record(header).expect("writing to memory does not fail");
+    let mut rows = Vec::new();
     for case in &study.results.cases {
         let stage = case.stages.last().map_or("", |stage| stage.name.as_str());
         for [displacement, factor] in case.path.curve.iter().flatten() {
@@ -32,11 +32,10 @@ pub fn curve_csv(study: &StudyOutput) -> String {
                 study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(format_value).unwrap_or_default()),
             );
             row.extend([stage.to_string(), displacement.to_string(), factor.to_string()]);
-            writer.write_record(row).expect("every row is as long as the header");
+            rows.push(row);
         }
     }
-    let bytes = writer.into_inner().expect("writing to memory does not fail");
-    String::from_utf8(bytes).expect("every cell is text")
+    csv_table(header, rows.into_iter())
 }
 
 register!(

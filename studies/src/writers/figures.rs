@@ -3,8 +3,11 @@
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
+use crate::figures::envelope::envelope_chart;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
+use crate::results::CaseResult;
+use rayon::prelude::*;
 use serde_json::Value as Json;
 
 /// Writes `figures/*.svg`.
@@ -13,19 +16,24 @@ pub struct Figures;
 
 impl Writer for Figures {
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        if !study.output.figures {
+        if !study.output.figures.anything() {
             return Vec::new();
         }
         let mut files: Vec<(String, String)> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
+        files.extend(envelope_chart(study.name, study.results).map(|svg| ("figures/envelope.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
-        for (place, case) in study.results.cases.iter().enumerate() {
-            let Some((assembly, stages)) = study.scene(place) else { continue };
+        let drawn: Vec<_> =
+            study.results.cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id)).collect();
+        let of_case = |(place, case): &(usize, &CaseResult)| {
+            let Some((assembly, stages)) = study.scene(*place) else { return Vec::new() };
             let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.label.id);
-            files.push((name("scene"), scene_svg(study.name, assembly, stages, case)));
-            files.extend(mechanism_svg(study.name, assembly, case).map(|svg| (name("mechanism"), svg)));
-            files.extend(curve_svg(study.name, assembly, stages, case).map(|svg| (name("curve"), svg)));
-        }
+            let mut own = vec![(name("scene"), scene_svg(study.name, assembly, stages, case))];
+            own.extend(mechanism_svg(study.name, assembly, case).map(|svg| (name("mechanism"), svg)));
+            own.extend(curve_svg(study.name, assembly, stages, case).map(|svg| (name("curve"), svg)));
+            own
+        };
+        files.extend(drawn.par_iter().flat_map_iter(of_case).collect::<Vec<_>>());
         files.into_iter().map(|(name, svg)| (name, svg.into_bytes())).collect()
     }
 }

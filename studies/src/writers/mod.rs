@@ -5,6 +5,7 @@
 
 pub mod comparison;
 pub mod csv;
+pub mod csv_table;
 pub mod curve_csv;
 pub mod figures;
 mod page;

@@ -6,9 +6,10 @@ use super::register::register;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
+use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
-    case_title, escape, format_force, format_number, format_seconds, format_short, headline, key_with_unit, kind_words,
-    status_meaning, status_word, unit_load,
+    case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, key_with_unit,
+    kind_words, open_bounds, status_meaning, status_word, unit_load,
 };
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
@@ -40,7 +41,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
-    if study.output.figures
+    if study.output.figures.anything()
         && let Some(chart) = study_chart(study)
     {
         body += "<h2>The sweep</h2>\n<figure>";
@@ -48,11 +49,17 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
                  lines only join neighbouring cases.</figcaption></figure>\n";
     }
+    if let Some(chart) = study.output.figures.anything().then(|| envelope_chart(study.name, study.results)).flatten() {
+        body += &format!(
+            "<h2>Envelope</h2>\n<figure>{chart}<figcaption>The load factor at every place that was tried; only the worst \
+             is drawn below.</figcaption></figure>\n"
+        );
+    }
     body += &comparison(study);
     body += "<h2>Cases</h2>\n";
     body += &case_table(study);
     body += &notes(cases);
-    if study.output.figures {
+    if study.output.figures.anything() {
         body += &figures(study, drawn);
     }
     body += &paths(study, drawn);
@@ -77,7 +84,7 @@ fn comparison(study: &StudyOutput) -> String {
          after ≥, the load was found, and no load below that number is possible. A word stands where there is no load factor.</p>\n",
         escape(&comparison.reference)
     );
-    if study.output.figures
+    if study.output.figures.anything()
         && let Some((name, svg)) = figure(study.name, comparison)
     {
         let caption = match name {
@@ -126,9 +133,7 @@ fn summary(study: &StudyOutput) -> String {
     }
     let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.label.id).collect();
     text += &if failed.is_empty() {
-        " Every answer passed its certificate: equilibrium, strengths and, at collapse, both bounds were recomputed from the \
-         scene alone."
-            .to_string()
+        format!(" Every answer passed its certificate: {}.", checked(cases))
     } else {
         format!(
             " <strong class=\"bad\">The certificate failed for {}: do not rely on them.</strong>",
@@ -136,6 +141,23 @@ fn summary(study: &StudyOutput) -> String {
         )
     };
     text + "</p>\n"
+}
+
+/// What the certificates of these cases have checked, no more.
+fn checked(cases: &[CaseResult]) -> String {
+    let followed = |case: &&CaseResult| case.path.displacements.is_some();
+    let (paths, limits) = (cases.iter().any(|case| followed(&case)), cases.iter().any(|case| !followed(&case)));
+    let mut words = Vec::new();
+    if limits {
+        words.push("of limit analysis, equilibrium and strengths of the forces and the work of the motion were recomputed from the scene");
+    }
+    if paths {
+        words.push("of each path, equilibrium, strengths and contact were checked at every state");
+    }
+    if cases.iter().any(|case| open_bounds(case).is_some()) {
+        words.push("where two numbers stand, the lower one is proved and the upper one was found");
+    }
+    words.join("; ")
 }
 
 fn case_table(study: &StudyOutput) -> String {
@@ -160,7 +182,10 @@ fn case_table(study: &StudyOutput) -> String {
             study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(page::value).unwrap_or_default()),
         );
         row.push(status_word(case.status).replace('_', " "));
-        row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));
+        row.push(case.load_factor.map_or("–".into(), |factor| match open_bounds(case) {
+            Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+            None => format_number(factor, 7),
+        }));
         let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
         row.extend(with_load.then_some(force));
         row.push(
@@ -169,13 +194,15 @@ fn case_table(study: &StudyOutput) -> String {
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| {
             format!("{}{}", kind_words(m.kind), if m.unique == Some(false) { ", not unique" } else { "" })
         }));
-        let joints = case.mechanism.iter().flat_map(|m| &m.hinges).map(|h| h.joint.to_string()).collect::<Vec<_>>();
+        let joints = case.mechanism.as_ref().map(hinge_list).unwrap_or_default();
         row.push(if joints.len() > 12 { format!("{} joints", joints.len()) } else { joints.join(", ") });
         row.push(if case.certificate.passed { "passed" } else { "failed" }.into());
         row.push(format_seconds(case.seconds));
         row
     });
-    page::table(&header, rows)
+    let joined = cases.iter().filter_map(|case| case.mechanism.as_ref()).flat_map(hinge_list).any(|g| g.contains('+'));
+    let words = if joined { "<p>Joints joined by + are neighbours that count as one hinge.</p>\n" } else { "" };
+    page::table(&header, rows) + words
 }
 
 fn notes(cases: &[CaseResult]) -> String {
@@ -192,12 +219,18 @@ fn notes(cases: &[CaseResult]) -> String {
 fn figures(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut text = format!("<h2>Figures</h2>\n{}", page::MEANING);
-    if cases.len() > drawn {
-        text += &format!("<p>{} cases: the first {drawn} are drawn here.</p>\n", cases.len());
+    let chosen = || cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id));
+    match chosen().count() {
+        count if count > drawn => text += &format!("<p>{count} cases: the first {drawn} are drawn here.</p>\n"),
+        count if count < cases.len() => {
+            text += &format!("<p>{} cases: the {count} worst or best of them are drawn.</p>\n", cases.len());
+        }
+        _ => {}
     }
-    for (place, case) in cases.iter().take(drawn).enumerate() {
+    let first = chosen().next().map(|(place, _)| place);
+    for (place, case) in chosen().take(drawn) {
         let Some((assembly, stages)) = study.scene(place) else { continue };
-        let open = if place == 0 && cases.len() <= drawn { " open" } else { "" };
+        let open = if Some(place) == first && chosen().count() <= drawn { " open" } else { "" };
         let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
         let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.label.id));
@@ -251,7 +284,7 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
                     point still closed, and slides when all its closed points slide the same way. What moves only in the \
                     collapse mechanism stands last, at the collapse load.</p>\n"
         .to_string();
-    if study.output.figures {
+    if study.output.figures.anything() {
         for (_, chart) in curve_charts(study) {
             text += &format!("<figure>{chart}<figcaption>{CURVE}</figcaption></figure>\n");
         }
@@ -307,8 +340,8 @@ fn certificates(cases: &[CaseResult]) -> String {
         row
     });
     format!(
-        "<h2>Certificates</h2>\n<p>Relative residuals, recomputed from the scene by code that shares nothing with the solver; \
-         0 is perfect.</p>\n{}",
+        "<h2>Certificates</h2>\n<p>Relative residuals, recomputed from the scene; 0 is perfect. Those of limit \
+         analysis share nothing with the solver; those of paths share the elastic blocks and the rule by which contact points slide.</p>\n{}",
         page::table(&header, rows)
     )
 }

@@ -1,8 +1,11 @@
 //! What writers are given: the results and what they were computed from.
 
-use crate::results::StudyResults;
-use crate::study::{Case, Output, Study};
+use crate::results::{CaseResult, StudyResults, load_rank};
+use crate::study::{Case, Drawn, Output, Study};
+use serde_json::Value as Json;
 use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Stage};
 
 /// A study with its results.
@@ -18,6 +21,8 @@ pub struct StudyOutput<'a> {
     pub sweep_keys: Vec<String>,
     /// What is wanted besides the results.
     pub output: Output,
+    /// Ids of the cases that are drawn, where not all are.
+    pub drawn: Option<BTreeSet<usize>>,
 }
 
 /// The scene of a case.
@@ -46,11 +51,39 @@ impl<'a> StudyOutput<'a> {
             scenes: cases.iter().map(scene).collect(),
             sweep_keys: swept.map(|parameters| parameters.keys().cloned().collect()).unwrap_or_default(),
             output: study.output.clone(),
+            drawn: drawn(study, results),
         }
+    }
+
+    /// Whether a case is drawn.
+    pub fn drawn(&self, id: usize) -> bool {
+        self.drawn.as_ref().is_none_or(|drawn| drawn.contains(&id))
     }
 
     /// Assembly and stages of the case at this place in the list; `None` where they are missing.
     pub fn scene(&self, place: usize) -> Option<(&'a Assembly, &'a [Stage])> {
         self.scenes.get(place).map(|scene| (scene.assembly, scene.stages))
     }
+}
+
+/// The cases that are drawn, where not all are: of kinds that search those they found, else the least load factor of
+/// each variant and its first case without an answer.
+fn drawn(study: &Study, results: &StudyResults) -> Option<BTreeSet<usize>> {
+    for found in ["worsts", "optima"] {
+        let Some(entries) = results.own.get(found).and_then(Json::as_array) else { continue };
+        let of = |entry: &Json| [entry["case"].as_u64(), entry["best_finite"]["case"].as_u64()];
+        return Some(entries.iter().flat_map(of).flatten().map(|id| id as usize).collect());
+    }
+    (study.output.figures == Drawn::Worst).then(|| {
+        let rank = |case: &CaseResult| load_rank(case).unwrap_or(f64::INFINITY);
+        let mut least: BTreeMap<_, &CaseResult> = BTreeMap::new();
+        for case in &results.cases {
+            let of = (&case.label.variant, case.status == Status::Stalled);
+            let own = least.entry(of).or_insert(case);
+            if rank(case) < rank(own) {
+                *own = case;
+            }
+        }
+        least.values().map(|case| case.label.id).collect()
+    })
 }

@@ -1,7 +1,9 @@
 //! The table on the terminal.
 
 use super::study_output::StudyOutput;
-use crate::figures::format::{format_number, format_value, key_with_unit, kind_word, status_word};
+use crate::figures::format::{
+    format_number, format_short, format_value, hinge_list, key_with_unit, kind_word, open_bounds, status_word,
+};
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use voussoir_core::limit::Status;
@@ -69,9 +71,11 @@ fn factor(case: &CaseResult) -> String {
     match (case.status, case.load_factor) {
         (Status::Unbounded, _) => "unbounded".into(),
         (_, Some(factor)) => {
-            match case.path.first_limit_point.filter(|first| (first - factor).abs() > 1e-9 * factor.abs()) {
-                Some(first) => format!("{} (first {})", format_number(factor, 7), format_number(first, 5)),
-                None => format_number(factor, 7),
+            let first = case.path.first_limit_point.filter(|first| (first - factor).abs() > 1e-9 * factor.abs());
+            match (open_bounds(case), first) {
+                (Some([proved, _]), _) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+                (None, Some(first)) => format!("{} (first {})", format_number(factor, 7), format_number(first, 5)),
+                (None, None) => format_number(factor, 7),
             }
         }
         (_, None) => "-".into(),
@@ -80,7 +84,7 @@ fn factor(case: &CaseResult) -> String {
 
 fn hinges(case: &CaseResult) -> String {
     let Some(mechanism) = &case.mechanism else { return String::new() };
-    let joints: Vec<String> = mechanism.hinges.iter().map(|h| h.joint.to_string()).collect();
+    let joints = hinge_list(mechanism);
     if joints.len() > 8 { format!("{} joints", joints.len()) } else { joints.join(" ") }
 }
 

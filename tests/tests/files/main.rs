@@ -1,5 +1,8 @@
 //! Studies and results as files: read back unchanged, and every changed number found.
 
+mod figures;
+mod forgery;
+mod labels;
 mod lower_bound;
 mod pages;
 mod round_trip;

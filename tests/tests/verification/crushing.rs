@@ -38,6 +38,7 @@ fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<
         stop_displacement: Some(0.045),
         stop_factor: None,
         continuation: None,
+        stages: Vec::new(),
     };
     let mut seen = Seen { states: Vec::new(), checker: PathChecker::new(true) };
     let answer = NewtonPath {}.trace(&problem, &settings, &mut seen);

@@ -15,7 +15,14 @@ use voussoir_tests::seen::Record;
 use voussoir_tests::{answered, assert_close, first_case};
 
 fn settings(stop_displacement: Option<f64>, continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
-    PathSettings { finite: true, tolerance: 1e-9, stop_displacement, stop_factor: None, continuation }
+    PathSettings {
+        finite: true,
+        tolerance: 1e-9,
+        stop_displacement,
+        stop_factor: None,
+        continuation,
+        stages: Vec::new(),
+    }
 }
 
 fn followed(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Vec<PathState>) {

@@ -2,7 +2,7 @@
 //! Casapulla & Ahmed (2006), Computers & Structures 84, and cases that follow from statics alone.
 
 use voussoir::core::limit::Status;
-use voussoir::results::{CaseResult, StudyResults};
+use voussoir::results::CaseResult;
 use voussoir::solve_case;
 use voussoir::study::load;
 use voussoir::verify::verify;
@@ -201,14 +201,7 @@ fn results_are_verified_and_changes_found() {
         let original = study(&wall(Wall::of_rows(&rows), COULOMB, &format!("solver = \"{solver}\"")));
         let resolved = toml::to_string(&original.resolved).expect("a study can be written");
         let again = load(&resolved, "resolved.toml", &[]).expect("and read");
-        let cases = original.cases.iter().map(solve_case).collect();
-        let results = StudyResults {
-            study: original.name,
-            version: "test".into(),
-            cases,
-            comparison: None,
-            own: Default::default(),
-        };
+        let results = original.results("test", original.cases.iter().map(solve_case).collect());
         assert_eq!(results.cases[0].status, Status::Collapse, "{solver}: {:?}", results.cases[0].notes);
         assert_eq!(verify(&again, &results), vec![]);
         let changes: [fn(&mut CaseResult); 6] = [

@@ -1,22 +1,29 @@
 //! Somebody else's answers: closed forms, published numbers, independent programs.
 
 mod arch;
+mod bridge;
+mod bridge_envelope;
 mod cap;
 mod cohesive;
 mod compare;
 mod contact;
 mod crushing;
 mod elements;
+mod energy;
 mod event;
+mod extreme_strengths;
 mod finite;
 mod flow_rule;
 mod force_method;
 mod newton;
+mod optimise;
 mod orthotropic;
 mod path_certificate;
 mod paths_read;
 mod plastic;
 mod semicircle;
+mod settled;
+mod settlements;
 mod snap_through;
 mod softening;
 mod statuses;

@@ -433,13 +433,7 @@ fn solvers_say_what_they_can() {
     let study = voussoir_tests::study(&press.study());
     let result = voussoir::solve_case(&study.cases[0]);
     assert_eq!((result.solver.as_str(), result.status), ("newton_path", Status::Stands), "{:?}", result.notes);
-    let mut results = voussoir::results::StudyResults {
-        study: study.name.clone(),
-        version: String::new(),
-        comparison: None,
-        own: Default::default(),
-        cases: vec![result],
-    };
+    let mut results = study.results("", vec![result]);
     assert!(!results.cases[0].path.yielded.is_empty());
     assert_eq!(voussoir::verify::verify(&study, &results), vec![]);
     results.cases[0].path.yielded[0].points[0].3[1] *= 1.001;

@@ -22,8 +22,14 @@ fn followed(
     let case = first_case(text);
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
     let mut record = Record::default();
-    let settings =
-        PathSettings { finite: true, tolerance: 1e-9, stop_displacement: Some(stop), stop_factor: None, continuation };
+    let settings = PathSettings {
+        finite: true,
+        tolerance: 1e-9,
+        stop_displacement: Some(stop),
+        stop_factor: None,
+        continuation,
+        stages: Vec::new(),
+    };
     let answer = NewtonPath {}.trace(&problem, &settings, &mut record);
     (problem, answer, record.0)
 }

@@ -1,6 +1,7 @@
 //! Checks every state of a path and keeps the worst of each residual.
 
 use super::displaced::Displaced;
+use super::energy::EnergyBalance;
 use super::response::law_residual;
 use super::structure::path_structure;
 use crate::law::{Facet, FacetMode};
@@ -28,6 +29,7 @@ pub struct PathChecker {
     last: Option<(usize, f64)>,
     memory: Option<Vec<f64>>,
     greatest: f64,
+    energy: EnergyBalance,
 }
 
 /// Keeps the worse of two residuals; a NaN stays.
@@ -127,7 +129,9 @@ impl PathChecker {
         }
         let stored = displaced.stored().unwrap_or(state.stored);
         let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());
-        self.note("path_energy", (state.work - stored - state.dissipated).abs() / energy.max(1e-300));
+        let floor = 1e-12 * self.greatest * problem.length;
+        let share = self.energy.add(problem.load_steps[state.load_step].stage, state, stored, floor);
+        self.worst.insert("path_energy", share);
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
         self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));
         self.last = Some((state.load_step, state.dissipated));

@@ -11,7 +11,7 @@ pub fn power_residual(problem: &PathProblem, loading: &Loading, motion: &[[f64; 
 
 /// `path_ray`: whether rates of contact forces carry any amount of a loading: what they leave of it
 /// on a free body (moments divided by the scene's length), or their greatest excess over a facet of
-/// the recession cone, relative to the sum of all of them; NaN where there are none.
+/// the recession cone, relative to the sum of all of them; NaN where there are none under a load.
 pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) -> f64 {
     let mut sum = problem.wrenches(loading);
     let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
@@ -29,7 +29,12 @@ pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) 
     for (w, _) in sum.iter().zip(&problem.bodies).filter(|(_, body)| !body.held) {
         worst = worst.max(w[0].hypot(w[1])).max(w[2].abs() / problem.length);
     }
-    if size.is_finite() { worst / size } else { f64::NAN }
+    match size.is_finite() {
+        // A support that moves asks for no forces.
+        true if worst == 0.0 => 0.0,
+        true => worst / size,
+        false => f64::NAN,
+    }
 }
 
 /// Checks a mechanism against a field: how far the jumps leave the flow of the facets that yield,

@@ -18,7 +18,9 @@
 //!   recorded displacements and history;
 //! - `path_yield`: how much the law would still change that history, relative to the greatest strain: 0
 //!   where no stress lies beyond the yield surface (a block recorded as elastic yields nowhere);
-//! - `path_energy`: |work − stored − dissipated|, relative to the work (a step's error: no bound);
+//! - `path_energy`: what the work of loads and settled supports leaves of the energy stored and dissipated, in a stage
+//!   and in its worst step, relative to Σ|work| + |stored| + dissipated of that stage, the worst of all stages: 1e-3
+//!   for paths of steps, rounding for exact ones;
 //!
 //! and of what is claimed at a path's end:
 //!
@@ -29,6 +31,7 @@
 mod checker;
 mod claims;
 mod displaced;
+mod energy;
 mod response;
 mod structure;
 mod tolerance;

@@ -6,7 +6,7 @@
 //! Order is the convention between the two: bodies by their first block, contact points joint by joint along each.
 
 use crate::elastic::{Condenser, breaks_on_joint, union_breaks};
-use crate::law::PlanarUpdate;
+use crate::law::{Facet, PlanarUpdate};
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint, Stage, Target};
@@ -38,6 +38,7 @@ pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProbl
         }
     }
     stiffen_shared_places(&mut read, assembly)?;
+    read_fill(&mut read, assembly, stages)?;
     read.load_steps = load_steps_of(&mut read, assembly, stages);
     condense(&mut read, assembly)?;
     Ok(read)
@@ -190,7 +191,8 @@ fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
     for (stage, own) in stages.iter().enumerate() {
         let now = own.gravity.unwrap_or(before);
         if now != before {
-            let loading = Loading { acceleration: now - before, ..Loading::default() };
+            let mut loading = Loading { acceleration: now - before, ..Loading::default() };
+            fill_at_gravity(read, assembly, now - before, &mut loading);
             steps.push(LoadStep { stage, gravity: true, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) });
         }
         before = now;
@@ -226,6 +228,70 @@ fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
         steps.extend(ends.into_iter().map(step));
     }
     steps
+}
+
+/// Weight and least pressure of the fill under a gravity, as loads.
+fn fill_at_gravity(read: &mut PathProblem, assembly: &Assembly, gravity: Vec2, loading: &mut Loading) {
+    let Some(bridge) = &assembly.bridge else { return };
+    let weights = bridge.masses.iter().map(|fill| (fill.body, fill.point, gravity * fill.mass));
+    let least = bridge.reactions.iter().map(|reaction| {
+        let [least, _] = reaction.bounds((-gravity.y).max(0.0));
+        (reaction.body, reaction.point, reaction.direction * least)
+    });
+    for (block, point, force) in weights.chain(least).filter(|(_, _, force)| force.norm() > 0.0) {
+        let body = read.body_of[block];
+        let slot = assembly.is_deformable(block).then(|| {
+            read.bodies[body].points.push(point);
+            read.bodies[body].points.len() - 1
+        });
+        loading.forces.push((body, slot, point, force));
+    }
+}
+
+/// Reactions of the fill: what they may press beyond their least force, on ground that does not move.
+fn read_fill(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Result<(), String> {
+    let reactions = assembly.fill_reactions();
+    if reactions.is_empty() {
+        return Ok(());
+    }
+    let gravities: Vec<Vec2> = stages.iter().filter_map(|stage| stage.gravity).collect();
+    if gravities.windows(2).any(|pair| pair[0] != pair[1]) {
+        return Err("gravity changes between stages, and the strength of the fill with it".into());
+    }
+    let down = gravities.first().map_or(0.0, |gravity| (-gravity.y).max(0.0));
+    let ground = read.bodies.len();
+    read.bodies.push(PathBody { held: true, ..PathBody::default() });
+    for (index, reaction) in reactions.iter().enumerate() {
+        let ([least, greatest], body) = (reaction.bounds(down), read.body_of[reaction.body]);
+        if greatest <= least || read.bodies[body].held {
+            continue;
+        }
+        let area: f64 = reaction.parts.iter().map(|part| part.area).sum();
+        let strength = Facet::crushing((greatest - least) / area);
+        let law: Vec<Facet> =
+            [Facet::opening(0.0), strength].into_iter().chain(Facet::friction(0.0, 0.0, 0.0)).collect();
+        let slot = assembly.is_deformable(reaction.body).then(|| {
+            read.bodies[body].points.push(reaction.point);
+            read.bodies[body].points.len() - 1
+        });
+        read.contacts.push(Contact {
+            joint: assembly.joints.len() + index,
+            position: reaction.point,
+            normal: reaction.direction,
+            tangent: turned(reaction.direction),
+            minus: Attachment { body: ground, slot: None },
+            plus: Attachment { body, slot },
+            area,
+            gap: 0.0,
+            law: PointLaw::Facets(law.into()),
+            compliance: [reaction.stiffness().map_or(0.0, f64::recip); 2],
+            sliding: Sliding {
+                share: if slot.is_some() { 0.5 } else { 0.0 },
+                slip: [f64::NEG_INFINITY, f64::INFINITY],
+            },
+        });
+    }
+    Ok(())
 }
 
 /// What deformable blocks do under forces on their points.

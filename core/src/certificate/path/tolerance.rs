@@ -25,6 +25,7 @@ pub const TOLERANCES: &[Tolerance] = &[
     Tolerance { name: "path_yield", result: 1e-8, claim: 1e-8 },
     Tolerance { name: "path_forces", result: 1e-6, claim: 1e-6 },
     Tolerance { name: "path_dissipation", result: 1e-8, claim: f64::INFINITY },
+    Tolerance { name: "path_energy", result: 1e-3, claim: f64::INFINITY },
     Tolerance { name: "path_flow", result: 1e-6, claim: 1e-6 },
     Tolerance { name: "path_power", result: 1e-6, claim: 1e-6 },
     Tolerance { name: "path_ray", result: 1e-9, claim: 1e-6 },

@@ -15,6 +15,9 @@ pub struct Chain {
 
 /// The problem's bodies as chains that each begin at a support, if they are that.
 pub fn chains(problem: &LimitProblem) -> Option<Vec<Chain>> {
+    if problem.joints.iter().any(|joint| joint.fill.is_some()) {
+        return None;
+    }
     let mut joints_of: Vec<Vec<usize>> = vec![Vec::new(); problem.groups];
     let mut at_ground = Vec::new();
     for (index, joint) in problem.joints.iter().enumerate() {

@@ -54,7 +54,9 @@ pub enum Outcome {
     Optimal(Solved),
     /// A direction with objective 1 that no row bounds.
     Unbounded(Vec<f64>),
-    Infeasible,
+    /// No point satisfies all rows: columns with Σ y_i a_i = 0 and β·y < 0, y ≥ 0, a motion that refutes
+    /// equilibrium.
+    Infeasible(Vec<(Column, f64)>),
     Failed(String),
 }
 
@@ -72,8 +74,12 @@ struct Basis {
 }
 
 enum Ending {
-    Optimal { point: DVector<f64>, weights: DVector<f64> },
-    NoLeaving,
+    Optimal {
+        point: DVector<f64>,
+        weights: DVector<f64>,
+    },
+    /// A column that enters for ever, with its weight and those of the basis that go with it.
+    NoLeaving(Vec<(Column, f64)>),
     Stuck(String),
 }
 
@@ -274,7 +280,7 @@ impl<'a> Program<'a> {
                     return (Outcome::Unbounded((point.clone() / point[m - 1]).as_slice().to_vec()), work);
                 }
                 Ending::Optimal { .. } => {}
-                Ending::NoLeaving => {
+                Ending::NoLeaving(_) => {
                     return (Outcome::Failed("phase one has no optimum".into()), work);
                 }
                 Ending::Stuck(why) => return (Outcome::Failed(why), work),
@@ -286,7 +292,7 @@ impl<'a> Program<'a> {
             let last = Some(&block_tolerance) == BLOCK_TOLERANCES.last();
             outcome = match self.iterate(&mut basis, false, block_tolerance, &mut work) {
                 Ending::Optimal { point, weights } => self.finish(&basis, point, weights, last, &mut work),
-                Ending::NoLeaving => Outcome::Infeasible,
+                Ending::NoLeaving(refutation) => Outcome::Infeasible(refutation),
                 Ending::Stuck(why) => Outcome::Failed(why),
             };
             if !matches!(outcome, Outcome::Failed(_)) {
@@ -334,7 +340,10 @@ impl<'a> Program<'a> {
             };
             let reference = lu.solve(&basis.origin).unwrap_or_else(|| DMatrix::identity(m, m));
             let Some(leaving) = leaving(&weights, &change, &reference) else {
-                return Ending::NoLeaving;
+                let steady =
+                    basis.columns.iter().zip(change.iter()).map(|(&column, change)| (column, (-change).max(0.0)));
+                let moving = steady.chain([(column, 1.0)]).filter(|(_, weight)| *weight > 0.0);
+                return Ending::NoLeaving(moving.collect());
             };
             basis.columns[leaving] = column;
             basis.matrix.set_column(leaving, &a);

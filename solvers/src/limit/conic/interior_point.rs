@@ -27,9 +27,24 @@ pub enum Word {
     Other(String, u64),
 }
 
-/// Solves a system.
+/// Strength in units of the loads from which on a block u² ≤ F w is as good as its plane 0 ≤ w at the start of a
+/// polish; as a cone its entries would differ by more than the solver's scaling mends.
+const FLAT: f64 = 1e6;
+
+/// Solves a system; blocks far beyond the loads by their planes first, by their cones where planes leave θ free.
 pub fn solve(system: &System) -> Word {
-    let (e, l) = (system.equations.len(), system.rows.len());
+    match solve_with(system, FLAT) {
+        Word::Pair(pair, iterations) => Word::Pair(pair, iterations),
+        other if system.blocks.iter().all(|block| block.strength.total < FLAT) => other,
+        _ => solve_with(system, f64::INFINITY),
+    }
+}
+
+fn solve_with(system: &System, flat: f64) -> Word {
+    let e = system.equations.len();
+    let (planes, cones): (Vec<usize>, Vec<usize>) =
+        (0..system.blocks.len()).partition(|&k| system.blocks[k].strength.total >= flat);
+    let l = system.rows.len() + planes.len();
     let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
     let mut right: Vec<f64> = system.right.clone();
     let mut push = |i: usize, j: usize, v: f64| {
@@ -44,10 +59,16 @@ pub fn solve(system: &System) -> Word {
         row.iter().for_each(|&(j, v)| push(e + i, j, v));
     }
     right.extend(&system.bounds);
+    for (i, &k) in planes.iter().enumerate() {
+        let block = &system.blocks[k];
+        push(e + system.rows.len() + i, block.normal[block.end], -2.0);
+        right.push(block.strength.tension);
+    }
     // u² ≤ F w as |(2u, F/κ − κ w)| ≤ F/κ + κ w, κ balancing the entries.
     let balance = |total: f64| total.max(1e-12).sqrt();
-    for (k, block) in system.blocks.iter().enumerate() {
-        let first = e + l + 3 * k;
+    for (place, &k) in cones.iter().enumerate() {
+        let block = &system.blocks[k];
+        let first = e + l + 3 * place;
         let (tension, kappa) = (block.strength.tension, balance(block.strength.total));
         let scaled = block.strength.total / kappa;
         let end = block.normal[block.end];
@@ -60,8 +81,8 @@ pub fn solve(system: &System) -> Word {
     let p = CscMatrix::<f64>::zeros((system.variables, system.variables));
     let mut q = vec![0.0; system.variables];
     q[system.theta] = -1.0;
-    let mut cones = vec![SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(l)];
-    cones.extend(system.blocks.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
+    let mut sets = vec![SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(l)];
+    sets.extend(cones.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
     let settings = DefaultSettings::<f64> {
         verbose: false,
         max_iter: 200,
@@ -71,7 +92,7 @@ pub fn solve(system: &System) -> Word {
         max_threads: 1,
         ..DefaultSettings::default()
     };
-    let mut solver = match DefaultSolver::new(&p, &q, &a, &right, &cones, settings) {
+    let mut solver = match DefaultSolver::new(&p, &q, &a, &right, &sets, settings) {
         Ok(solver) => solver,
         Err(error) => {
             return Word::Other(format!("the conic solver refused the problem: {error:?}"), 0);
@@ -89,15 +110,17 @@ pub fn solve(system: &System) -> Word {
         // Whatever it calls its end, the polish and the certificate decide what the pair is worth.
         _ if finite => {
             let z = &solution.z;
-            let blocks = system.blocks.iter().enumerate().map(|(k, block)| {
-                let first = e + l + 3 * k;
-                balance(block.strength.total) * (z[first] - z[first + 2])
-            });
+            let mut blocks = vec![0.0; system.blocks.len()];
+            planes.iter().enumerate().for_each(|(i, &k)| blocks[k] = z[e + system.rows.len() + i]);
+            for (place, &k) in cones.iter().enumerate() {
+                let first = e + l + 3 * place;
+                blocks[k] = balance(system.blocks[k].strength.total) * (z[first] - z[first + 2]);
+            }
             let pair = Pair {
                 x: solution.x.clone(),
                 equations: z[..e].to_vec(),
-                rows: z[e..e + l].to_vec(),
-                blocks: blocks.collect(),
+                rows: z[e..e + system.rows.len()].to_vec(),
+                blocks,
             };
             Word::Pair(pair, iterations)
         }

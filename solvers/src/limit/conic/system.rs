@@ -75,22 +75,22 @@ pub struct Loads<'a> {
     pub force: f64,
 }
 
-/// Rows and crushing of one joint from its first variable on.
+/// Rows and crushing of one joint, of whose variables the first and their number are given.
 fn strength_rows(
     joint: &LimitJoint,
-    first: usize,
-    shear: bool,
+    (first, own): (usize, usize),
     loads: &Loads,
     (rows, bounds, blocks): (&mut Vec<Row>, &mut Vec<f64>, &mut Vec<Block>),
 ) {
     for row in &joint.strength.rows {
-        let entries: Row = (0..if shear { 3 } else { 2 })
-            .filter(|&k| row.normal[k] != 0.0)
-            .map(|k| (first + k, row.normal[k]))
-            .collect();
+        let bound = if loads.strengths { row.bound / loads.force } else { 0.0 };
+        // Bounds of the fill may be far beyond all loads: their rows are kept of size one.
+        let scale = if joint.fill.is_some() { 1.0 / bound.max(1.0) } else { 1.0 };
+        let entries: Row =
+            (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k] * scale)).collect();
         if !entries.is_empty() {
             rows.push(entries);
-            bounds.push(if loads.strengths { row.bound / loads.force } else { 0.0 });
+            bounds.push(bound * scale);
         }
     }
     match joint.strength.block {
@@ -125,8 +125,8 @@ impl System {
         let mut equations = forces.equilibrium(problem);
         let mut right = vec![0.0; 3 * problem.groups];
         let (mut rows, mut bounds, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
-        for (joint, &(first, shear)) in problem.joints.iter().zip(&forces.joints) {
-            strength_rows(joint, first, shear, loads, (&mut rows, &mut bounds, &mut blocks));
+        for (joint, &own) in problem.joints.iter().zip(&forces.joints) {
+            strength_rows(joint, own, loads, (&mut rows, &mut bounds, &mut blocks));
         }
         for group in 0..problem.groups {
             for i in 0..3 {

@@ -87,6 +87,8 @@ impl Bound {
             let slot = match shear {
                 Some(v) if v > 0.0 => 2,
                 Some(_) => 3,
+                // The upper bound of a force of the fill.
+                None if systems.variables.joints[joint].1 == 1 && pair.normal[0].1 > 0.0 => 1,
                 None => force - first,
             };
             (4 * problem.joints[joint].joint + slot) as i64
@@ -373,8 +375,8 @@ impl Program {
     /// The rows for θ ≤ t with products up to `reach`; `None` where they are more than `most`.
     fn new(systems: &Systems, problem: &LimitProblem, t: f64, reach: usize, most: usize) -> Option<Self> {
         let mut joint_of = vec![0; systems.forces];
-        for (k, &(first, shear)) in systems.variables.joints.iter().enumerate() {
-            (first..first + if shear { 3 } else { 2 }).for_each(|j| joint_of[j] = k);
+        for (k, &(first, own)) in systems.variables.joints.iter().enumerate() {
+            (first..first + own).for_each(|j| joint_of[j] = k);
         }
         let (theta, one) = (systems.forces, systems.forces + 1);
         let columns = Columns { of: HashMap::from([((0, theta), 0)]), one: (0, one) };

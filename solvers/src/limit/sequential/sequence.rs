@@ -218,8 +218,7 @@ fn field_yielding(
 ) -> Option<(Vec<JointForce>, f64)> {
     let mut yielding = problem.clone();
     let mut pair = 0;
-    for (joint, &(_, shear)) in yielding.joints.iter_mut().zip(&systems.variables.joints) {
-        let count = if shear { 3 } else { 2 };
+    for (joint, &(_, count)) in yielding.joints.iter_mut().zip(&systems.variables.joints) {
         for index in 0..joint.strength.rows.len() {
             let mut row = joint.strength.rows[index];
             if row.normal[..count].iter().all(|a| *a == 0.0) {

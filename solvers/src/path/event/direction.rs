@@ -132,7 +132,9 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Dire
         let local = SchurComplement::new((system, &state.points), base, at, &open, &modes, &mut log.counts.solves)?;
         let guess: Vec<ContactMode> = open.iter().map(|c| modes[*c]).collect();
         let rate = active_set(&local.rate, guess.clone(), &mut log.counts.rates.trials);
-        let rate = rate.or_else(|| local.rate.at_constant_load(&guess))?;
+        // A moving support does no work on a mechanism: where it can move on, it does.
+        let standing = || if load.settles { None } else { local.rate.at_constant_load(&guess) };
+        let rate = rate.or_else(standing)?;
         let mut rates = rates_of(&local, base, at, &rate, (&open, &mut modes))?;
         log.counts.solves += rates.refinements;
         let forces = 2 * system.contacts;
@@ -144,7 +146,7 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Dire
             factors.refine_columns = true;
             continue;
         }
-        let moved = leaving((system, &state.points), &rates, active, &modes)?;
+        let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
         if moved.is_empty() {
             let rates = solved_anew(trace, rates, load, &modes);
             return (rates.worst <= BELIEVED[0]).then(|| take(trace, modes, rates, load));
@@ -294,7 +296,7 @@ fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<D
         let mut base = FactorisedModes::new(system, modes.clone(), trace.factors.refine_columns)?;
         let x = base.load_rate(system, trace.state.load_step, load)?.clone();
         let rates = Rates::new(system, x, 1.0, load);
-        let mut changes = leaving((system, &trace.state.points), &rates, active, &modes)?;
+        let mut changes = leaving((system, &trace.state.points), (&rates, load), active, &modes)?;
         if changes.is_empty() {
             if residual(system, &rates, load, &modes).0 > BELIEVED[0] {
                 return None;

@@ -17,6 +17,9 @@ const MOST_RESTS: u32 = 32;
 /// Residual of flow up to which a mechanism belongs to the limit point.
 const SAME_MECHANISM: f64 = 1e-6;
 
+/// Factors that differ by less than this share of them are the same.
+const SAME_FACTOR: f64 = 1e-10;
+
 /// How a path ended.
 enum End {
     /// The loads are carried.
@@ -25,8 +28,8 @@ enum End {
     LimitPoint,
     /// Not followed further, and why.
     Stalled(String),
-    /// A direction without end under a load, and the sense of λ.
-    Ray(Box<Direction>, Box<Load>, f64),
+    /// A direction without end under a load.
+    Ray(Box<Direction>, Box<Load>),
 }
 
 /// One load step while it is followed.
@@ -47,18 +50,48 @@ struct Run {
 struct Follower<'a> {
     trace: Trace<'a>,
     sections: Option<Sections>,
-    limit_point: Option<PathState>,
+    limits: LimitPoints,
+}
+
+/// The limit points of a load step.
+#[derive(Default)]
+struct LimitPoints {
+    /// The greatest.
+    greatest: Option<PathState>,
+    /// Displacement of the load at the last \[m\].
+    last: f64,
+    /// Whether λ has not grown since.
+    falling: bool,
+    /// How many.
+    count: u64,
+}
+
+impl LimitPoints {
+    /// Notes one.
+    fn add(&mut self, state: PathState, sense: f64) {
+        (self.last, self.falling) = (state.displacement, true);
+        self.count += 1;
+        if self.greatest.as_ref().is_none_or(|greatest| (state.factor - greatest.factor) * sense > 0.0) {
+            self.greatest = Some(state);
+        }
+    }
+
+    /// Whether a factor lies above all of them.
+    fn below(&self, factor: f64, sense: f64) -> bool {
+        let above = |greatest: &PathState| (factor - greatest.factor) * sense > SAME_FACTOR * greatest.factor.abs();
+        self.greatest.as_ref().is_none_or(above)
+    }
 }
 
 /// Follows all load steps of a problem.
 pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
     let trace = Trace::new(problem, settings, observer);
     let sections = Sections::new(&trace.system, problem);
-    let mut follower = Follower { trace, sections, limit_point: None };
+    let mut follower = Follower { trace, sections, limits: LimitPoints::default() };
     for load_step in 0..problem.load_steps.len() {
         let mut run = begin(&mut follower, load_step);
         if follower.trace.last.is_none() && !follower.trace.record() {
-            return finish(follower, End::Stalled("stopped by its observer".into()));
+            return finish(follower, End::Stalled("stopped by its observer".into()), run.sense);
         }
         let ended = loop {
             match step(&mut follower, &mut run) {
@@ -68,15 +101,15 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
             }
         };
         if let Some(end) = ended {
-            return finish(follower, end);
+            return finish(follower, end, run.sense);
+        }
+        if follower.limits.greatest.is_some() {
+            let factor = follower.trace.state.factor;
+            follower.trace.log.notes.push(format!("beyond the limit point λ rose again to {factor}"));
+            return finish(follower, End::LimitPoint, run.sense);
         }
     }
-    if follower.limit_point.is_none() {
-        return finish(follower, End::Stands);
-    }
-    let factor = follower.trace.state.factor;
-    follower.trace.log.notes.push(format!("beyond the limit point λ rose again to {factor}"));
-    finish(follower, End::LimitPoint)
+    finish(follower, End::Stands, 1.0)
 }
 
 /// Begins a load step.
@@ -116,6 +149,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
                 "{} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them",
                 run.most_events
             ),
+            run.sense,
         ));
     }
     let direction = direction(follower, run)?;
@@ -131,7 +165,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
-        return Err(End::Ray(Box::new(direction), Box::new(run.load.clone()), run.sense));
+        return Err(End::Ray(Box::new(direction), Box::new(run.load.clone())));
     }
     advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
     if whole && direction.factor > 0.0 {
@@ -144,13 +178,32 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
         trace.log.notes.push("beyond the limit point λ fell back to where the loads began".into());
         return Err(End::LimitPoint);
     }
-    let stops = trace.settings.stop_displacement.is_some_and(|stop| trace.displacement().abs() > stop);
-    if follower.limit_point.is_some() && stops { Err(End::LimitPoint) } else { Ok(true) }
+    stops(follower, run)
+}
+
+/// Whether a load step goes on: it ends as far beyond its last limit point as was asked for.
+fn stops(follower: &Follower, run: &Run) -> Result<bool, End> {
+    let (trace, limits) = (&follower.trace, &follower.limits);
+    if limits.greatest.is_none() {
+        return Ok(true);
+    }
+    let stage = trace.problem.load_steps[trace.state.load_step].stage;
+    let [displacement, factor] = trace.settings.stop(stage);
+    let moved = displacement.is_some_and(|most| (trace.displacement() - limits.last).abs() > most);
+    let fallen = factor.is_some_and(|least| limits.falling && (trace.state.factor - least) * run.sense <= 0.0);
+    match moved || fallen {
+        true if limits.below(trace.state.factor, run.sense) => Err(End::Stalled(format!(
+            "still rising: where the load has moved on by stop.displacement its factor {} is above all limit points",
+            trace.state.factor
+        ))),
+        true => Err(End::LimitPoint),
+        false => Ok(true),
+    }
 }
 
 /// Follows the path by the force method as far as it goes; whether that reached the end of the load step.
 fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
-    if run.rests > 0 || follower.limit_point.is_some() {
+    if run.rests > 0 || follower.limits.greatest.is_some() {
         run.rests = run.rests.saturating_sub(1);
         return Ok(false);
     }
@@ -166,12 +219,15 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
     Ok(false)
 }
 
-/// The direction in which the path goes on; where λ falls for the first time, the limit point is noted.
+/// The direction in which the path goes on; where λ begins to fall, the limit point is noted.
 fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
     let factor = follower.trace.state.factor;
     let excluded = "every combination of the contact points of the active set is excluded";
     let (direction, note) = match next_direction(&mut follower.trace, &run.load) {
-        Next::Go(direction) => return Ok(direction),
+        Next::Go(direction) => {
+            follower.limits.falling &= direction.factor <= 0.0;
+            return Ok(direction);
+        }
         Next::Falling(direction) => (
             Some(direction),
             format!(
@@ -190,20 +246,21 @@ fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
                 "at λ = {factor:.12} no rate of solution has λ rising: {excluded}; whether a rate goes on with λ standing still or falling is not decided"
             ),
         ),
-        Next::Lost(why) => return Err(lost(follower, why)),
+        Next::Lost(why) => return Err(lost(follower, why, run.sense)),
     };
-    if direction.is_none() || follower.limit_point.is_none() {
+    if direction.is_none() || follower.limits.greatest.is_none() {
         follower.trace.log.notes.push(note);
     }
-    if direction.is_some() && follower.limit_point.is_none() {
-        follower.limit_point = Some(follower.trace.present());
+    if !follower.limits.falling && (direction.is_some() || follower.limits.greatest.is_some()) {
+        follower.limits.add(follower.trace.present(), run.sense);
     }
     direction.ok_or(End::LimitPoint)
 }
 
 /// The path cannot be followed further: an answer where a limit point is proven already.
-fn lost(follower: &mut Follower, why: String) -> End {
-    if follower.limit_point.is_none() {
+fn lost(follower: &mut Follower, why: String, sense: f64) -> End {
+    let rises = follower.limits.below(follower.trace.state.factor, sense);
+    if rises {
         return End::Stalled(why);
     }
     follower.trace.log.notes.push(format!("the branch beyond the limit point was not followed to an end: {why}"));
@@ -211,7 +268,7 @@ fn lost(follower: &mut Follower, why: String) -> End {
 }
 
 /// The answer of an end.
-fn finish(mut follower: Follower, end: End) -> PathAnswer {
+fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
     let outcome = match end {
         End::Stands => Outcome::at(Status::Stands, Some(follower.trace.state.factor)),
         End::LimitPoint => Outcome::at(Status::LimitPoint, None),
@@ -219,7 +276,7 @@ fn finish(mut follower: Follower, end: End) -> PathAnswer {
             follower.trace.log.notes.push(why);
             Outcome::at(Status::Stalled, None)
         }
-        End::Ray(direction, load, sense) => ray_outcome(&mut follower, &direction, &load, sense),
+        End::Ray(direction, load) => ray_outcome(&mut follower, &direction, &load, sense),
     };
     answer(follower, outcome)
 }
@@ -243,24 +300,33 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
     let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
     let motion: Vec<[f64; 3]> = trace.bodies(&direction.x).into_iter().map(|b| b.map(|v| v * scale)).collect();
     let gravity = trace.problem.load_steps[trace.state.load_step].gravity;
-    let outcome = match (&follower.limit_point, gravity) {
+    let greatest = follower.limits.below(trace.state.factor, sense);
+    let outcome = match (&follower.limits.greatest, gravity) {
+        (None, true) => Outcome::at(Status::NoEquilibrium, None),
+        (None, false) => Outcome::at(Status::Collapse, Some(trace.state.factor)),
+        (Some(_), false) if greatest => {
+            trace
+                .log
+                .notes
+                .push(format!("the load rose above all limit points again ({} of them)", follower.limits.count));
+            Outcome::at(Status::Collapse, Some(trace.state.factor))
+        }
         (Some(_), _) => {
             trace.log.notes.push("beyond the limit point the path ends in a mechanism".into());
             Outcome::at(Status::LimitPoint, None)
         }
-        (None, true) => Outcome::at(Status::NoEquilibrium, None),
-        (None, false) => Outcome::at(Status::Collapse, Some(trace.state.factor)),
     };
     let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
     // The mechanism belongs to the last state; the one at the limit point may not allow it.
     let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SAME_MECHANISM;
-    let allowed = follower.limit_point.as_ref().is_none_or(allowed);
+    let limit = follower.limits.greatest.as_ref().filter(|_| outcome.status == Status::LimitPoint);
+    let allowed = limit.is_none_or(allowed);
     Outcome { unique, ..outcome.moving(allowed.then_some(motion)) }
 }
 
 /// The answer at the present state, or at the limit point with the present state as its last one.
 fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
-    let Follower { trace, limit_point, .. } = follower;
+    let Follower { trace, limits, .. } = follower;
     let present = trace.present();
     let problem = trace.problem;
     let log = trace.log;
@@ -279,7 +345,7 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     }
     counters.extend(log.counts.rates.decided.iter().map(|(by, count)| (by.name().to_string(), *count)));
     counters.extend(problem.counters.iter().map(|(name, count)| (name.clone(), *count)));
-    let (state, last) = match (outcome.status, limit_point) {
+    let (state, last) = match (outcome.status, limits.greatest) {
         (Status::LimitPoint, Some(limit)) => (limit, Some(present)),
         _ => (present, None),
     };

@@ -34,11 +34,15 @@ impl PathSolver for EventPath {
         follow::follow(problem, settings, observer)
     }
 
+    fn energy_tolerance(&self) -> f64 {
+        1e-9
+    }
+
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
         if settings.finite {
             return Some("it follows small displacements only; newton_path follows finite ones".into());
         }
-        if settings.continuation.as_ref().is_some_and(|c| !ExactEvents::is(&**c)) {
+        if settings.strategies().any(|c| !ExactEvents::is(&**c)) {
             return Some("it goes from event to event and knows no other continuation than exact_events".into());
         }
         if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {

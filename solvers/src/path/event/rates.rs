@@ -12,6 +12,11 @@ pub const MECHANISM: f64 = 1e-8;
 const NEAR_MECHANISM: f64 = 1e-4;
 /// Forces below this share of the motions of a system that is singular to rounding are rounding.
 const SINGULAR: f64 = 1e-6;
+/// Share of a moving support's gaps below which forces (in scaled units) are not compared with themselves: what is
+/// statically determinate moves with it at constant forces, whose rates are rounding.
+const CONSTANT: f64 = 1e-3;
+/// Residual up to which a support moves what is statically determinate at constant forces.
+const AT_CONSTANT_FORCES: f64 = 1e-11;
 /// Relative tolerance of inequalities.
 const INEQUALITY: f64 = 1e-10;
 /// Gap rates above this have no bound.
@@ -67,12 +72,13 @@ impl Rates {
 /// where gaps have no bound.
 pub fn leaving(
     (system, points): (&System, &[Point]),
-    rates: &Rates,
+    (rates, load): (&Rates, &Load),
     active: &[usize],
     modes: &[ContactMode],
 ) -> Option<Vec<(f64, usize, ContactMode)>> {
     let (x, gaps) = (&rates.x, &rates.gaps);
-    let force_size = largest(&x[..2 * system.contacts]);
+    let least = if load.settles { CONSTANT * rates.factor.abs() * load.size } else { 0.0 };
+    let force_size = largest(&x[..2 * system.contacts]).max(least);
     let gap_size = gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
     if gap_size.is_nan() || gap_size > UNBOUNDED {
         return None;
@@ -141,10 +147,24 @@ pub fn motion_alone(
     [1.0, -1.0].into_iter().find_map(|sense| {
         let x = rates.x.iter().enumerate().map(|(i, v)| if i < forces { 0.0 } else { sense * v / size });
         let motion = Rates::new(system, x.collect(), 0.0, load);
-        let moved = leaving((system, points), &motion, active, modes);
+        let moved = leaving((system, points), (&motion, load), active, modes);
         let fits = moved.is_some_and(|moved| moved.iter().all(|m| m.0 <= SINGULAR));
         (fits && residual(system, &motion, load, modes).0 <= SINGULAR).then_some(motion)
     })
+}
+
+/// Rates with a moving support, their forces taken for rounding: `None` where they are more than that, because the
+/// motion alone does not keep the points in their modes or a load grows too.
+fn at_constant_forces((system, points): (&System, &[Point]), (x, factor): (&[f64], f64), load: &Load) -> Option<Rates> {
+    let forces = 2 * system.contacts;
+    let loaded = load.wrench.iter().flatten().any(|w| *w != 0.0);
+    if loaded || largest(&x[..forces]) > MECHANISM * largest(&x[forces..]).max(factor.abs() * load.size) {
+        return None;
+    }
+    let motion = x.iter().enumerate().map(|(i, v)| if i < forces { 0.0 } else { *v });
+    let moved = Rates::new(system, motion.collect(), factor, load);
+    let modes: Vec<ContactMode> = points.iter().map(|p| p.settled().unwrap_or(p.mode)).collect();
+    (residual(system, &moved, load, &modes).0 <= AT_CONSTANT_FORCES).then_some(moved)
 }
 
 /// The direction of rates, with points without a choice in their modes; gaps of stuck points are made exact.
@@ -154,7 +174,12 @@ pub fn direction_of(system: &System, points: &mut [Point], rates: Rates, load: &
     let forces = 2 * system.contacts;
     let stiffest = points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
     let still = if factor == 0.0 { 100.0 * MECHANISM * stiffest } else { MECHANISM };
-    if largest(&x[..forces]) < still * largest(&x[forces..]) {
+    let motions = largest(&x[forces..]);
+    if load.settles && factor != 0.0 && motions * MECHANISM <= factor.abs() * load.size {
+        if let Some(moved) = at_constant_forces((system, points), (&x, factor), load) {
+            (x, gaps) = (moved.x, moved.gaps);
+        }
+    } else if largest(&x[..forces]) < still * motions {
         factor = 0.0;
         x[..forces].fill(0.0);
         let still = Rates::new(system, x, factor, load);

@@ -17,6 +17,8 @@ pub struct Load {
     pub gap: Vec<[f64; 2]>,
     /// Whether it opens any.
     pub opens: bool,
+    /// Whether it moves supports: then what is statically determinate moves at constant forces while λ goes on.
+    pub settles: bool,
     /// Greatest of them all: the size of forces that it causes, in scaled units.
     pub size: f64,
 }
@@ -182,7 +184,8 @@ impl System {
         let opens = gap.iter().flatten().any(|g| *g != 0.0);
         let all = wrench.iter().flatten().chain(gap.iter().flatten());
         let size = all.fold(0.0, |a: f64, v| a.max(v.abs()));
-        Load { wrench, gap, opens, size }
+        let settles = loading.settlements.iter().any(|(_, motion)| *motion != [0.0; 3]);
+        Load { wrench, gap, opens, settles, size }
     }
 
     /// Gaps that forces and motions open: C r + G q, for a vector of all unknowns.

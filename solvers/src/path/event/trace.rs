@@ -143,7 +143,8 @@ impl<'a> Trace<'a> {
 
     fn displacement_of(&self, motion: &[[f64; 3]]) -> f64 {
         let loading = &self.problem.load_steps[self.state.load_step].loading;
-        load_displacement(self.problem, loading, motion, |body, point| rigid(self.problem, motion, body, point))
+        let growing = (loading, self.state.factor);
+        load_displacement(self.problem, growing, motion, |body, point| rigid(self.problem, motion, body, point))
     }
 
     /// Gaps at the present state \[m\].

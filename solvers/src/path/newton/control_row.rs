@@ -8,7 +8,7 @@ use super::monitors::by_motion;
 use super::response::dissipation_gradient;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use crate::path::energy::load_size;
+use crate::path::energy::{load_size, settlement_size};
 use voussoir_core::path::{Constraint, Increment};
 
 /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
@@ -104,10 +104,16 @@ fn add_dissipation(
     add_plastic_work(system, row, state, by / energy);
 }
 
-/// Adds the gradient of the work-conjugate displacement of the growing load.
+/// Adds the gradient of the work-conjugate displacement of the growing load, or of how far supports have moved.
 fn add_load_displacement(system: &StepSystem, state: &State, by: f64, row: &mut [f64]) {
     let loading = system.loads.growing;
-    let scale = by / load_size(system.problem, loading).max(1e-300);
+    let load = load_size(system.problem, loading);
+    if load == 0.0 {
+        let u = system.units();
+        row[system.size() - 1] += by * settlement_size(system.problem, loading) * u.factor / u.displacement;
+        return;
+    }
+    let scale = by / load.max(1e-300);
     let mut wrench = vec![[0.0; 3]; system.unknowns.free.len()];
     for &(body, _, point, force) in &loading.forces {
         let own = by_motion(system, state, body, point, force);

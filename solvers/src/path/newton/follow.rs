@@ -10,9 +10,10 @@ use super::orientation::Orientation;
 use super::peak::{Located, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
 use super::plastic_plateau::note_plateau;
 use super::response::branch_changes;
-use super::softening::{MOST_REFINEMENTS, dissipating_sense, energy_accuracy, softening_peak};
+use super::softening::{dissipating_sense, softening_peak};
 use super::stable_branch::{Departure, leave_unstable};
 use super::state::{State, Tangent};
+use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::termination::{ends_in_ray, no_step, stops};
@@ -131,11 +132,11 @@ fn jump(before: f64, after: f64, gained: f64) -> f64 {
 
 /// Whether a converged step is accurate, has a tangent, and is no jump to another branch.
 fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, trial: Trial) -> StepEnd {
-    let accuracy = energy_accuracy(tracer, &trial.next);
-    if accuracy < 1.0 && following.refinements < MOST_REFINEMENTS {
+    let StepEnergy { growth: accuracy, holds } = step_energy(tracer, &trial.next);
+    if !holds && following.refinements < MOST_REFINEMENTS {
         tracer.system.count("cutbacks", 1);
         following.refinements += 1;
-        return StepEnd::CutBack(following.length * accuracy.max(0.25));
+        return StepEnd::CutBack(following.length * accuracy.clamp(0.25, 0.7));
     }
     following.refinements = 0;
     let (direction, rate, next) = (following.direction, &following.branch.tangent, &trial.next);

@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::control_row::work_along;
-use super::measure::{increment_along, tangent_size};
+use super::measure::{increment_along, motion_size, tangent_size};
 use super::orientation::Orientation;
 use super::response::update_at_rest;
 use super::state::{State, Tangent};
@@ -81,13 +81,11 @@ impl<'d> Following<'d> {
         }
         tracer.limit.rose = None;
         update_at_rest(&mut tracer.system, &mut tracer.state);
-        let Some(first) = tangent_at(&mut tracer.system, &tracer.state, &tracer.state, &Control::Factor(target)) else {
+        let Some(tangent) = first_tangent(tracer, target, direction) else {
             let factor = tracer.state.factor;
             let why = format!("at factor {factor} there is no rate of equilibrium under the growing load");
             return Err(end_path(tracer, Status::Stalled, why));
         };
-        // The rate is per unit Λ of the factor.
-        let tangent = first.scaled(direction);
         let mixed_weight = mixed_weight(tracer);
         let nothing = |one: f64, tracer: &Tracer| one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent);
         if nothing(per_tangent(tracer, &tangent, None), tracer)
@@ -144,6 +142,23 @@ impl<'d> Following<'d> {
         self.previous = None;
         self.length = BRANCH * self.limits.first;
     }
+}
+
+/// The rate with which a load step begins, per unit Λ of the factor. What a settlement has left as a mechanism, small
+/// displacements, moves under a constant load until a joint closes: per unit of the work that the load does on it.
+fn first_tangent(tracer: &mut Tracer, target: f64, direction: f64) -> Option<Tangent> {
+    let first = tangent_at(&mut tracer.system, &tracer.state, &tracer.state, &Control::Factor(target));
+    if first.is_some() || tracer.system.finite() {
+        return first.map(|first| first.scaled(direction));
+    }
+    let control = Control::Mixed { weight: 1.0, length: 1.0 };
+    let mut rate = tangent_at(&mut tracer.system, &tracer.state, &tracer.state, &control)?;
+    let still = 1e-9 * tracer.system.units().factor * motion_size(&tracer.system, &rate);
+    if rate.factor.abs() <= still {
+        rate.factor = 0.0;
+        rate.force.iter_mut().flatten().for_each(|r| *r = 0.0);
+    }
+    Some(rate.scaled(direction))
 }
 
 /// What the strategy measures along a tangent.

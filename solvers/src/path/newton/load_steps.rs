@@ -9,29 +9,20 @@ use super::second_order::{StateStability, second_order_work, stability};
 use super::stable_branch::{Departure, leave_unstable};
 use super::system::StepSystem;
 use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
-use crate::path::energy::{EnergyBalance, load_size};
+use crate::path::continuation::arc_length::ArcLength;
+use crate::path::energy::{EnergyBalance, StageBalance, load_size};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{
-    Continuation, LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability,
-};
+use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability};
 
 /// Follows all load steps.
-pub(super) fn trace(
-    problem: &PathProblem,
-    settings: &PathSettings,
-    strategy: Arc<dyn Continuation>,
-    observer: &mut dyn PathObserver,
-) -> PathAnswer {
-    let monitors = resolve(problem, &strategy.monitors());
-    let built = monitors.and_then(|monitors| Ok((StepSystem::new(problem, settings.finite)?, monitors)));
-    let (mut system, monitors) = match built {
-        Ok(built) => built,
+pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
+    let system = match StepSystem::new(problem, settings.finite) {
+        Ok(system) => system,
         Err(why) => return stalled(problem, why),
     };
-    system.monitors = monitors;
     let state = system.undeformed();
     let gradient = system.gradient(&state);
     let energy = EnergyBalance::default();
@@ -40,12 +31,13 @@ pub(super) fn trace(
     let mut tracer = Tracer {
         system,
         settings,
-        strategy,
+        strategy: Arc::new(ArcLength::default()),
         observer,
         load_step: 0,
         state,
         record: Record {
             energy,
+            balance: StageBalance::default(),
             work,
             state: seen,
             events: Vec::new(),
@@ -63,11 +55,14 @@ pub(super) fn trace(
 
 /// Follows the load steps one after the other.
 fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
-    let (mut earlier, strategy) = (Vec::new(), tracer.strategy.clone());
+    let mut earlier = Vec::new();
     for (index, load_step) in problem.load_steps.iter().enumerate() {
         tracer.load_step = index;
-        tracer.strategy = strategy.clone();
         tracer.state.factor = load_step.start;
+        tracer.strategy =
+            tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
+        // What the problem does not have is refused before the path begins.
+        tracer.system.monitors = resolve(problem, &tracer.strategy.monitors()).unwrap_or_default();
         tracer.system.load(StagedLoads {
             earlier: earlier.clone(),
             growing: &load_step.loading,

@@ -10,12 +10,16 @@ use super::measure::motion_size;
 use super::peak::scaled_motion;
 use super::response::tractions_dissipate;
 use super::second_order::second_order_work;
-use super::softening::energy_accuracy;
 use super::state::{State, Tangent, in_proportion};
 use super::step::solve_step;
+use super::step_energy::step_energy;
 use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
+
+/// Longest step as a share of a load history, and the share below which a step is not made shorter for its energy.
+const LONGEST: f64 = 1.0 / 16.0;
+const SHORTEST_FOR_ENERGY: f64 = 2e-4;
 
 /// Why there is no first state.
 const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";
@@ -36,8 +40,9 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
         let slips = slips || next.yields();
         let far = !small && iterations > 12;
         let straight = !slips && !far && !tractions_dissipate(&tracer.system, &next);
-        let straight = straight && (small || is_of_the_same_branch(tracer, &next));
-        if straight || (small && is_proportional(tracer)) {
+        let whole = (small && is_proportional(tracer))
+            || (straight && step_energy(tracer, &next).holds && (small || is_stable(tracer, &next)));
+        if whole {
             return if commit(tracer, next) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
         }
         if small && tracer.system.monotone() {
@@ -50,11 +55,9 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
     follow(tracer, load_step, factor)
 }
 
-/// Whether a state that one step reached from the present one is stable, and the work of its loads is what it stores:
-/// with finite displacements others may be as well in equilibrium.
-fn is_of_the_same_branch(tracer: &mut Tracer, next: &State) -> bool {
-    let stable = second_order_work(&mut tracer.system, next).is_none_or(|work| work.turned == 0);
-    stable && energy_accuracy(tracer, next) >= 1.0
+/// Whether a state that one step reached is stable: with finite displacements others may be in equilibrium as well.
+fn is_stable(tracer: &mut Tracer, next: &State) -> bool {
+    second_order_work(&mut tracer.system, next).is_none_or(|work| work.turned == 0)
 }
 
 /// The first load step where it is proportional and no state at its factor was found: by a mixed control, which
@@ -117,7 +120,7 @@ pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64
     let from = tracer.state.factor;
     let mut last: Option<State> = None;
     let mut at = 0.0;
-    let mut share: f64 = 1.0 / 16.0;
+    let mut share = LONGEST;
     while at < 1.0 {
         let next_at = if at + share > 1.0 - 1e-9 { 1.0 } else { at + share };
         let target = if next_at < 1.0 { from + next_at * (factor - from) } else { factor };
@@ -131,15 +134,22 @@ pub(super) fn equal_steps(tracer: &mut Tracer, load_step: &LoadStep, factor: f64
                 (0..3).for_each(|k| guess.motion[b][k] += ratio * (guess.motion[b][k] - last.motion[b][k]));
             }
         }
-        match solve_step(&mut tracer.system, &tracer.state, guess, &Control::Factor(target)) {
-            Ok((next, _)) => {
+        let found = solve_step(&mut tracer.system, &tracer.state, guess, &Control::Factor(target));
+        let found = found.ok().map(|(next, _)| (step_energy(tracer, &next), next));
+        match found {
+            Some((energy, next)) if energy.holds || share < SHORTEST_FOR_ENERGY => {
                 last = Some(tracer.state.clone());
                 if !commit(tracer, next) {
                     return LoadStepEnding::Ended;
                 }
                 at = next_at;
+                share = (share * energy.growth.clamp(0.5, 2.0)).min(LONGEST);
             }
-            Err(_) => {
+            Some(_) => {
+                tracer.system.count("cutbacks", 1);
+                share *= 0.5;
+            }
+            None => {
                 tracer.system.count("cutbacks", 1);
                 share *= 0.5;
                 if share < 1e-4 {

@@ -8,10 +8,10 @@ use super::system::StepSystem;
 use crate::path::energy;
 use voussoir_core::path::Increment;
 
-/// Work-conjugate displacement of the growing load \[m\].
-pub(super) fn load_displacement(system: &StepSystem, motion: &[[f64; 3]]) -> f64 {
+/// Work-conjugate displacement of the growing load, or how far supports have moved \[m\].
+pub(super) fn load_displacement(system: &StepSystem, motion: &[[f64; 3]], factor: f64) -> f64 {
     let rigid = |body, point| system.geometry.rigid(body, point, motion);
-    energy::load_displacement(system.problem, system.loads.growing, motion, rigid)
+    energy::load_displacement(system.problem, (system.loads.growing, factor), motion, rigid)
 }
 
 /// Increment between two states in units, and the weights of its derivative: by gaps and directly.
@@ -38,7 +38,8 @@ pub(super) fn increment_between(system: &StepSystem, start: &State, state: &Stat
     dissipation += plastic_work(system, start, state);
     Increment {
         factor: (state.factor - start.factor) / u.factor,
-        displacement: (load_displacement(system, &state.motion) - load_displacement(system, &start.motion))
+        displacement: (load_displacement(system, &state.motion, state.factor)
+            - load_displacement(system, &start.motion, start.factor))
             / u.displacement,
         motion: motion.sqrt(),
         dissipation: dissipation / u.energy(),

@@ -46,7 +46,7 @@ pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<T
     let works = |j: usize| {
         let mut motion = vec![0.0; bodies];
         motion[j] = 1.0;
-        load_displacement(system, &motion_of(system, &motion)) / system.units().displacement
+        load_displacement(system, &motion_of(system, &motion), 0.0) / system.units().displacement
     };
     let power: Vec<f64> = (0..bodies).map(works).collect();
     let mut program = mechanisms(&rows, &flows, &power)?;

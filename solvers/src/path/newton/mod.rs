@@ -42,6 +42,7 @@ mod softening;
 mod stable_branch;
 mod state;
 mod step;
+mod step_energy;
 mod system;
 mod tangent;
 mod termination;
@@ -52,12 +53,10 @@ mod unknowns;
 mod updated_equations;
 
 use self::monitors::resolve;
-use super::continuation::arc_length::ArcLength;
 use super::outcome::stalled;
 use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
-use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
+use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Steps with Newton's method.
@@ -71,13 +70,11 @@ impl PathSolver for NewtonPath {
         if let Some(why) = self.refuses(problem, settings) {
             return stalled(problem, why);
         }
-        let strategy = settings.continuation.clone();
-        let strategy: Arc<dyn Continuation> = strategy.unwrap_or_else(|| Arc::new(ArcLength::default()));
-        load_steps::trace(problem, settings, strategy, observer)
+        load_steps::trace(problem, settings, observer)
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
-        if settings.continuation.as_ref().is_some_and(|c| ExactEvents::is(&**c)) {
+        if settings.strategies().any(|c| ExactEvents::is(&**c)) {
             return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
         }
         if problem.load_steps.is_empty() {
@@ -88,7 +85,7 @@ impl PathSolver for NewtonPath {
                 "rigid blocks without joint compliance have no path before their collapse: limit analysis answers them";
             return Some(why.into());
         }
-        settings.continuation.as_ref().and_then(|strategy| resolve(problem, &strategy.monitors()).err())
+        settings.strategies().find_map(|strategy| resolve(problem, &strategy.monitors()).err())
     }
 }
 

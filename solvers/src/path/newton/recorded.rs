@@ -83,7 +83,7 @@ pub(super) fn recorded(
         stored,
         dissipated: energy.dissipated,
         work: energy.work,
-        displacement: load_displacement(system, &state.motion),
+        displacement: load_displacement(system, &state.motion, state.factor),
         memory: state.updates.before.clone(),
         yielded: yielded(&state.blocks),
     }

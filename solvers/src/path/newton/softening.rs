@@ -8,41 +8,11 @@
 use super::control::LocalControl;
 use super::measure::increment_along;
 use super::peak::{note_proven_peak, peak_at};
-use super::recorded::recorded;
 use super::response::{local_control_of_step, local_controls, tractions_dissipate};
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
-use super::tracer::{Peak, Tracer, foreseen, moved_along};
-use voussoir_core::path::PathState;
-
-/// Energy that the trapezoidal rule may lose in a step, as a share of all energy so far.
-const ENERGY: f64 = 1e-4;
-
-/// The same as a share of the step's own work and stored energy (finite displacements).
-const OWN_ENERGY: f64 = 1e-3;
-
-/// Times that a step is made shorter for the sake of its energy.
-pub(super) const MOST_REFINEMENTS: u32 = 6;
-
-/// By how much a step may grow (below 1: must shrink) so that the work of its loads by the
-/// trapezoidal rule misses the energy stored and dissipated by a small share; infinite with small displacements without bonds that soften.
-pub(super) fn energy_accuracy(tracer: &mut Tracer, next: &State) -> f64 {
-    let finite = tracer.system.finite();
-    if tracer.system.laws.responses.is_empty() && !finite {
-        return f64::INFINITY;
-    }
-    let gradient = tracer.system.gradient(next);
-    let (energy, _) = foreseen(tracer, next, &gradient);
-    let after = recorded(&energy, &tracer.system, tracer.load_step, next, &gradient);
-    let of = |state: &PathState| state.work - state.stored - state.dissipated;
-    let lost = (of(&after) - of(&tracer.record.state)).abs();
-    let whole = after.stored.abs() + after.dissipated.abs();
-    let before = &tracer.record.state;
-    let own = (after.work - before.work).abs() + (after.stored - before.stored).abs();
-    let allowed = if finite { (ENERGY * whole).max(OWN_ENERGY * own) } else { ENERGY * whole };
-    (allowed / lost.max(1e-300)).sqrt()
-}
+use super::tracer::{Peak, Tracer, moved_along};
 
 /// A step controlled by the gaps of the points that the rate softens. `None` where there are none, none is found, or
 /// the load falls in it and the strategy does not pass limit points.

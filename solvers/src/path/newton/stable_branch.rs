@@ -83,7 +83,7 @@ fn choose(tracer: &Tracer, mut found: Vec<(f64, Relaxation)>) -> Option<(f64, Re
     let (fall, problem) = (a, tracer.system.problem);
     let works = |loading: &Loading, r: &Relaxation| {
         let rigid = |body, point| tracer.system.geometry.rigid(body, point, &r.next.motion);
-        load_displacement(problem, loading, &r.next.motion, rigid)
+        load_displacement(problem, (loading, 0.0), &r.next.motion, rigid)
     };
     for later in &problem.load_steps[tracer.load_step..] {
         let [a, b] = [works(&later.loading, &one), works(&later.loading, &other)];

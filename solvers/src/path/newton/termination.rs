@@ -122,7 +122,10 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
     // What strengths bound is no ray: the facets have been looked at above with the ray's forces, and no
     // block that may yield carries any load.
     if target.is_infinite() && !tracer.system.problem.yields() && factor > 1e-9 * (motion + force) {
-        tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
+        // A support that moves what is statically determinate asks for no forces.
+        let constant = force <= 1e-9 * motion && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
+        tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
         end_path(
             tracer,
             if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Unbounded },
@@ -186,7 +189,11 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     if let Some(trough) = &tracer.post_peak.trough {
         tracer.post_peak.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
     }
-    if tracer.system.finite() { stops_finite(tracer, direction) } else { stops_small(tracer, load_step, direction) }
+    if tracer.system.finite() {
+        stops_finite(tracer, load_step, direction)
+    } else {
+        stops_small(tracer, load_step, direction)
+    }
 }
 
 /// With small displacements: after the first limit point.
@@ -194,7 +201,8 @@ fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> boo
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let Some(peak) = &tracer.limit.peak else { return false };
     let beyond = (displacement - peak.state.displacement).abs();
-    let done = match (tracer.settings.stop_displacement, tracer.settings.stop_factor) {
+    let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
+    let done = match (stop_displacement, stop_factor) {
         (None, None) => {
             let grown = (peak.factor - load_step.start).abs();
             (peak.factor - factor) * direction >= 0.1 * grown || beyond >= peak.state.displacement.abs()
@@ -211,7 +219,7 @@ fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> boo
 
 /// With finite displacements: after the last proven peak. By default where the load has fallen to half of it and its
 /// point has moved on, at the latest at [`FURTHEST`].
-fn stops_finite(tracer: &mut Tracer, direction: f64) -> bool {
+fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let length = tracer.system.units().length;
     let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
@@ -221,7 +229,7 @@ fn stops_finite(tracer: &mut Tracer, direction: f64) -> bool {
     let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
     let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));
     let beyond = (displacement - from).abs();
-    let (stop_displacement, stop_factor) = (tracer.settings.stop_displacement, tracer.settings.stop_factor);
+    let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
     let done = match (stop_displacement, stop_factor) {
         // A support that goes no further by itself: what follows is a fall.
         (None, None) if settles => true,

@@ -6,7 +6,7 @@ use super::events::events;
 use super::recorded::{energy_after, recorded, work_state};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use crate::path::energy::{EnergyBalance, WorkState};
+use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
@@ -35,6 +35,8 @@ pub(super) struct Peak {
 /// What is written down of a path.
 pub(super) struct Record {
     pub energy: EnergyBalance,
+    /// The balance of the present stage.
+    pub balance: StageBalance,
     /// The last converged state as the work of the next step needs it.
     pub work: WorkState,
     /// The last converged state as others read it.
@@ -113,7 +115,10 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     tracer.record.energy = energy;
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut next);
-    tracer.record.state = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
+    let seen = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
+    let stage = tracer.system.problem.load_steps[tracer.load_step].stage;
+    tracer.record.balance = tracer.record.balance.after(stage, &tracer.record.state, &seen).0;
+    tracer.record.state = seen;
     tracer.state = next;
     tracer.record.work = work;
     tracer.system.count("steps", 1);

@@ -30,6 +30,8 @@ pub(super) struct Responses {
     groups: Vec<Group>,
     /// For each contact point whether it is one.
     is: Vec<bool>,
+    /// Joint and place of each contact point.
+    places: Vec<(usize, [f64; 2])>,
 }
 
 /// What the laws say at a state.
@@ -59,7 +61,8 @@ impl Responses {
             groups[at].places.push(place);
             place += law.state_size();
         }
-        Responses { groups, is }
+        let places = problem.contacts.iter().map(|c| (c.joint, c.position.into())).collect();
+        Responses { groups, is, places }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -80,6 +83,16 @@ impl Responses {
         self.groups.iter().flat_map(|group| group.points.iter().copied())
     }
 
+    /// Names the law, the joint, the point and the gap at which it failed.
+    fn failure(&self, group: &Group, index: usize, gap: Option<&[f64; 2]>, why: &str) -> String {
+        let contact = group.points.get(index).copied().unwrap_or_default();
+        let place = self.places.get(contact).copied().unwrap_or_default();
+        format!(
+            "the law {:?} gives no traction at joint {}, point ({}, {}), gap {gap:?}: {why}",
+            group.law, place.0, place.1[0], place.1[1]
+        )
+    }
+
     /// One update of all points, group by group. An error says what went wrong.
     pub fn update(&self, gaps: &[[f64; 2]], before: &[f64]) -> Result<TractionUpdates, String> {
         if self.is_empty() {
@@ -94,9 +107,19 @@ impl Responses {
             let mut new = old.clone();
             let mut points = vec![TractionPoint::ZERO; gap.len()];
             group.law.respond(&gap, &old, &mut new, &mut points).map_err(|failed| {
-                let contact = group.points[failed.point];
-                format!("the law of contact point {contact} gives no traction: {}", failed.failure)
+                self.failure(group, failed.point, gap.get(failed.point), &failed.failure.to_string())
             })?;
+            let finite = |p: &TractionPoint| {
+                p.traction
+                    .iter()
+                    .chain(p.tangent.as_flattened())
+                    .chain([&p.stored, &p.dissipated])
+                    .all(|v| v.is_finite())
+            };
+            if let Some(index) = points.iter().position(|p| !finite(p)) {
+                let why = format!("it says {:?}", points[index]);
+                return Err(self.failure(group, index, gap.get(index), &why));
+            }
             for (index, (contact, at)) in group.points.iter().zip(&group.places).enumerate() {
                 all[*contact] = points[index];
                 memory[*at..at + size].copy_from_slice(&new[index * size..(index + 1) * size]);

@@ -5,8 +5,11 @@ use super::result::{PathStatus, PointResult};
 use super::study::PointStudy;
 use crate::figures::chart::{Series, chart_svg};
 use crate::figures::format::{format_number, format_value, key_with_unit};
-use crate::kinds::kind::{LoadedStudy, RunOutput, RunRequest, Verification};
+use crate::kinds::case_study::remarks;
+use crate::kinds::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification};
 use crate::solve::Observer;
+use crate::verify::repeat::differences;
+use crate::writers::csv_table::csv_table;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::Value as Json;
 
@@ -34,42 +37,79 @@ impl LoadedStudy for PointStudy {
     }
 
     fn run(&self, request: &RunRequest, _observer: &dyn Observer) -> RunOutput {
-        let wanted = self.cases.iter().filter(|case| request.wanted.contains(&case.id));
-        let results: Vec<PointResult> = wanted.map(drive_point).collect();
+        let stored = match &request.stored {
+            Some([results, _]) if request.keep => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
+            _ => Vec::new(),
+        };
+        let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
+        // Driving a point costs little: those that stay are driven again, so that they are of this study.
+        let chosen = self.cases.iter().filter(|case| request.wanted.contains(&case.id) || others.contains(&case.id));
+        let results: Vec<PointResult> = chosen.map(drive_point).collect();
+        let others = results.iter().filter(|result| !request.wanted.contains(&result.id)).count();
         RunOutput {
             files: files(self, &results, &request.version)
                 .into_iter()
                 .map(|(n, text)| (n, text.into_bytes()))
                 .collect(),
             table: table(self, &results),
+            remarks: remarks(request, others, self.cases.len()),
             certified: results.iter().all(|result| result.status == PathStatus::Reached),
         }
     }
 
     /// Drives all points again: every number must be the same.
-    fn verify(&self, results: &str) -> Result<Verification, String> {
-        let stored: Json = serde_json::from_str(results).map_err(|error| error.to_string())?;
-        let stored = stored["cases"].as_array().ok_or("there is no list of cases")?;
-        let mut verification = Verification { cases: stored.len(), ..Verification::default() };
-        for entry in stored {
-            let id = entry["id"].as_u64().map_or(usize::MAX, |id| id as usize);
-            let Some(case) = self.cases.get(id) else {
-                verification.findings.push((id, "the study has no such case".into()));
-                continue;
-            };
-            let driven = drive_point(case);
-            verification.stalled += usize::from(driven.status == PathStatus::Stalled);
-            if serde_json::to_value(&driven).ok().as_ref() != Some(entry) {
-                verification.findings.push((id, "driving the point again gives other numbers".into()));
-            }
+    fn verify_stored(&self, stored: &StoredResults, _observer: &dyn Observer) -> Result<Verification, String> {
+        let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
+        let entries = json["cases"].as_array().ok_or("there is no list of cases")?;
+        let only = json.get("only_cases").map(|_| stored_ids(&json));
+        let wanted = self.cases.iter().filter(|case| only.as_ref().is_none_or(|ids| ids.contains(&case.id)));
+        let driven: Vec<PointResult> = wanted.map(drive_point).collect();
+        let version = json["version"].as_str().unwrap_or_default();
+        let (mut stored_rest, mut again) = (json.clone(), results_json(self, &driven, version));
+        let mut findings = Vec::new();
+        if entries.len() != driven.len() || entries.is_empty() {
+            findings.push((0, format!("there are {} cases, the study asks for {}", entries.len(), driven.len())));
         }
-        Ok(verification)
+        for (entry, result) in entries.iter().zip(&driven) {
+            let again = serde_json::to_value(result).map_err(|error| error.to_string())?;
+            findings.extend(differences(entry, &again).into_iter().map(|why| (result.id, why)));
+        }
+        for value in [&mut stored_rest, &mut again] {
+            value["cases"] = Json::Null;
+        }
+        findings.extend(differences(&stored_rest, &again).into_iter().map(|why| (0, why)));
+        let made = files(self, &driven, version);
+        Ok(Verification {
+            cases: entries.len(),
+            stalled: driven.iter().filter(|result| result.status == PathStatus::Stalled).count(),
+            findings,
+            files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes()))),
+            of: self.cases.len(),
+            how: "checked: every number and word against driving the point again; tables and figures against those of the \
+                  study. Not checked: counters, version",
+        })
     }
+}
+
+/// Ids of the cases in a results.json.
+fn stored_ids(results: &Json) -> Vec<usize> {
+    let cases = results["cases"].as_array().into_iter().flatten();
+    cases.filter_map(|case| Some(case["id"].as_u64()? as usize)).collect()
+}
+
+/// results.json.
+fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> Json {
+    let mut whole = serde_json::json!({ "study": study.name, "version": version, "kind": "point" });
+    if results.len() < study.cases.len() {
+        whole["only_cases"] = results.iter().map(|result| result.id).collect();
+    }
+    whole["cases"] = serde_json::json!(results);
+    whole
 }
 
 /// (name, text) of every file.
 pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
-    let whole = serde_json::json!({ "study": study.name, "version": version, "kind": "point", "cases": results });
+    let whole = results_json(study, results, version);
     let mut out = vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(results))];
     if study.figures {
         out.push(("figures/path.svg".into(), figure(study, results)));
@@ -91,10 +131,9 @@ pub fn csv(results: &[PointResult]) -> String {
         }
     }
     let keys = keys(results);
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let header = ["id".to_string(), "variant".into()].into_iter().chain(keys.iter().map(|key| key_with_unit(key)));
     let header = header.chain(["segment".to_string(), "region".into()]).chain(columns.iter().map(|c| c.to_string()));
-    writer.write_record(header).expect("writing to memory does not fail");
+    let mut rows = Vec::new();
     for result in results {
         let places: Vec<Option<usize>> =
             columns.iter().map(|column| result.columns.iter().position(|own| own == *column)).collect();
@@ -103,11 +142,10 @@ pub fn csv(results: &[PointResult]) -> String {
             row.extend(keys.iter().map(|key| result.parameters.get(key).map(format_value).unwrap_or_default()));
             row.extend([result.segments[index].to_string(), result.regions[index].to_string()]);
             row.extend(places.iter().map(|place| place.map_or(String::new(), |place| numbers[place].to_string())));
-            writer.write_record(row).expect("every row is as long as the header");
+            rows.push(row);
         }
     }
-    let bytes = writer.into_inner().expect("writing to memory does not fail");
-    String::from_utf8(bytes).expect("every cell is text")
+    csv_table(header.collect(), rows.into_iter())
 }
 
 /// What tells a case apart.

@@ -5,7 +5,7 @@ use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort, suggest};
 use crate::config::dotted_key::join;
 use crate::config::expand::{Expanded, Expansion};
-use crate::study::{DiagnosticList, OUTPUT, StudySource, read_plugin};
+use crate::study::{DiagnosticList, Drawn, OUTPUT, StudySource, read_plugin};
 use serde_json::{Map, Value as Json};
 use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate, Plane};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -216,7 +216,7 @@ fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<Located
         return Err(diagnostics.found);
     }
     let notes = unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
-    let drawn = resolved["output"]["figures"].as_bool().unwrap_or(true);
+    let drawn = Drawn::read(&resolved["output"]["figures"], 1).anything();
     Ok((PointCase { id, variant, parameters, tag, law, path, plot, notes }, drawn))
 }
 

@@ -4,4 +4,4 @@ mod law;
 pub mod none;
 pub mod uniform;
 
-pub use law::{Dispersion, Patch};
+pub use law::{Dispersion, Patch, Through};

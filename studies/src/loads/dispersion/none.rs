@@ -1,6 +1,6 @@
 //! `none`: a load reaches the extrados as it stands.
 
-use super::law::{Dispersion, Patch};
+use super::law::{Dispersion, Patch, Through};
 use serde::{Deserialize, Serialize};
 use voussoir_core::plugin::{Card, PluginKind};
 
@@ -11,7 +11,7 @@ pub struct Undispersed {}
 
 #[typetag::serde(name = "none")]
 impl Dispersion for Undispersed {
-    fn spread(&self, patch: Patch) -> Vec<Patch> {
+    fn spread(&self, patch: Patch, _: &[Through]) -> Vec<Patch> {
         vec![patch]
     }
 }

@@ -1,6 +1,6 @@
 //! `uniform`: a load spreads evenly under an angle through a depth.
 
-use super::law::{Dispersion, Patch};
+use super::law::{Dispersion, Patch, Through};
 use serde::{Deserialize, Serialize};
 use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
 
@@ -10,15 +10,23 @@ use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
 pub struct Uniform {
     /// From the vertical \[deg\].
     pub angle: f64,
-    /// Through which it spreads \[m\].
-    pub depth: f64,
+    /// Through which it spreads \[m\]; the depth of the fill where it is not given.
+    pub depth: Option<f64>,
 }
 
 #[typetag::serde(name = "uniform")]
 impl Dispersion for Uniform {
-    fn spread(&self, patch: Patch) -> Vec<Patch> {
-        let reach = self.depth * self.angle.to_radians().tan();
+    fn spread(&self, patch: Patch, fill: &[Through]) -> Vec<Patch> {
+        let own = self.angle.to_radians();
+        let reach = match self.depth {
+            Some(depth) => depth * own.tan(),
+            None => fill.iter().map(|layer| layer.thickness * layer.angle.unwrap_or(own).tan()).sum(),
+        };
         vec![Patch { from: patch.from - reach, to: patch.to + reach, ..patch }]
+    }
+
+    fn has_depth(&self) -> bool {
+        self.depth.is_some()
     }
 }
 
@@ -29,12 +37,14 @@ voussoir_core::inventory::submit! {
         summary: "a load spreads evenly to both sides, under an angle through a depth",
         parameters: &[
             Parameter::number("angle", Quantity::Degrees, Range::new(0.0, false, 90.0, true), "from the vertical"),
-            Parameter::number("depth", Quantity::Length, Range::NON_NEGATIVE, "through which the load spreads"),
+            Parameter::number("depth", Quantity::Length, Range::NON_NEGATIVE, "through which the load spreads")
+                .optional("the depth of the fill under the load's centre"),
         ],
         sources: &["Highways Agency 2001, BD 21/01, The Assessment of Highway Bridges and Structures"],
         file: file!(),
         page: "# `uniform`\n\nA load that stands between two x reaches the extrados evenly between these x widened by depth × tan(angle) \
-               on both sides; the force stays. The depth is one number, so the level above the extrados is taken as even.\n",
+               on both sides; the force stays. In the fill of a bridge the depth is that of the straight extrados chord under the \
+               load's centre, the same for the whole patch; layers may have angles of their own. Elsewhere it is given.\n",
         ..Card::BLANK
     }
 }

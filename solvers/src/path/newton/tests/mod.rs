@@ -11,7 +11,14 @@ use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Continuation, PathBody, PathObserver, PathProblem, PathSettings, PathState};
 
 fn settings(continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
-    PathSettings { finite: false, tolerance: 1e-9, stop_displacement: None, stop_factor: None, continuation }
+    PathSettings {
+        finite: false,
+        tolerance: 1e-9,
+        stop_displacement: None,
+        stop_factor: None,
+        continuation,
+        stages: Vec::new(),
+    }
 }
 
 fn body(pole: Vec2, points: Vec<Vec2>, flexibility: Option<DMatrix<f64>>, held: bool) -> PathBody {

@@ -1,0 +1,173 @@
+//! `fill_pressure`: Rankine's pressures, of which shares are mobilised.
+#![doc = include_str!("fill_pressure.md")]
+
+use serde::{Deserialize, Serialize};
+use voussoir_core::law::{FillResistance, FillState};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
+
+/// The least pressure of the fill.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LeastPressure {
+    /// None.
+    #[default]
+    Zero,
+    /// Active: the fill follows a ring that moves away.
+    Active,
+    /// At rest.
+    AtRest,
+}
+
+/// Shares of Rankine's passive pressure.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FillPressure {
+    /// m_p, of the pressure by friction.
+    #[serde(default = "passive")]
+    pub passive_factor: f64,
+    /// m_c, of the pressure by cohesion.
+    #[serde(default = "cohesive")]
+    pub cohesion_factor: f64,
+    /// What the fill presses with at least.
+    #[serde(default)]
+    pub lower: LeastPressure,
+    /// Pressure by displacement \[Pa/m\].
+    pub stiffness: Option<f64>,
+}
+
+fn passive() -> f64 {
+    0.33
+}
+
+fn cohesive() -> f64 {
+    0.05
+}
+
+/// K_p = (1 + sin φ)/(1 − sin φ).
+fn passive_coefficient(friction_angle: f64) -> f64 {
+    let sine = friction_angle.sin();
+    (1.0 + sine) / (1.0 - sine)
+}
+
+#[typetag::serde(name = "fill_pressure")]
+impl FillResistance for FillPressure {
+    fn pressures(&self, state: &FillState) -> [f64; 2] {
+        let FillState { vertical_stress, friction_angle, cohesion } = *state;
+        let k_p = passive_coefficient(friction_angle);
+        let by_cohesion = 2.0 * k_p.sqrt() * cohesion;
+        let greatest = self.passive_factor * k_p * vertical_stress + self.cohesion_factor * by_cohesion;
+        let least = match self.lower {
+            LeastPressure::Zero => 0.0,
+            // K_a = 1/K_p; cohesion holds the fill back: 2 √K_a c.
+            LeastPressure::Active => ((vertical_stress - by_cohesion) / k_p).max(0.0),
+            LeastPressure::AtRest => (1.0 - friction_angle.sin()) * vertical_stress,
+        };
+        [least.min(greatest), greatest]
+    }
+
+    fn stiffness(&self) -> Option<f64> {
+        self.stiffness
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::FillResistance,
+        tag: "fill_pressure",
+        summary: "shares of Rankine's passive pressure, from nothing, the active pressure or that at rest upwards",
+        parameters: &[
+            Parameter::number(
+                "passive_factor",
+                Quantity::Ratio,
+                Range::NON_NEGATIVE,
+                "m_p, share of the passive pressure by friction that is mobilised; 0 switches it off",
+            )
+            .default("0.33"),
+            Parameter::number(
+                "cohesion_factor",
+                Quantity::Ratio,
+                Range::NON_NEGATIVE,
+                "m_c, share of the passive pressure by cohesion that is mobilised; 0 switches it off",
+            )
+            .default("0.05"),
+            Parameter {
+                name: "lower",
+                doc: "what the fill presses with at least: nothing, the active pressure, or that at rest",
+                shape: Shape::Choice(&["zero", "active", "at_rest"]),
+                need: Need::Default("\"zero\""),
+            },
+            Parameter::number(
+                "stiffness",
+                Quantity::Stiffness,
+                Range::POSITIVE,
+                "pressure by displacement into the fill before it yields; limit loads do not depend on it",
+            )
+            .optional("the fill is rigid until it yields"),
+        ],
+        sources: &[
+            "Rankine 1857, Phil. Trans. R. Soc. 147",
+            "Jaky 1944 (pressure at rest)",
+            "Burroughs, Hughes, Hee & Davies 2002, Proc. ICE Struct. Build. 152 (shares of passive pressure)",
+            "Gilbert 2007, ARCH'07 (fill elements beside the ring)",
+        ],
+        file: file!(),
+        page: include_str!("fill_pressure.md"),
+        ..Card::BLANK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law(lower: LeastPressure, passive_factor: f64) -> FillPressure {
+        FillPressure { passive_factor, cohesion_factor: 1.0, lower, stiffness: None }
+    }
+
+    fn state(degrees: f64, cohesion: f64) -> FillState {
+        FillState { vertical_stress: 1000.0, friction_angle: f64::to_radians(degrees), cohesion }
+    }
+
+    /// K_p of 0°, 30° and 45°, and the cohesion's part.
+    #[test]
+    fn passive_pressures_are_rankines() {
+        for (degrees, k_p) in [(0.0, 1.0), (30.0, 3.0), (45.0, 3.0 + 2.0 * 2f64.sqrt())] {
+            let [least, greatest] = law(LeastPressure::Zero, 1.0).pressures(&state(degrees, 100.0));
+            assert!((greatest - (k_p * 1000.0 + 200.0 * k_p.sqrt())).abs() < 1e-9, "{degrees}");
+            assert_eq!(least, 0.0);
+        }
+    }
+
+    /// Coulomb's wedge: the passive force on a height h is the least, over wedges that rise at θ, of what pushes a
+    /// wedge of weight γ h² cot θ / 2 with cohesion c h / sin θ up its plane. Its minimum is K_p γ h²/2 + 2 c √K_p h.
+    #[test]
+    fn coulombs_wedge_gives_the_same_force() {
+        let (unit_weight, height) = (19000.0, 1.7);
+        for (degrees, cohesion) in [(30.0, 0.0), (37.0, 4000.0), (0.0, 12000.0)] {
+            let phi = f64::to_radians(degrees);
+            let wedge = |theta: f64| {
+                let weight = unit_weight * height * height / 2.0 / theta.tan();
+                let held = cohesion * height / theta.sin();
+                (weight * (theta + phi).sin() + held * phi.cos()) / (theta + phi).cos()
+            };
+            let least = (1..90000)
+                .map(|i| wedge((90.0 - degrees) * f64::from(i) / 90000.0 * 1f64.to_radians()))
+                .fold(f64::INFINITY, f64::min);
+            let mean = FillState { vertical_stress: unit_weight * height / 2.0, friction_angle: phi, cohesion };
+            let [_, pressure] = law(LeastPressure::Zero, 1.0).pressures(&mean);
+            assert!((pressure * height / least - 1.0).abs() < 1e-8, "{degrees}: {} {least}", pressure * height);
+        }
+    }
+
+    /// The least pressure is what it says, and never above the greatest.
+    #[test]
+    fn least_pressures() {
+        let least = |lower, cohesion| law(lower, 1.0).pressures(&state(30.0, cohesion))[0];
+        assert!((least(LeastPressure::Active, 0.0) - 1000.0 / 3.0).abs() < 1e-9);
+        assert!((least(LeastPressure::Active, 100.0) - (1000.0 / 3.0 - 200.0 / 3f64.sqrt())).abs() < 1e-9);
+        assert_eq!(least(LeastPressure::Active, 1000.0), 0.0);
+        assert!((least(LeastPressure::AtRest, 0.0) - 500.0).abs() < 1e-9);
+        let [low, high] = law(LeastPressure::AtRest, 0.1).pressures(&state(30.0, 0.0));
+        assert_eq!(low, high);
+    }
+}

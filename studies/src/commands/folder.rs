@@ -1,0 +1,183 @@
+//! A result folder: one run at a time, files whole or not at all, nothing through symbolic links.
+
+use super::codes::NO_ACCESS;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Cases that are finished, a line of JSON each, while a run is under way.
+pub const JOURNAL: &str = "unfinished.jsonl";
+/// Held by the run that writes; the operating system lets go of it however that run ends.
+const LOCK: &str = ".voussoir.lock";
+/// Folders that writers fill.
+const FILLED: [&str; 2] = ["figures", "vtu"];
+
+/// The folder that a run writes into; no other run can, while this one lives.
+pub struct ResultFolder {
+    path: PathBuf,
+    lock: File,
+}
+
+fn refused(path: &Path, why: impl std::fmt::Display) -> u8 {
+    eprintln!("voussoir: cannot write {}: {why}", path.display());
+    NO_ACCESS
+}
+
+/// Refuses a symbolic link; what does not exist is none.
+fn no_link(path: &Path) -> Result<(), u8> {
+    match fs::symlink_metadata(path) {
+        Ok(found) if found.file_type().is_symlink() => {
+            Err(refused(path, "it is a symbolic link, and nothing is written through one; give the place it leads to"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Names of the entries of a folder, in order; none where it cannot be read.
+fn entries(path: &Path) -> Vec<String> {
+    let listed = fs::read_dir(path).into_iter().flatten().flatten();
+    let mut names: Vec<String> = listed.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort();
+    names
+}
+
+/// The lock on a folder: an error where another run has it.
+fn locked(path: &Path) -> Result<File, u8> {
+    let place = path.join(LOCK);
+    // A run that ends removes the file: a lock on what is no longer there is none.
+    for _ in 0..100 {
+        let file = OpenOptions::new().create(true).append(true).open(&place).map_err(|error| refused(&place, error))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                return Err(refused(path, "another run is writing into it; wait for it, or give another --out"));
+            }
+            // A file system without locks.
+            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(error)) => return Err(refused(&place, error)),
+        }
+        if is_same(&file, &place) {
+            return Ok(file);
+        }
+    }
+    Err(refused(path, "other runs go on writing into it"))
+}
+
+#[cfg(unix)]
+fn is_same(file: &File, place: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let number = |found: fs::Metadata| (found.dev(), found.ino());
+    file.metadata().ok().map(number) == fs::symlink_metadata(place).ok().map(number)
+}
+
+#[cfg(not(unix))]
+fn is_same(_: &File, place: &Path) -> bool {
+    place.exists()
+}
+
+impl ResultFolder {
+    /// Opens a folder for a run, and makes it if need be.
+    pub fn open(path: &Path) -> Result<Self, u8> {
+        no_link(path)?;
+        fs::create_dir_all(path).map_err(|error| refused(path, error))?;
+        for name in entries(path) {
+            no_link(&path.join(&name))?;
+        }
+        for folder in FILLED {
+            for name in entries(&path.join(folder)) {
+                no_link(&path.join(folder).join(name))?;
+            }
+        }
+        Ok(ResultFolder { path: path.into(), lock: locked(path)? })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The text of a file in it, empty where there is none.
+    pub fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path.join(name)).unwrap_or_default()
+    }
+
+    /// Writes a file whole or not at all; folders on the way are made.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), u8> {
+        let place = self.path.join(name);
+        let mut folder = self.path.clone();
+        for part in Path::new(name).parent().into_iter().flat_map(Path::components) {
+            folder.push(part);
+            no_link(&folder)?;
+            match fs::create_dir(&folder) {
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(refused(&folder, error)),
+                _ => {}
+            }
+        }
+        no_link(&place)?;
+        let aside = self.path.join(format!("{name}.tmp"));
+        let attempt = || -> std::io::Result<()> {
+            // Left behind by a run that was killed; a link is removed, not followed.
+            drop(fs::remove_file(&aside));
+            let mut file = OpenOptions::new().write(true).create_new(true).open(&aside)?;
+            file.write_all(bytes)?;
+            file.sync_data()?;
+            fs::rename(&aside, &place)
+        };
+        attempt().map_err(|error| {
+            drop(fs::remove_file(&aside));
+            refused(&place, error)
+        })
+    }
+
+    /// Opens the journal; what a run before it left stays if `keep`. `None` where it cannot be written: that costs
+    /// only the chance to go on after an interruption.
+    pub fn journal(&self, keep: bool) -> Option<File> {
+        let place = self.path.join(JOURNAL);
+        if !keep {
+            drop(fs::remove_file(&place));
+        }
+        no_link(&place).ok()?;
+        OpenOptions::new().create(true).append(true).open(&place).ok()
+    }
+
+    /// Removes what earlier runs have left: the journal, and files that writers name as they please but did not
+    /// write this time.
+    pub fn remove_left_over(&self, written: &[(String, Vec<u8>)]) {
+        drop(fs::remove_file(self.path.join(JOURNAL)));
+        let top = ["results.csv", "curve.csv", "comparison.csv", "report.html"].map(String::from);
+        let filled = FILLED.into_iter().flat_map(|folder| {
+            let names = entries(&self.path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
+            names.collect::<Vec<_>>()
+        });
+        for name in top.into_iter().chain(filled.filter(|name| of_a_writer(name))) {
+            if written.iter().all(|(kept, _)| *kept != name) {
+                drop(fs::remove_file(self.path.join(&name)));
+            }
+        }
+        FILLED.iter().for_each(|folder| drop(fs::remove_dir(self.path.join(folder))));
+    }
+}
+
+impl Drop for ResultFolder {
+    fn drop(&mut self) {
+        drop(fs::remove_file(self.path.join(LOCK)));
+        drop(self.lock.unlock());
+    }
+}
+
+/// Whether a file in a folder that writers fill has a name of theirs; what a user has put there stays.
+fn of_a_writer(name: &str) -> bool {
+    let (folder, file) = name.split_once('/').unwrap_or_default();
+    let stem = file.strip_suffix(".tmp").unwrap_or(file);
+    match folder {
+        "figures" => stem.strip_suffix(".svg").is_some_and(|stem| {
+            let numbered = |start: &str| {
+                stem.strip_prefix(start).and_then(|rest| rest.chars().next()).is_some_and(|c| c.is_ascii_digit())
+            };
+            ["sweep", "curve", "map", "comparison", "envelope", "path"].contains(&stem)
+                || numbered("case-")
+                || numbered("curve-")
+        }),
+        _ => stem.starts_with("case-") && stem.ends_with(".vtu") || ["cases.pvd", "README.txt"].contains(&stem),
+    }
+}

@@ -1,0 +1,45 @@
+//! The chart of an envelope: the load factor over the place of the load, a line for each vehicle and way it stands.
+
+use super::chart::{Marker, Series, Spot, chart_svg};
+use super::format::format_number;
+use crate::results::StudyResults;
+use serde_json::Value as Json;
+
+/// The chart, where the results are those of an envelope.
+pub fn envelope_chart(study: &str, results: &StudyResults) -> Option<String> {
+    let list = |name: &str| results.own.get(name).and_then(Json::as_array);
+    let (curve, worsts) = (list("curve")?, list("worsts")?);
+    let mut series: Vec<Series> = Vec::new();
+    for place in curve {
+        let name = line_name(place);
+        let index = series.iter().position(|line| line.name == name).unwrap_or_else(|| {
+            series.push(Series { name: name.clone(), spots: Some(Vec::new()), ..Series::default() });
+            series.len() - 1
+        });
+        if let (Some(x), Some(y)) = (place["value"].as_f64(), place["result"].as_f64()) {
+            series[index].points.push((x, y));
+        }
+    }
+    for worst in worsts {
+        let (Some(x), Some(y)) = (worst["value"].as_f64(), worst["result"].as_f64()) else { continue };
+        let name = line_name(worst);
+        if let Some(spots) = series.iter_mut().find(|line| line.name == name).and_then(|line| line.spots.as_mut()) {
+            let label = format!("{} at {}", format_number(y, 4), format_number(x, 4));
+            spots.push(Spot { at: (x, y), kind: "worst place", marker: Marker::Dot, label });
+        }
+    }
+    series.retain(|line| !line.points.is_empty());
+    let x_label = worsts.first().and_then(|worst| worst["parameter"].as_str()).unwrap_or("place");
+    let title = format!("{study}: load factor at collapse over the place of the load");
+    let label = if x_label.ends_with(".at") { "x of the vehicle's origin [m]" } else { x_label };
+    (!series.is_empty()).then(|| chart_svg(&title, label, "load factor at collapse [-]", &series, &[]))
+}
+
+/// Vehicle, way, variant and swept values of an entry.
+fn line_name(entry: &Json) -> String {
+    let words = ["variant", "vehicle", "direction"].iter().filter_map(|key| entry[key].as_str().map(str::to_string));
+    let swept = entry["parameters"].as_object().into_iter().flatten();
+    let swept = swept.map(|(key, value)| format!("{} = {value}", key.rsplit('.').next().unwrap_or(key)));
+    let name: Vec<String> = words.chain(swept).collect();
+    if name.is_empty() { "load".into() } else { name.join(", ") }
+}

@@ -1,0 +1,247 @@
+//! `envelope`: the worst place of a load that moves.
+#![doc = include_str!("envelope.md")]
+
+mod places;
+mod search;
+mod worsts;
+
+use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::results::{CaseLabel, CaseResult};
+use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::study::{Case, Outline, Study, StudySource};
+use rayon::prelude::*;
+use serde_json::Value as Json;
+use std::borrow::Cow;
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
+
+/// Greatest number of places on the even scan.
+const MAX_SCAN: i64 = 100_000;
+/// Cases of one run of one vehicle have ids from a multiple of this on, after those of the study.
+const STRIDE: usize = 1_000_000;
+
+struct Envelope;
+
+/// Keys of `[envelope]`.
+pub const KEYS: &[Parameter] = &[
+    Parameter {
+        name: "parameter",
+        doc: "path of the key that moves the load, such as \"stages.1.loads.0.at\"",
+        shape: Shape::Text,
+        need: Need::Required,
+    },
+    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value"),
+    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value"),
+    Parameter::number(
+        "tolerance",
+        Quantity::Ratio,
+        Range::new(0.0, true, 1.0, false),
+        "of the worst value, as a share of the range from `from` to `to`",
+    )
+    .default("1e-3"),
+    Parameter {
+        name: "scan",
+        doc: "number of places on an even scan; places where axles enter or edges of patches meet joints are added",
+        shape: Shape::Integer { min: 2, max: MAX_SCAN },
+        need: Need::Default("41"),
+    },
+    Parameter {
+        name: "directions",
+        doc: "which way vehicles stand",
+        shape: Shape::Choice(&["both", "forward", "backward"]),
+        need: Need::Optional("both for a load of kind \"vehicle\", forward for others"),
+    },
+    Parameter {
+        name: "vehicles",
+        doc: "entries of [vehicles] that are tried in turn",
+        shape: Shape::List { of: &Shape::Reference("vehicles"), min: 1, max: 1000 },
+        need: Need::Optional("the load's own vehicle"),
+    },
+];
+
+voussoir_core::inventory::submit! { KindEntry { tag: "envelope", kind: &Envelope } }
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::StudyKind,
+        tag: "envelope",
+        summary: "moves a load over a range, both ways and for several vehicles: the worst place, and the factor at all of them",
+        parameters: KEYS,
+        file: file!(),
+        page: include_str!("envelope.md"),
+        ..Card::BLANK
+    }
+}
+
+/// `[envelope]`, read.
+#[derive(Debug, Clone)]
+pub(super) struct Request {
+    parameter: String,
+    range: [f64; 2],
+    tolerance: f64,
+    scan: usize,
+    directions: Option<String>,
+    vehicles: Option<Vec<String>>,
+}
+
+impl Request {
+    pub(super) fn of(outline: &Outline) -> Option<Self> {
+        let table = &outline.table;
+        let number = |key: &str| table.get(key)?.as_f64();
+        Some(Request {
+            parameter: table.get("parameter")?.as_str()?.to_string(),
+            range: [number("from")?, number("to")?],
+            tolerance: number("tolerance").unwrap_or(1e-3),
+            scan: table.get("scan").and_then(Json::as_u64).map_or(41, |scan| scan as usize),
+            directions: table.get("directions").and_then(|word| Some(word.as_str()?.to_string())),
+            vehicles: table.get("vehicles").and_then(|list| serde_json::from_value(list.clone()).ok()),
+        })
+    }
+
+    /// A key beside the parameter, in the same table.
+    fn beside(&self, key: &str) -> String {
+        let table = self.parameter.rsplit_once('.').map_or("", |(table, _)| table);
+        format!("{table}.{key}")
+    }
+
+    /// What is tried on a case: vehicle and direction, each where there is one.
+    fn runs(&self, case: &Case) -> Vec<Run> {
+        let load = self.parameter.rsplit_once('.').and_then(|(table, _)| value_at(&case.resolved, table));
+        let own = load.and_then(|load| Some(load.get("vehicle")?.as_str()?.to_string()));
+        let Some(own) = own else { return vec![Run { vehicle: None, direction: None }] };
+        let vehicles = self.vehicles.clone().unwrap_or_else(|| vec![own]);
+        let directions: &[&str] = match self.directions.as_deref() {
+            Some("forward") => &["forward"],
+            Some("backward") => &["backward"],
+            _ => &["forward", "backward"],
+        };
+        let each = |vehicle: &String| {
+            let run = |direction: &&str| Run { vehicle: Some(vehicle.clone()), direction: Some(direction.to_string()) };
+            directions.iter().map(run).collect::<Vec<_>>()
+        };
+        vehicles.iter().flat_map(each).collect()
+    }
+
+    /// The values of a run at a place, by key.
+    fn values(&self, run: &Run, value: f64) -> Vec<(String, Json)> {
+        let mut values = vec![(self.parameter.clone(), Json::from(value))];
+        values.extend(run.vehicle.iter().map(|vehicle| (self.beside("vehicle"), vehicle.clone().into())));
+        values.extend(run.direction.iter().map(|direction| (self.beside("direction"), direction.clone().into())));
+        values
+    }
+}
+
+/// A vehicle that moves one way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Run {
+    vehicle: Option<String>,
+    direction: Option<String>,
+}
+
+/// The value under a dotted key of a checked study.
+fn value_at<'a>(root: &'a Json, path: &str) -> Option<&'a Json> {
+    path.split('.').try_fold(root, |value, key| match value {
+        Json::Array(list) => list.get(key.parse::<usize>().ok()?),
+        _ => value.get(key),
+    })
+}
+
+/// The case of a study at other values, with the id that it has among all.
+fn case_at(study: &Study, base: usize, id: usize, values: &[(String, Json)]) -> Option<Case> {
+    let values: Vec<(&str, Json)> = values.iter().map(|(key, value)| (key.as_str(), value.clone())).collect();
+    let mut case = study.at(base, &values).ok()?;
+    case.id = id;
+    case.brief = true;
+    Some(case)
+}
+
+impl Envelope {
+    /// All places of all runs of one case of the study, in order of id.
+    fn of_case(&self, study: &Study, base: usize, request: &Request) -> Vec<CaseResult> {
+        let case = &study.cases[base];
+        let runs = request.runs(case);
+        let run = |(number, run): (usize, &Run)| {
+            let first = study.cases.len() + (base * runs.len() + number) * STRIDE;
+            let solve = |index: usize, value: f64| {
+                let case = case_at(study, base, first + index, &request.values(run, value))?;
+                Some(solve_case(&case))
+            };
+            let places = places::places(case, request, run);
+            search::worst_place(&places, request, &solve)
+        };
+        runs.iter().enumerate().flat_map(run).collect()
+    }
+}
+
+impl StudyKind for Envelope {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        let study = Study::from_source(source)?;
+        let Some(request) = Request::of(&study.outline) else { return Ok(Box::new(study)) };
+        // Mistakes at one end of the range show before anything is solved.
+        for case in &study.cases {
+            for run in request.runs(case) {
+                for value in request.range {
+                    let values = request.values(&run, value);
+                    let values: Vec<(&str, Json)> =
+                        values.iter().map(|(key, value)| (key.as_str(), value.clone())).collect();
+                    study.at(case.id, &values)?;
+                }
+            }
+        }
+        Ok(Box::new(study))
+    }
+
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
+        let Some(request) = Request::of(outline) else {
+            return vec![
+                Diagnostic::new("envelope", "is missing").help("say what moves: [envelope] parameter, from, to"),
+            ];
+        };
+        let mut diagnostics = Vec::new();
+        if request.range[0] >= request.range[1] {
+            let message = format!("{} must be more than from, {}", request.range[1], request.range[0]);
+            diagnostics.push(Diagnostic::new("envelope.to", message));
+        }
+        let keys = [request.parameter.clone(), request.beside("vehicle"), request.beside("direction")];
+        for key in keys.iter().filter(|key| outline.axes.iter().any(|(swept, _)| swept.contains(key))) {
+            diagnostics.push(Diagnostic::new("envelope.parameter", format!("\"{key}\" is swept besides")));
+        }
+        diagnostics
+    }
+
+    fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+        let mut results = solve_cases(study, wanted, jobs, observer);
+        let Some(request) = Request::of(&study.outline) else { return results };
+        let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request)).collect::<Vec<_>>();
+        results.extend(side_by_side(jobs, all));
+        results
+    }
+
+    fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
+        if let Some(case) = study.cases.get(label.id) {
+            return Some(Cow::Borrowed(case));
+        }
+        let request = Request::of(&study.outline)?;
+        // Every case has as many runs as the first, because kinds of loads are not swept.
+        let runs = request.runs(study.cases.first()?).len();
+        let base = (label.id - study.cases.len()) / STRIDE / runs;
+        let keys = [request.parameter.clone(), request.beside("vehicle"), request.beside("direction")];
+        let given = keys.iter().filter_map(|key| Some((key.clone(), label.parameters.get(key)?.clone())));
+        case_at(study, base, label.id, &given.collect::<Vec<_>>()).map(Cow::Owned)
+    }
+
+    fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
+        let Some(request) = Request::of(&study.outline) else { return OwnResults::default() };
+        OwnResults { other: worsts::entries(study, &request, cases), ..OwnResults::default() }
+    }
+}
+
+/// Solves places side by side, in order; those that make no case are left out.
+fn solve_all(
+    first: usize,
+    places: &[f64],
+    solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
+) -> Vec<(f64, CaseResult)> {
+    let one = |(index, value): (usize, &f64)| Some((*value, solve(first + index, *value)?));
+    places.par_iter().enumerate().filter_map(one).collect()
+}

@@ -1,0 +1,95 @@
+//! Places that are tried: even ones, those where axles enter the bridge, and those where edges of their patches meet joints.
+
+use super::{Request, Run, value_at};
+use crate::loads::dispersion::{Dispersion, Patch};
+use crate::loads::{LoadSite, LoadTables, VehicleAxles, fill_layers};
+use crate::study::Case;
+use voussoir_core::model::Chord;
+
+/// Places nearer than this share of the range are one.
+const SAME: f64 = 1e-9;
+
+/// Values of the parameter.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// The scan: even places, and where axles enter or leave; growing.
+    pub scan: Vec<f64>,
+    /// Where edges of patches meet joints; growing. Tried where the scan is low.
+    pub joints: Vec<f64>,
+}
+
+/// The places of a run.
+pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
+    let [from, to] = request.range;
+    let last = (request.scan - 1) as f64;
+    let even = (0..request.scan).map(|i| if i + 1 == request.scan { to } else { from + (to - from) * i as f64 / last });
+    let Places { scan: entering, joints } = events(case, run);
+    let tidy = |places: &mut Vec<f64>| {
+        places.retain(|x| from <= *x && *x <= to);
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|b, a| *b - *a <= SAME * (to - from));
+    };
+    let mut places = Places { scan: even.chain(entering).collect(), joints };
+    tidy(&mut places.scan);
+    tidy(&mut places.joints);
+    places
+}
+
+/// Where an axle enters or leaves, and where an edge of its patch on the extrados meets a joint.
+fn events(case: &Case, run: &Run) -> Places {
+    let name = run.vehicle.as_deref().unwrap_or_default();
+    let vehicle = case.resolved.get("vehicles").and_then(|all| all.get(name));
+    let vehicle: Option<VehicleAxles> = vehicle.and_then(|table| serde_json::from_value(table.clone()).ok());
+    let Some(vehicle) = vehicle else { return Places::default() };
+    let law = value_at(&case.resolved, "scene.fill.dispersion").cloned();
+    let tables =
+        LoadTables { dispersion: law.and_then(|law| serde_json::from_value(law).ok()), ..LoadTables::default() };
+    let site = LoadSite::new(&case.assembly, &tables, "");
+    let chords = case.assembly.extrados();
+    let mut joints: Vec<f64> = chords.iter().flat_map(|chord| chord.ends.map(|end| end.x)).collect();
+    joints.sort_by(f64::total_cmp);
+    joints.dedup();
+    let (Some(&first), Some(&last)) = (joints.first(), joints.last()) else { return Places::default() };
+    let sense = if run.direction.as_deref() == Some("backward") { -1.0 } else { 1.0 };
+    // A hair inside: beyond the ends the axle counts nothing.
+    let hair = 1e-9 * (last - first);
+    let mut places = Places::default();
+    for axle in &vehicle.axles {
+        let origin = |x: f64| x - sense * axle.at;
+        places.scan.extend([first + hair, last - hair].map(origin));
+        for joint in &joints {
+            for side in [-1.0, 1.0] {
+                let centre = centre_of(&site, &chords, *joint, side, axle.length / 2.0);
+                // A patch without length jumps from one block to the next.
+                let apart = if axle.length == 0.0 { hair } else { 0.0 };
+                places.joints.push(origin(centre + side * apart));
+            }
+        }
+    }
+    places
+}
+
+/// Where the centre of a patch is when the edge on its `side` meets a joint: the reach depends on the depth under the
+/// centre, so it is found by iteration.
+fn centre_of(site: &LoadSite, chords: &[Chord], joint: f64, side: f64, half: f64) -> f64 {
+    let mut centre = joint - side * half;
+    for _ in 0..8 {
+        let next = joint - side * (half + reach(site, chords, centre, half));
+        if (next - centre).abs() <= 1e-12 * site.assembly.size() {
+            break;
+        }
+        centre = next;
+    }
+    centre
+}
+
+/// How far the fill spreads a patch to one side.
+fn reach(site: &LoadSite, chords: &[Chord], centre: f64, half: f64) -> f64 {
+    let law: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
+    let above = chords.iter().filter(|chord| chord.left() <= centre && centre <= chord.right());
+    let level = above.map(|chord| chord.at(centre).y).fold(f64::NEG_INFINITY, f64::max);
+    let Some(law) = law.filter(|_| level.is_finite()) else { return 0.0 };
+    let patch = Patch { from: centre - half, to: centre + half, share: 1.0 };
+    let spread = law.spread(patch, &fill_layers(site, centre, level));
+    spread.iter().map(|part| patch.from - part.from).fold(0.0, f64::max)
+}

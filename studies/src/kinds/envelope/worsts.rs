@@ -1,0 +1,76 @@
+//! What an envelope adds to the results: the worst place of each case of the study, and the factor at all places.
+
+use super::{Request, value_at};
+use crate::kinds::search::intervals;
+use crate::results::{CaseResult, load_rank};
+use crate::study::Study;
+use serde_json::{Map, Value as Json, json};
+
+/// A place that was tried.
+struct Place<'a> {
+    value: f64,
+    vehicle: Option<&'a str>,
+    direction: Option<&'a str>,
+    result: &'a CaseResult,
+}
+
+/// `worsts` and `curve` of results.json.
+pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
+    let (mut worsts, mut curve) = (Vec::new(), Vec::new());
+    for base in &study.cases {
+        let mut places: Vec<Place> = Vec::new();
+        for result in cases.iter().filter(|result| belongs(base, result)) {
+            let of = |key: &str| result.label.parameters.get(key).or_else(|| value_at(&base.resolved, key));
+            let Some(value) = of(&request.parameter).and_then(Json::as_f64) else { continue };
+            let text = |key: &str| of(&request.beside(key)).and_then(Json::as_str);
+            places.push(Place { value, vehicle: text("vehicle"), direction: text("direction"), result });
+        }
+        places
+            .sort_by(|a, b| (a.vehicle, a.direction).cmp(&(b.vehicle, b.direction)).then(a.value.total_cmp(&b.value)));
+        worsts.extend(worst(request, base, &places));
+        curve.extend(places.iter().map(|place| {
+            json!({
+                "variant": base.variant,
+                "parameters": base.parameters,
+                "vehicle": place.vehicle,
+                "direction": place.direction,
+                "value": place.value,
+                "result": place.result.load_factor,
+                "status": place.result.status,
+                "case": place.result.label.id,
+            })
+        }));
+    }
+    let mut own = Map::new();
+    own.insert("worsts".into(), worsts.into());
+    own.insert("curve".into(), curve.into());
+    own
+}
+
+/// Whether a result is one of a case of the study, or made from it.
+fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
+    let label = &result.label;
+    label.variant == base.variant
+        && label.scene == base.scene
+        && base.parameters.iter().all(|(key, value)| label.parameters.get(key) == Some(value))
+}
+
+/// The entry of the least factor.
+fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Option<Json> {
+    let ranked = places.iter().filter_map(|place| Some((load_rank(place.result)?, place)));
+    let (_, place) = ranked.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let own = places.iter().filter(|p| p.vehicle == place.vehicle && p.direction == place.direction);
+    let own: Vec<(f64, Json)> = own.map(|place| (place.value, json!(place.result.status))).collect();
+    Some(json!({
+        "variant": base.variant,
+        "parameters": base.parameters,
+        "parameter": request.parameter,
+        "value": place.value,
+        "vehicle": place.vehicle,
+        "direction": place.direction,
+        "result": place.result.load_factor,
+        "status": place.result.status,
+        "case": place.result.label.id,
+        "intervals": intervals(&own),
+    }))
+}

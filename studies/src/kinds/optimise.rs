@@ -1,0 +1,214 @@
+//! `optimise`: the value of a key at which a result is best.
+#![doc = include_str!("optimise.md")]
+
+mod optima;
+mod search;
+
+use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::results::{CaseLabel, CaseResult};
+use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::study::{Case, Outline, Study, StudySource};
+use serde_json::Value as Json;
+use std::borrow::Cow;
+use voussoir_core::limit::Status;
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
+
+/// Greatest number of values on the scan.
+const MAX_SCAN: i64 = 100_000;
+/// Cases made from one case of the study have ids from a multiple of this on, after those of the study.
+const STRIDE: usize = 1_000_000;
+
+struct Optimise;
+
+/// Keys of `[optimise]`.
+pub const KEYS: &[Parameter] = &[
+    Parameter {
+        name: "parameter",
+        doc: "path of the numeric key that varies, such as \"scene.springing\"",
+        shape: Shape::Text,
+        need: Need::Optional("parameters is given"),
+    },
+    Parameter {
+        name: "parameters",
+        doc: "paths of several keys that vary in lockstep",
+        shape: Shape::List { of: &Shape::Text, min: 1, max: 100 },
+        need: Need::Optional("parameter is given"),
+    },
+    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value"),
+    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value"),
+    Parameter {
+        name: "goal",
+        doc: "which way is better",
+        shape: Shape::Choice(&["maximise", "minimise"]),
+        need: Need::Default("\"maximise\""),
+    },
+    Parameter {
+        name: "result",
+        doc: "what is optimised",
+        shape: Shape::Choice(&["load_factor", "first_limit_point"]),
+        need: Need::Optional("load_factor for small displacements, first_limit_point for finite ones"),
+    },
+    Parameter {
+        name: "scan",
+        doc: "number of even values that are tried first",
+        shape: Shape::Integer { min: 2, max: MAX_SCAN },
+        need: Need::Default("41"),
+    },
+    Parameter::number(
+        "tolerance",
+        Quantity::Ratio,
+        Range::new(0.0, true, 1.0, false),
+        "of the best value, as a share of the range from `from` to `to`",
+    )
+    .default("1e-3"),
+];
+
+voussoir_core::inventory::submit! { KindEntry { tag: "optimise", kind: &Optimise } }
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::StudyKind,
+        tag: "optimise",
+        summary: "the value of a key at which a result is greatest or least, for each variant and sweep point",
+        parameters: KEYS,
+        sources: &["Kiefer 1953, Proc. Amer. Math. Soc. 4, 502-506"],
+        file: file!(),
+        page: include_str!("optimise.md"),
+        ..Card::BLANK
+    }
+}
+
+/// `[optimise]`, read.
+#[derive(Debug, Clone)]
+pub(super) struct Request {
+    keys: Vec<String>,
+    range: [f64; 2],
+    scan: usize,
+    tolerance: f64,
+    /// 1 to maximise, −1 to minimise.
+    sense: f64,
+    /// `load_factor` or `first_limit_point`; as the displacements say where there is none.
+    result: Option<String>,
+}
+
+impl Request {
+    fn of(outline: &Outline) -> Option<Self> {
+        let table = &outline.table;
+        let number = |key: &str| table.get(key)?.as_f64();
+        let text = |key: &str| Some(table.get(key)?.as_str()?.to_string());
+        let several = table.get("parameters").and_then(|list| serde_json::from_value(list.clone()).ok());
+        Some(Request {
+            keys: several.or_else(|| Some(vec![text("parameter")?]))?,
+            range: [number("from")?, number("to")?],
+            scan: table.get("scan").and_then(Json::as_u64).map_or(41, |scan| scan as usize),
+            tolerance: number("tolerance").unwrap_or(1e-3),
+            sense: if text("goal").as_deref() == Some("minimise") { -1.0 } else { 1.0 },
+            result: text("result"),
+        })
+    }
+
+    /// The case of the study with other values, and the id that it has among all.
+    fn case(&self, study: &Study, base: usize, id: usize, value: f64) -> Option<Case> {
+        let values: Vec<(&str, Json)> = self.keys.iter().map(|key| (key.as_str(), Json::from(value))).collect();
+        let mut case = study.at(base, &values).ok()?;
+        case.id = id;
+        case.brief = true;
+        Some(case)
+    }
+
+    /// What an answer counts in the sense of the goal: better is greater. `None` where there is no finite result.
+    fn merit(&self, case: &Case, result: &CaseResult) -> Option<f64> {
+        Some(self.sense * self.result_of(case, result)?)
+    }
+
+    /// The result that is optimised; `None` where it is not finite.
+    fn result_of(&self, case: &Case, result: &CaseResult) -> Option<f64> {
+        let answered = matches!(result.status, Status::Collapse | Status::LimitPoint);
+        let first = match self.result.as_deref() {
+            Some(word) => word == "first_limit_point",
+            None => case.solver.settings.finite,
+        };
+        let found = if first { result.load_factor } else { result.load_factor };
+        found.filter(|_| answered)
+    }
+
+    /// The statuses for which there is no optimum.
+    fn without_bound(&self, status: Status) -> bool {
+        match self.sense > 0.0 {
+            true => matches!(status, Status::Unbounded | Status::Stands),
+            false => status == Status::NoEquilibrium,
+        }
+    }
+}
+
+impl StudyKind for Optimise {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        let study = Study::from_source(source)?;
+        if let Some(request) = Request::of(&study.outline) {
+            // A key that does not exist, or that takes no number, shows at both ends.
+            let at = |value: f64| {
+                let values: Vec<(&str, Json)> = request.keys.iter().map(|key| (key.as_str(), value.into())).collect();
+                study.at(0, &values)
+            };
+            let middle = 0.5 * (request.range[0] + request.range[1]);
+            if let (Err(wrong), Err(_), Err(_)) = (at(request.range[0]), at(request.range[1]), at(middle)) {
+                return Err(wrong);
+            }
+        }
+        Ok(Box::new(study))
+    }
+
+    fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
+        let missing = |key: &str| !outline.table.contains_key(key);
+        if missing("parameter") == missing("parameters") {
+            let help =
+                "[optimise] parameter = \"scene.springing\", from, to; several keys in lockstep: parameters = [...]";
+            return vec![Diagnostic::new("optimise", "needs parameter, or parameters, and not both").help(help)];
+        }
+        let Some(request) = Request::of(outline) else { return Vec::new() };
+        let mut diagnostics = Vec::new();
+        if request.range[0] >= request.range[1] {
+            let message = format!("{} must be more than from, {}", request.range[1], request.range[0]);
+            diagnostics.push(Diagnostic::new("optimise.to", message));
+        }
+        for key in request.keys.iter().filter(|key| outline.axes.iter().any(|(swept, _)| swept.contains(key))) {
+            diagnostics.push(Diagnostic::new("optimise.parameter", format!("\"{key}\" is swept besides")));
+        }
+        diagnostics
+    }
+
+    fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+        let mut results = solve_cases(study, wanted, jobs, observer);
+        let Some(request) = Request::of(&study.outline) else { return results };
+        let all = || {
+            let of = |&base: &usize| {
+                let first = study.cases.len() + base * STRIDE;
+                let solve = |index: usize, value: f64| {
+                    let case = request.case(study, base, first + index, value)?;
+                    let result = solve_case(&case);
+                    Some((request.merit(&case, &result), result))
+                };
+                search::best_value(&request, &solve)
+            };
+            wanted.iter().flat_map(of).collect::<Vec<_>>()
+        };
+        results.extend(side_by_side(jobs, all));
+        results
+    }
+
+    fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
+        if let Some(case) = study.cases.get(label.id) {
+            return Some(Cow::Borrowed(case));
+        }
+        let request = Request::of(&study.outline)?;
+        let base = (label.id - study.cases.len()) / STRIDE;
+        let value = label.parameters.get(request.keys.first()?)?.as_f64()?;
+        request.case(study, base, label.id, value).map(Cow::Owned)
+    }
+
+    fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
+        let Some(request) = Request::of(&study.outline) else { return OwnResults::default() };
+        OwnResults { other: optima::entries(study, &request, cases), ..OwnResults::default() }
+    }
+}

@@ -1,0 +1,79 @@
+//! What `optimise` adds to the results: the best value of each case of the study, and where there is none.
+
+use super::Request;
+use crate::kinds::search::intervals;
+use crate::results::CaseResult;
+use crate::study::{Case, Study};
+use serde_json::{Map, Value as Json, json};
+
+/// A value that was tried.
+struct Tried<'a> {
+    value: f64,
+    /// What was found there; `None` where it makes no scene.
+    found: Option<(&'a CaseResult, Option<f64>)>,
+}
+
+impl Tried<'_> {
+    fn status(&self) -> Json {
+        self.found.map_or("impossible".into(), |(result, _)| json!(result.status))
+    }
+}
+
+/// `optima` of results.json.
+pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
+    let optimum = |base: &Case| {
+        let first = study.cases.len() + base.id * super::STRIDE;
+        let own = cases.iter().filter(|result| (first..first + super::STRIDE).contains(&result.label.id));
+        let mut tried: Vec<Tried> = own.filter_map(|result| of_case(request, base, result)).collect();
+        (!tried.is_empty()).then(|| {
+            add_impossible(request, &mut tried);
+            entry(request, base, &tried)
+        })
+    };
+    let optima: Vec<Json> = study.cases.iter().filter_map(optimum).collect();
+    [("optima".to_string(), Json::from(optima))].into_iter().collect()
+}
+
+fn of_case<'a>(request: &Request, base: &Case, result: &'a CaseResult) -> Option<Tried<'a>> {
+    let value = result.label.parameters.get(request.keys.first()?)?.as_f64()?;
+    Some(Tried { value, found: Some((result, request.result_of(base, result))) })
+}
+
+/// Adds the values of the scan that make no scene, and sorts.
+fn add_impossible(request: &Request, tried: &mut Vec<Tried>) {
+    let [from, to] = request.range;
+    let spacing = (to - from) / (request.scan - 1) as f64;
+    let scanned = (0..request.scan).map(|i| from + spacing * i as f64);
+    let near = |value: f64| tried.iter().any(|tried| (tried.value - value).abs() <= 1e-9 * (to - from));
+    let impossible: Vec<f64> = scanned.filter(|value| !near(*value)).collect();
+    tried.extend(impossible.into_iter().map(|value| Tried { value, found: None }));
+    tried.sort_by(|a, b| a.value.total_cmp(&b.value));
+}
+
+fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
+    let finite = tried.iter().filter_map(|t| t.found.and_then(|(result, own)| Some((t.value, result, own?))));
+    // Of equal results the first: as many as there are mirrored scenes.
+    let better = |a: f64, b: f64| request.sense * a > request.sense * b;
+    let best = finite.reduce(|best, other| if better(other.2, best.2) { other } else { best });
+    let best_finite =
+        best.map(|(value, result, own)| json!({ "value": value, "result": own, "case": result.label.id }));
+    let without_bound = tried.iter().filter_map(|t| t.found).find(|(result, _)| request.without_bound(result.status));
+    let (value, own, shown) = match (without_bound, best) {
+        (Some((result, _)), _) => (None, None, Some(result)),
+        (None, Some((value, result, own))) => (Some(value), Some(own), Some(result)),
+        (None, None) => (None, None, tried.iter().find_map(|t| t.found).map(|(result, _)| result)),
+    };
+    let statuses: Vec<(f64, Json)> = tried.iter().map(|t| (t.value, t.status())).collect();
+    json!({
+        "variant": base.variant,
+        "parameters": base.parameters,
+        "parameter": request.keys.first(),
+        "value": value,
+        "result": own,
+        "status": shown.map(|result| result.status),
+        "case": shown.map(|result| result.label.id),
+        "best_finite": best_finite,
+        "intervals": intervals(&statuses),
+        "scan_spacing": (request.range[1] - request.range[0]) / (request.scan - 1) as f64,
+    })
+}

@@ -1,0 +1,317 @@
+//! `bridge`: spans of one or several rings on abutments and piers, with fill.
+#![doc = include_str!("bridge.md")]
+
+mod fill;
+mod keys;
+mod piers;
+mod rings;
+
+pub use self::fill::{Extent, Fill, Haunching, Layer};
+pub use self::piers::{Footing, Pier};
+pub use self::rings::{Counts, RadialJoints, Span};
+
+use self::piers::PierBlocks;
+use self::rings::SpanBlocks;
+use super::arch::Ends;
+use super::keys::PlaneState;
+use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
+use super::mesh::{Mesh, density, mesh_diagnostics};
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::geometry::{Vec2, bounding_box};
+use voussoir_core::model::{
+    ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Chord, Gap, Joint, Scene, find_joints,
+};
+use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Range, check_as};
+
+/// Spans on abutments and piers, with fill.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BridgeScene {
+    /// Out of plane \[m\].
+    pub width: f64,
+    /// Stress state of deformable blocks.
+    #[serde(default)]
+    pub plane: PlaneState,
+    /// Material of blocks that name none.
+    pub material: String,
+    /// Interface law of all joints but those between rings.
+    pub joint: String,
+    /// Interface law of the joints between rings; as `joint` where it is not given.
+    pub ring_joint: Option<String>,
+    /// From left to right.
+    pub spans: Vec<Span>,
+    /// Between them, one fewer.
+    #[serde(default)]
+    pub piers: Vec<Pier>,
+    /// Its fill.
+    pub fill: Option<Fill>,
+    /// Mesh of deformable blocks.
+    pub mesh: Option<Mesh>,
+}
+
+/// All parts in place.
+struct Shapes {
+    spans: Vec<SpanBlocks>,
+    piers: Vec<PierBlocks>,
+}
+
+/// Prefixes the paths of issues.
+fn within(path: &str, diagnostics: Vec<Diagnostic>) -> impl Iterator<Item = Diagnostic> + '_ {
+    diagnostics.into_iter().map(move |wrong| Diagnostic { path: format!("{path}.{}", wrong.path), ..wrong })
+}
+
+impl BridgeScene {
+    /// The blocks, or every mistake in the geometry, with paths from the scene's table.
+    fn shapes(&self) -> Result<Shapes, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
+        if self.spans.is_empty() {
+            diagnostics.push(Diagnostic::new("spans", "there is no span"));
+        } else if self.piers.len() + 1 != self.spans.len() {
+            let message = format!("{} for {} spans: one pier between two spans", self.piers.len(), self.spans.len());
+            diagnostics.push(Diagnostic::new("piers", message));
+        }
+        for (i, pier) in self.piers.iter().enumerate() {
+            diagnostics.extend(within(&format!("piers.{i}"), pier.mistakes()));
+        }
+        if let Some(fill) = &self.fill {
+            diagnostics.extend(within("fill", fill.mistakes()));
+        }
+        let (mut spans, mut x) = (Vec::new(), 0.0);
+        for (i, span) in self.spans.iter().enumerate() {
+            match span.blocks(x) {
+                Ok(blocks) => {
+                    x = blocks.springing(1)[0].x + self.piers.get(i).map_or(0.0, |pier| pier.width);
+                    spans.push(blocks);
+                }
+                Err(wrong) => diagnostics.extend(within(&format!("spans.{i}"), wrong)),
+            }
+        }
+        if !diagnostics.is_empty() {
+            return Err(diagnostics);
+        }
+        let mut piers = Vec::new();
+        for (i, (pier, pair)) in self.piers.iter().zip(spans.windows(2)).enumerate() {
+            match pier.blocks(pair[0].springing(1), pair[1].springing(0)) {
+                Ok(blocks) => piers.push(blocks),
+                Err(wrong) => diagnostics.extend(within(&format!("piers.{i}"), vec![wrong])),
+            }
+        }
+        if diagnostics.is_empty() { Ok(Shapes { spans, piers }) } else { Err(diagnostics) }
+    }
+
+    fn validate(&self) -> Vec<(String, String)> {
+        self.shapes().err().map(pairs_of).unwrap_or_default()
+    }
+}
+
+/// Materials and laws by index.
+struct Indices {
+    spans: Vec<usize>,
+    piers: Vec<usize>,
+    material: usize,
+    joint: usize,
+    ring_joint: usize,
+}
+
+/// Bodies and joints as they are put together.
+#[derive(Default)]
+struct Builder {
+    bodies: Vec<Body>,
+    /// Across rings; they come first.
+    radial: Vec<Joint>,
+    other: Vec<Joint>,
+    extrados: Vec<Chord>,
+}
+
+impl Builder {
+    fn body(&mut self, name: String, vertices: Vec<Vec2>, material: usize, fixed: bool) -> usize {
+        self.bodies.push(Body { name, vertices, material, fixed });
+        self.bodies.len() - 1
+    }
+
+    /// The rings of a span on what stands `before` it; `bonds` of joints across rings, between rings, at springings.
+    /// The joints at its end are left without the body that comes after.
+    fn span(
+        &mut self,
+        index: usize,
+        blocks: &SpanBlocks,
+        before: usize,
+        bonds: [Bond; 3],
+        alone: bool,
+        material: usize,
+    ) {
+        let [bond, ring_bond, springing] = bonds;
+        let mut first = Vec::new();
+        for (r, ring) in blocks.rings.iter().enumerate() {
+            first.push(self.bodies.len());
+            let count = ring.voussoirs.len();
+            for (k, vertices) in ring.voussoirs.iter().enumerate() {
+                let name = if alone { k.to_string() } else { format!("s{index}r{r}v{k}") };
+                let body = self.body(name, vertices.clone(), material, false);
+                let minus = if k == 0 { before } else { body - 1 };
+                let bond = if k == 0 { springing } else { bond };
+                self.radial.push(Joint { minus, plus: body, ends: ring.joints[k], bond, gap: Gap::default() });
+            }
+            let minus = self.bodies.len() - 1;
+            // The next body is not yet known: `usize::MAX` stands for it.
+            let end = Joint { minus, plus: usize::MAX, ends: ring.joints[count], bond: springing, gap: Gap::default() };
+            self.radial.push(end);
+        }
+        for (r, interface) in blocks.interfaces.iter().enumerate() {
+            for (below, above, ends) in interface {
+                let (minus, plus) = (first[r] + below, first[r + 1] + above);
+                self.other.push(Joint { minus, plus, ends: *ends, bond: ring_bond, gap: Gap::default() });
+            }
+        }
+        if let (Some(outermost), Some(first)) = (blocks.rings.last(), first.last()) {
+            let count = outermost.voussoirs.len();
+            self.extrados.extend((0..count).map(|k| Chord {
+                body: first + k,
+                ends: [outermost.joints[k][1], outermost.joints[k + 1][1]],
+                from_middle: (2 * k + 1).abs_diff(count),
+            }));
+        }
+    }
+
+    /// Joins the rings that end here to a body.
+    fn join_ends(&mut self, body: usize) {
+        self.radial.iter_mut().filter(|joint| joint.plus == usize::MAX).for_each(|joint| joint.plus = body);
+    }
+
+    /// A pier, on which the rings before it end; returns the body on which the next span begins.
+    fn pier(&mut self, index: usize, pier: &Pier, blocks: &PierBlocks, bond: Bond, material: usize) -> usize {
+        let cap = blocks.cap.as_ref().map(|cap| self.body(format!("p{index}cap"), cap.clone(), material, false));
+        let courses: Vec<usize> = (blocks.courses.iter().enumerate())
+            .map(|(i, course)| self.body(format!("p{index}c{i}"), course.clone(), material, false))
+            .collect();
+        let ground = self.body(format!("footing{index}"), Vec::new(), material, true);
+        let top = cap.unwrap_or(courses[0]);
+        self.join_ends(top);
+        if let Some(ends) = blocks.top {
+            self.extrados.push(Chord { body: top, ends, from_middle: Chord::NO_RING });
+        }
+        let below = courses.iter().copied().chain([ground]);
+        let above = cap.into_iter().chain(courses.iter().copied());
+        let levels = if cap.is_some() { &blocks.levels[..] } else { &blocks.levels[1..] };
+        let below = below.skip(usize::from(cap.is_none()));
+        for ((minus, plus), [left, right]) in below.zip(above).zip(levels) {
+            let bond = if minus == ground && pier.footing == Footing::Bonded { Bond::Bonded } else { bond };
+            self.other.push(Joint { minus, plus, ends: [*right, *left], bond, gap: Gap::default() });
+        }
+        top
+    }
+}
+
+impl BridgeScene {
+    fn indices(&self, catalogue: &Catalogue) -> Result<Indices, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let own = take(material(catalogue, &self.material, "material"), &mut diagnostics);
+        let joint = take(law(catalogue, &self.joint, "joint"), &mut diagnostics);
+        let ring_joint = match &self.ring_joint {
+            Some(name) => take(law(catalogue, name, "ring_joint"), &mut diagnostics),
+            None => joint,
+        };
+        let mut each = |name: &Option<String>, path: String| match name {
+            Some(name) => take(material(catalogue, name, &path), &mut diagnostics),
+            None => own,
+        };
+        let spans: Vec<_> =
+            self.spans.iter().enumerate().map(|(i, s)| each(&s.material, format!("spans.{i}.material"))).collect();
+        let piers: Vec<_> =
+            self.piers.iter().enumerate().map(|(i, p)| each(&p.material, format!("piers.{i}.material"))).collect();
+        let indices = (|| {
+            Some(Indices {
+                spans: spans.into_iter().collect::<Option<_>>()?,
+                piers: piers.into_iter().collect::<Option<_>>()?,
+                material: own?,
+                joint: joint?,
+                ring_joint: ring_joint?,
+            })
+        })();
+        indices.ok_or(diagnostics)
+    }
+
+    /// Bodies, joints and upper faces.
+    fn put_together(&self, shapes: &Shapes, indices: &Indices) -> Builder {
+        let mut builder = Builder::default();
+        let [joint, ring_joint] = [indices.joint, indices.ring_joint].map(Bond::Law);
+        let mut before = builder.body("left".into(), Vec::new(), indices.material, true);
+        let alone = self.spans.len() == 1 && shapes.spans[0].rings.len() == 1;
+        for (index, (span, blocks)) in self.spans.iter().zip(&shapes.spans).enumerate() {
+            let springing = if span.ends == Ends::Bonded { Bond::Bonded } else { joint };
+            builder.span(index, blocks, before, [joint, ring_joint, springing], alone, indices.spans[index]);
+            if let (Some(pier), Some(blocks)) = (self.piers.get(index), shapes.piers.get(index)) {
+                before = builder.pier(index, pier, blocks, joint, indices.piers[index]);
+            }
+        }
+        let right = builder.body("right".into(), Vec::new(), indices.material, true);
+        builder.join_ends(right);
+        builder
+    }
+}
+
+/// Parts that run into each other, as wide rings over a narrow valley do.
+fn overlap(bodies: &[Body]) -> Option<Diagnostic> {
+    let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
+    let (_, overlaps) = find_joints(bodies, (high - low).norm(), |_, _| (Bond::Bonded, Gap::default()));
+    let worst = overlaps.into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+    let [a, b] = worst.bodies.map(|body| &bodies[body].name);
+    Some(Diagnostic::new("spans", format!("blocks \"{a}\" and \"{b}\" overlap by {:.3e} m", worst.depth)))
+}
+
+#[typetag::serde(name = "bridge")]
+impl Scene for BridgeScene {
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let indices = self.indices(catalogue).map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
+        let shapes = self.shapes().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
+        let (Some(indices), Some(shapes)) = (indices, shapes) else { return Err(from_root(diagnostics)) };
+        let Builder { bodies, radial, other, extrados } = self.put_together(&shapes, &indices);
+        if let Some(wrong) = overlap(&bodies) {
+            return Err(from_root(vec![wrong]));
+        }
+        let ends = [shapes.spans[0].springing(0)[0], shapes.spans[shapes.spans.len() - 1].springing(1)[0]];
+        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1;
+        let ring = || {
+            let crown = radial.iter().fold(f64::NEG_INFINITY, |top, joint| top.max(joint.ends[0].y));
+            let rise = crown - (ends[0].y + ends[1].y) / 2.0;
+            ArchLayout { first: 1, voussoirs: radial.len() - 1, span: ends[1].x - ends[0].x, rise }
+        };
+        let arch = alone.then(ring);
+        let springings = ends.map(|end| end.x);
+        let mut bridge = Bridge { extrados, springings, radial: radial.len(), ..Bridge::default() };
+        let mut assembly = Assembly {
+            catalogue: catalogue.clone(),
+            joints: radial.into_iter().chain(other).collect(),
+            bodies,
+            width: self.width,
+            plane: self.plane.into(),
+            mesh: density(self.mesh),
+            arch,
+            bridge: None,
+        };
+        if let Some(fill) = &self.fill {
+            let crown = shapes.spans.iter().fold(f64::NEG_INFINITY, |top, span| top.max(span.crown));
+            let added = fill.add_to(&assembly, &mut bridge, crown, springings);
+            added.map_err(|wrong| from_root(within("fill", wrong).collect()))?;
+        }
+        assembly.bridge = Some(bridge);
+        Ok(assembly)
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::Scene,
+        tag: "bridge",
+        summary: "spans of one or several rings on abutments and piers, with fill",
+        parameters: keys::PARAMETERS,
+        sources: &["Heyman 1982, The Masonry Arch", "Melbourne, Gilbert & Wagstaff 1997, Struct. Eng. 75 (multi-span)"],
+        file: file!(),
+        page: include_str!("bridge.md"),
+        check: |value| check_as::<BridgeScene>(value, BridgeScene::validate),
+        ..Card::BLANK
+    }
+}

@@ -1,0 +1,108 @@
+//! Piers of a bridge: courses of blocks, and between the springings above them a cap.
+
+use crate::scenes::lookup::out_of_range;
+use serde::{Deserialize, Serialize};
+use voussoir_core::model::crosses_itself;
+use voussoir_core::model::geometry::{Vec2, area_and_centroid};
+use voussoir_core::plugin::{Diagnostic, Range};
+
+/// Greatest number of courses.
+pub(super) const MAX_COURSES: usize = 1000;
+
+/// What a pier stands on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Footing {
+    /// On fixed ground, with a joint like any other.
+    #[default]
+    Fixed,
+    /// Its lowest course is one with the ground.
+    Bonded,
+}
+
+/// A pier.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pier {
+    /// Below the lower of the springings that it carries \[m\].
+    pub height: f64,
+    /// At the springings, which is the distance between their intrados ends \[m\].
+    pub width: f64,
+    /// At its foot \[m\]; as at the springings where it is not given.
+    pub base_width: Option<f64>,
+    /// Number of courses of equal height.
+    #[serde(default = "one")]
+    pub courses: usize,
+    /// What it stands on.
+    #[serde(default)]
+    pub footing: Footing,
+    /// Material, instead of the scene's.
+    pub material: Option<String>,
+}
+
+fn one() -> usize {
+    1
+}
+
+/// A pier in place.
+#[derive(Debug, Clone)]
+pub struct PierBlocks {
+    /// Between the springing faces; `None` where these lie level on the pier.
+    pub cap: Option<Vec<Vec2>>,
+    /// Courses from the top down.
+    pub courses: Vec<Vec<Vec2>>,
+    /// Upper ends (left, right) of each course, then those of the ground.
+    pub levels: Vec<[Vec2; 2]>,
+    /// The free top of the cap, or of the pier, from left to right.
+    pub top: Option<[Vec2; 2]>,
+}
+
+impl Pier {
+    /// What is wrong with its numbers.
+    pub fn mistakes(&self) -> Vec<Diagnostic> {
+        let mut diagnostics = Vec::new();
+        diagnostics.extend(out_of_range("height", self.height, Range::POSITIVE));
+        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(self.base_width.and_then(|width| out_of_range("base_width", width, Range::POSITIVE)));
+        if !(1..=MAX_COURSES).contains(&self.courses) {
+            let message = format!("{} must be from 1 to {MAX_COURSES}", self.courses);
+            diagnostics.push(Diagnostic::new("courses", message));
+        }
+        diagnostics
+    }
+
+    /// The blocks between the right springing of one span and the left springing of the next (intrados and extrados
+    /// ends).
+    pub fn blocks(
+        &self,
+        [left, outer_left]: [Vec2; 2],
+        [right, outer_right]: [Vec2; 2],
+    ) -> Result<PierBlocks, Diagnostic> {
+        let base = left.y.min(right.y);
+        let size = self.width + self.height;
+        let (low_left, low_right) = (Vec2::new(left.x, base), Vec2::new(right.x, base));
+        let mut cap = vec![low_left, low_right, right, outer_right, outer_left, left];
+        cap.dedup_by(|a, b| (*a - *b).norm() <= 1e-12 * size);
+        if cap.len() > 1 && (cap[0] - cap[cap.len() - 1]).norm() <= 1e-12 * size {
+            cap.pop();
+        }
+        let area = if cap.len() > 2 { area_and_centroid(&cap).0 } else { 0.0 };
+        let flat = area.abs() <= 1e-12 * size * size;
+        if outer_left.x > outer_right.x + 1e-12 * size || area < 0.0 || (!flat && crosses_itself(&cap)) {
+            let message = format!("{} m is too narrow: the springings of its two spans cross above it", self.width);
+            return Err(Diagnostic::new("width", message));
+        }
+        let open = outer_right.x - outer_left.x > 1e-9 * size;
+        let middle = (left.x + right.x) / 2.0;
+        let foot = self.base_width.unwrap_or(self.width);
+        let level = |i: usize| {
+            let share = i as f64 / self.courses as f64;
+            let half = (self.width + (foot - self.width) * share) / 2.0;
+            let y = base - self.height * share;
+            if i == 0 { [low_left, low_right] } else { [Vec2::new(middle - half, y), Vec2::new(middle + half, y)] }
+        };
+        let levels: Vec<_> = (0..=self.courses).map(level).collect();
+        let courses = levels.windows(2).map(|pair| vec![pair[1][0], pair[1][1], pair[0][1], pair[0][0]]).collect();
+        Ok(PierBlocks { cap: (!flat).then_some(cap), courses, levels, top: open.then_some([outer_left, outer_right]) })
+    }
+}

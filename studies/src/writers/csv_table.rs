@@ -1,0 +1,30 @@
+//! Tables as CSV, of which no cell is a formula to a spreadsheet.
+
+/// A table with its header. Rows are as long as the header.
+pub fn csv_table(header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in std::iter::once(header).chain(rows) {
+        writer.write_record(row.into_iter().map(plain)).expect("every row is as long as the header");
+    }
+    let bytes = writer.into_inner().expect("writing to memory does not fail");
+    String::from_utf8(bytes).expect("every cell is text")
+}
+
+/// A cell that is text or a number: what a spreadsheet would read as a formula gets an apostrophe in front, which
+/// spreadsheets do not show.
+fn plain(cell: String) -> String {
+    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
+    if formula { format!("'{cell}") } else { cell }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stay_and_formulas_become_text() {
+        let row = ["-1.5", "=1+1", "@x", "+2", "-a", "a=b", ""].map(String::from).to_vec();
+        let header = (0..7).map(|i| format!("c{i}")).collect();
+        assert_eq!(csv_table(header, [row].into_iter()), "c0,c1,c2,c3,c4,c5,c6\n-1.5,'=1+1,'@x,+2,'-a,a=b,\n");
+    }
+}

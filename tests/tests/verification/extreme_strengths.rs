@@ -1,0 +1,57 @@
+//! Strengths of no size or of any size: the answer is that of the law they tend to.
+
+use voussoir::core::limit::Status;
+use voussoir_tests::{Arch, answered, assert_close};
+
+const SOLVERS: [&str; 2] = ["limit_chain", "limit_conic"];
+
+fn jointed(joint: &str, solver: &'static str) -> String {
+    Arch { ends: "jointed", joint: joint.into(), solver, ..Arch::default() }.study()
+}
+
+/// A jointed arch without friction cannot stand under its own weight, whoever is asked.
+#[test]
+fn joints_without_friction_do_not_carry_the_dead_load() {
+    let free = ["law = \"unilateral\"\ntangential = \"free\"", "law = \"coulomb_associated\"\nfriction = 0.0"];
+    for joint in free {
+        for solver in SOLVERS {
+            assert_eq!(answered(&jointed(joint, solver)).status, Status::NoEquilibrium, "{solver}: {joint}");
+        }
+    }
+    for solver in ["limit_sequential", "limit_least"] {
+        let case = answered(&jointed("law = \"coulomb\"\nfriction = 0.0", solver));
+        assert_eq!(case.status, Status::NoEquilibrium, "{solver}");
+    }
+}
+
+/// Friction that no force reaches is that of stuck joints.
+#[test]
+fn great_friction_is_none_that_slides() {
+    let stuck = answered(&jointed("law = \"unilateral\"\ntangential = \"stuck\"", "limit_chain"));
+    let factor = stuck.load_factor.expect("a collapse");
+    for mu in ["1e6", "1e10", "1e12", "1e30"] {
+        for solver in SOLVERS {
+            let case = answered(&jointed(&format!("law = \"coulomb_associated\"\nfriction = {mu}"), solver));
+            assert_close(case.load_factor.expect("a collapse"), factor, 1e-12);
+        }
+        for solver in ["limit_sequential", "limit_least"] {
+            let case = answered(&jointed(&format!("law = \"coulomb\"\nfriction = {mu}"), solver));
+            assert_close(case.load_factor.expect("a collapse"), factor, 1e-12);
+        }
+    }
+}
+
+/// A deep arch is not told by a strength beyond its forces: both solvers to the same load, ever nearer to the one
+/// without a bound, from which a block of height N / f_c b takes N / (f_c h b) at each hinge.
+#[test]
+fn great_compressive_strength_is_none_that_crushes() {
+    let factor = |joint: &str, solver| answered(&jointed(joint, solver)).load_factor.expect("a collapse");
+    let unlimited = factor("law = \"coulomb_associated\"\nfriction = 0.6", "limit_chain");
+    for (strength, off) in [(1e11, 4e-6), (1e13, 4e-8), (1e15, 4e-10), (1e18, 1e-12), (1e30, 1e-12)] {
+        let joint = format!("law = \"mohr_coulomb\"\nfriction = 0.6\ncompressive_strength = {strength:e}");
+        let [chain, conic] = SOLVERS.map(|solver| factor(&joint, solver));
+        assert_close(chain, conic, 1e-11);
+        assert_close(chain, unlimited, off);
+        assert!(chain <= unlimited * (1.0 + 1e-12));
+    }
+}

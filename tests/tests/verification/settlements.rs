@@ -1,0 +1,309 @@
+//! Supports that move, small displacements: what is statically determinate moves at constant forces, and the load after
+//! any settlement is that of the arch whose supports have not moved.
+
+use voussoir::core::certificate::Side;
+use voussoir::core::limit::Status;
+use voussoir::results::{CaseResult, Proof};
+use voussoir_tests::{answered, assert_close, changed};
+
+/// The reference arch of 15 elastic voussoirs: dead load, a settlement, a load at the quarter.
+fn arch(solver: &str, settlement: &str, after: &str) -> String {
+    format!(
+        r#"name = "settled"
+[scene]
+scene = "arch"
+profile = {{ shape = "segmental", span = 9.42, rise = 2.99 }}
+thickness = 0.60
+width = 5.81
+voussoirs = 15
+ends = "bonded"
+material = "stone"
+joint = "dry"
+mesh = {{ elements = [2, 4], order = 2 }}
+[materials.stone]
+law = "elastic"
+young_modulus = 5e9
+poisson_ratio = 0.3
+density = 2200.0
+[joints.dry]
+law = "coulomb"
+friction = 0.6
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "settle"
+settlement = [{settlement}]
+{after}
+[solver]
+solver = "{solver}"
+"#
+    )
+}
+
+const LIVE: &str = "[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }]";
+
+/// Limit load of the rigid blocks, without any settlement.
+const LOAD: f64 = 698.0226652123788;
+
+fn passes(result: &CaseResult) {
+    assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
+}
+
+/// Out, in, down, both, turned: with small displacements rigid-block limit analysis does not see where supports are.
+#[test]
+fn the_load_after_any_settlement_is_that_of_the_unmoved_arch() {
+    let left =
+        |d: &str, rotation: f64| format!("{{ support = \"left\", displacement = {d}, rotation = {rotation:?} }}");
+    let both = format!("{}, {{ support = \"right\", displacement = [0.05, 0.0] }}", left("[-0.05, 0.0]", 0.0));
+    for settlement in [left("[-0.05, 0.0]", 0.0), left("[0.05, 0.0]", 0.0), left("[0.0, 0.0]", 0.0175), both] {
+        for solver in ["event_path", "newton_path"] {
+            let result = answered(&arch(solver, &settlement, LIVE));
+            assert_eq!(result.status, Status::Collapse, "{solver} {settlement} {:?}", result.notes);
+            passes(&result);
+            assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+        }
+    }
+}
+
+/// Three hinges on the sides that a spreading and a closing support open, as Mery's thrust lines have them; the arch
+/// stands, and its hinges are listed with their sides.
+#[test]
+fn a_spread_arch_stands_on_three_hinges() {
+    for (x, crown, springing) in [(-0.05, Side::Extrados, Side::Intrados), (0.05, Side::Intrados, Side::Extrados)] {
+        let moved = format!("{{ support = \"left\", displacement = [{x:?}, 0.0] }}");
+        let result = answered(&arch("event_path", &moved, ""));
+        assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+        passes(&result);
+        let hinges = &result.stages[1].hinges;
+        let greatest = hinges.iter().fold(0.0, |a: f64, h| a.max(h.rotation.abs()));
+        let main: Vec<_> = hinges.iter().filter(|h| h.rotation.abs() > 0.3 * greatest).collect();
+        let sides: Vec<_> = main.iter().map(|h| h.side.expect("an arch has sides")).collect();
+        assert_eq!(sides, [springing, crown, springing], "{hinges:?}");
+    }
+}
+
+/// Two stages that move a support to and fro leave the forces of the one that moved it least, not of the last.
+#[test]
+fn a_support_that_moves_back_stands_too() {
+    let back = "[[stages]]\nname = \"back\"\nsettlement = [{ support = \"left\", displacement = [0.05, 0.0] }]";
+    for solver in ["event_path", "newton_path"] {
+        let result =
+            answered(&arch(solver, "{ support = \"left\", displacement = [-0.05, 0.0] }", &format!("{back}\n{LIVE}")));
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        passes(&result);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+    }
+}
+
+/// A settlement without end is carried by constant forces.
+#[test]
+fn a_support_spreads_without_end_with_small_displacements() {
+    let text = arch("event_path", "{ support = \"left\", displacement = [-1.0, 0.0] }", "");
+    let result = answered(&changed(&text, "name = \"settle\"", "name = \"settle\"\nuntil = \"collapse\""));
+    assert_eq!(result.status, Status::Unbounded, "{:?}", result.notes);
+    passes(&result);
+}
+
+/// One block on a ground that moves, alone and in a wall: a rigid motion changes no force.
+#[test]
+fn what_stands_on_one_ground_moves_with_it() {
+    let wall = r#"name = "wall"
+[scene]
+scene = "wall"
+width = 0.24
+brick = [0.5, 0.25]
+courses = 4
+bricks = 4
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = 0.577
+normal_stiffness = 1e10
+shear_stiffness = 4e9
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "settle"
+settlement = [{ support = "ground", displacement = [0.003, -0.01], rotation = 0.002 }]
+[solver]
+solver = "event_path"
+"#;
+    let unmoved = changed(wall, "displacement = [0.003, -0.01], rotation = 0.002", "displacement = [0.0, 0.0]");
+    let [moved, unmoved] = [wall, unmoved.as_str()].map(answered);
+    passes(&moved);
+    assert_eq!(moved.status, Status::Stands, "{:?}", moved.notes);
+    let [a, b] = [&moved, &unmoved].map(|result| result.proof.field.as_ref().expect("a field"));
+    let size = b.iter().flat_map(|f| f.force).fold(0.0, |a: f64, r| a.max(r.abs()));
+    for (a, b) in a.iter().zip(b) {
+        (0..2).for_each(|i| assert!((a.force[i] - b.force[i]).abs() <= 1e-12 * size, "{a:?} {b:?}"));
+    }
+}
+
+/// Strategies that follow a load have none in a stage that only moves a support: each stage has its own.
+#[test]
+fn each_stage_has_its_own_strategy() {
+    let text = arch("newton_path", "{ support = \"left\", displacement = [-0.005, 0.0] }", LIVE);
+    let own = changed(
+        &text,
+        "until = \"collapse\"",
+        "until = \"collapse\"\ncontinuation = { strategy = \"displacement_control\" }\nstop = { displacement = 0.01 }",
+    );
+    let all = changed(
+        &text,
+        "solver = \"newton_path\"",
+        "solver = \"newton_path\"\ncontinuation = { strategy = \"displacement_control\" }",
+    );
+    for text in [own, all] {
+        let result = answered(&text);
+        passes(&result);
+        let factor = result.load_factor.expect("an end");
+        assert!((factor - LOAD).abs() <= 1e-6 * LOAD, "{factor} {:?} {:?}", result.status, result.notes);
+    }
+}
+
+/// The same arch of rigid blocks without any compliance.
+fn rigid(joint: &str, settlement: &str, before: &str, after: &str) -> String {
+    let text = arch("auto", settlement, after);
+    let text = changed(&text, "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.3", "law = \"rigid\"");
+    let text = changed(&text, "law = \"coulomb\"", &format!("law = \"{joint}\""));
+    changed(&text, "[[stages]]\nname = \"settle\"", &format!("{before}\n[[stages]]\nname = \"settle\""))
+}
+
+/// Resultants (N, T, M about the middle) of the forces on each joint.
+fn resultants(result: &CaseResult, joints: usize) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]; joints];
+    let mut middles = vec![([0.0; 2], 0.0f64); joints];
+    let field = result.proof.field.as_ref().expect("a field");
+    for entry in field {
+        let middle = &mut middles[entry.joint];
+        (0..2).for_each(|i| middle.0[i] += entry.point[i]);
+        middle.1 += 1.0;
+    }
+    for entry in field {
+        let (sum, count) = middles[entry.joint];
+        let [x, y] = [0, 1].map(|i| entry.point[i] - sum[i] / count);
+        let own = &mut sums[entry.joint];
+        own[0] += entry.force[0];
+        own[1] += entry.force[1];
+        own[2] += entry.force[0] * x.hypot(y) * if x + 0.1 * y > 0.0 { 1.0 } else { -1.0 };
+    }
+    sums
+}
+
+/// Where three hinges make an arch determinate its thrust is that of statics, whatever the stiffness: rigid blocks by
+/// least energy and elastic ones by their path carry the same.
+#[test]
+fn rigid_and_elastic_blocks_carry_the_same_after_a_settlement() {
+    for x in [-0.05, 0.05] {
+        let moved = format!("{{ support = \"left\", displacement = [{x:?}, 0.0] }}");
+        let rigid = answered(&rigid("coulomb_associated", &moved, "", ""));
+        assert_eq!(rigid.status, Status::Stands, "{:?}", rigid.notes);
+        passes(&rigid);
+        let elastic = answered(&arch("event_path", &moved, ""));
+        let [a, b] = [&rigid, &elastic].map(|result| resultants(result, 16));
+        let size = b.iter().map(|r| r[0]).fold(0.0, f64::max);
+        for joint in 1..15 {
+            (0..2).for_each(|i| {
+                assert!((a[joint][i] - b[joint][i]).abs() < 1e-9 * size, "{x} {joint} {:?} {:?}", a[joint], b[joint])
+            });
+        }
+    }
+}
+
+/// Three hinges at A, B and C, a support at A that moves by d: d + θ₁ × (B − A) = θ₂ × (B − C).
+#[test]
+fn hinges_of_rigid_blocks_close_the_chain() {
+    let live = "[[stages]]\nname = \"live\"\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -3e5] }]";
+    for d in [[-0.05, 0.0], [0.02, 0.01], [0.0, -0.03]] {
+        let moved = format!("{{ support = \"left\", displacement = [{:?}, {:?}] }}", d[0], d[1]);
+        let result = answered(&rigid("coulomb_associated", &moved, live, ""));
+        assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+        passes(&result);
+        let hinges = &result.stages[2].hinges;
+        assert_eq!(hinges.len(), 3, "{hinges:?}");
+        let [a, b, c] = [0, 1, 2].map(|k| hinges[k].point);
+        // Unknowns θ₁, θ₂: d_x − θ₁ (b_y − a_y) = −θ₂ (b_y − c_y), d_y + θ₁ (b_x − a_x) = θ₂ (b_x − c_x).
+        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [b[0] - c[0], b[1] - c[1]]);
+        let determinant = -p[1] * -q[0] - q[1] * p[0];
+        let first = (-d[0] * -q[0] - q[1] * -d[1]) / determinant;
+        let second = (-p[1] * -d[1] - p[0] * -d[0]) / determinant;
+        for (hinge, rotation) in hinges.iter().zip([first, second - first, -second]) {
+            assert!((hinge.rotation - rotation).abs() < 1e-10, "{hinge:?} {rotation}");
+        }
+    }
+}
+
+/// What the supports do together changes nothing: a common translation, and with small displacements a common rotation.
+#[test]
+fn a_common_motion_of_all_supports_changes_nothing() {
+    let both = |d: &str, rotation: f64| {
+        let one = |side: &str| format!("{{ support = \"{side}\", displacement = {d}, rotation = {rotation:?} }}");
+        format!("{}, {}", one("left"), one("right"))
+    };
+    let result = answered(&rigid("coulomb_associated", &both("[0.03, -0.02]", 0.0), "", ""));
+    assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+    passes(&result);
+    assert!(result.stages[1].hinges.is_empty(), "{:?}", result.stages[1].hinges);
+    let (translation, rotation) = ([0.03, -0.02, 0.0], result.path.displacements.expect("displacements"));
+    for entry in rotation {
+        (0..3).for_each(|i| assert!((entry.displacement[i] - translation[i]).abs() < 1e-12, "{entry:?}"));
+    }
+    for solver in ["event_path", "newton_path"] {
+        let result = answered(&arch(solver, &both("[0.03, -0.02]", 0.0), LIVE));
+        passes(&result);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+    }
+}
+
+/// Rigid blocks whose loads cannot be carried do not follow anything.
+#[test]
+fn what_does_not_stand_before_does_not_settle() {
+    let thin = changed(
+        &rigid("coulomb_associated", "{ support = \"left\", displacement = [-0.05, 0.0] }", "", ""),
+        "thickness = 0.60",
+        "thickness = 0.02",
+    );
+    assert_eq!(answered(&thin).status, Status::NoEquilibrium);
+}
+
+/// The load after a settlement of rigid blocks, and the answer by friction that does not dilate, which says how it was read.
+#[test]
+fn rigid_blocks_carry_the_same_load_after_a_settlement() {
+    let moved = "{ support = \"left\", displacement = [-0.05, 0.0] }";
+    for joint in ["coulomb_associated", "coulomb"] {
+        let result = answered(&rigid(joint, moved, "", LIVE));
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+        assert!(!result.stages[1].hinges.is_empty());
+    }
+    let read = answered(&rigid("coulomb", moved, "", ""));
+    assert_eq!((read.status, read.flow_read_as.as_deref()), (Status::Stands, Some("associated")));
+}
+
+/// `auto` follows no path where a field proves already that the blocks stand.
+#[test]
+fn a_static_field_proves_that_elastic_blocks_stand() {
+    let text = arch(
+        "auto",
+        "",
+        "[[stages]]\nname = \"live\"\nfactor = 600.0\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }]",
+    );
+    let text = changed(&text, "settlement = []", "gravity = 9.81");
+    let of = |law: &str| answered(&changed(&text, "law = \"coulomb\"", &format!("law = \"{law}\"")));
+    let (associated, other) = (of("coulomb_associated"), answered(&text));
+    assert_eq!(
+        (associated.status, associated.proved_by),
+        (Status::Stands, Some(Proof::Static)),
+        "{:?}",
+        associated.notes
+    );
+    assert_eq!((other.status, other.proved_by), (Status::Stands, Some(Proof::Path)), "{:?}", other.notes);
+    passes(&associated);
+    passes(&other);
+}
