@@ -49,6 +49,7 @@ struct Step {
     /// Whether the load passes a peak in it.
     falls: bool,
     orientation: Option<Orientation>,
+    plan: StepPlan,
 }
 
 /// How a step ends.
@@ -169,7 +170,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let first = tracer.limit.peak.is_none();
     let grew = following.slope > 0.0 && following.orientation.as_ref().is_none_or(|before| !before.still);
     let peak = falls && !softens && !trial.reaches && (first || (finite && grew));
-    let step = Step { trial, tangent, accuracy, falls, orientation };
+    let step = Step { trial, tangent, accuracy, falls, orientation, plan: *plan };
     if let Some(other) = off_the_branch(tracer, following, plan, &step) {
         return other;
     }
@@ -271,14 +272,21 @@ fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangen
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
     let (state, beyond, kinked) = match locate_peak(tracer, following, following.direction) {
         Located::Proven(state, beyond, kinked) => (state, beyond, kinked),
-        Located::Other if following.length > SHORTEST * following.limits.first => {
-            tracer.system.count("cutbacks", 1);
-            following.length *= 0.3;
-            return None;
-        }
         Located::Other => {
-            let why = "two converged states of one branch do not bracket the peak";
-            return Some(no_step(tracer, &StepFailure::new(why), &step.tangent, following.direction));
+            let why = StepFailure::new("two converged states of one branch do not bracket the peak");
+            return match failed(tracer, following, &step.plan, &why) {
+                StepEnd::CutBack(length) => {
+                    following.length = length;
+                    None
+                }
+                StepEnd::Corner(branch) => {
+                    let here = tracer.state.clone();
+                    following.switch_to(&mut tracer.system, &here, branch);
+                    None
+                }
+                StepEnd::Ended(outcome) => Some(outcome),
+                _ => None,
+            };
         }
     };
     if kinked && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
@@ -341,7 +349,7 @@ fn snap(tracer: &mut Tracer, following: &mut Following, state: State, beyond: &T
 
 /// Takes a step over; how the load step ends with it, if so.
 fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
-    let Step { trial: Trial { next, iterations, reaches, .. }, tangent, accuracy, falls, orientation } = step;
+    let Step { trial: Trial { next, iterations, reaches, .. }, tangent, accuracy, falls, orientation, .. } = step;
     let (direction, target, finite) = (following.direction, following.target, tracer.system.finite());
     let rises =
         tangent.factor * direction > 1e-10 * tracer.system.units().factor * motion_size(&tracer.system, &tangent);
