@@ -118,7 +118,7 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
     // block that may yield carries any load.
     if target.is_infinite() && !tracer.system.problem.yields() && factor > 1e-9 * (motion + force) {
         // A support that moves what is statically determinate asks for no forces.
-        let constant = force <= 1e-9 * motion && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        let constant = force <= 1e-7 * motion && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
         let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
         tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
         end_path(
