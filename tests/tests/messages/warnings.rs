@@ -59,3 +59,29 @@ fn blocks_that_nearly_touch_or_float_are_named() {
     let said = blocks(1.0, 1.0, floats);
     assert!(said.len() == 1 && said[0].contains("\"c\"") && said[0].contains("nothing holds"), "{said:?}");
 }
+
+/// An axle that is off the arch counts nothing, and a note says so; where all are off it is a mistake.
+#[test]
+fn an_axle_off_the_arch_counts_nothing() {
+    let axles = |at: f64| {
+        let arch = voussoir_tests::Arch::default().study();
+        let point = "{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }";
+        let load = format!("{{ kind = \"axles\", at = {at:?}, positions = [0.0, 1.8], forces = [1000.0, 1000.0] }}");
+        load_text(&voussoir_tests::changed(&arch, point, &load))
+    };
+    let on = axles(0.2).expect("both on it");
+    assert_eq!((on.0, on.1), (2, Vec::new()));
+    let crossing = axles(-0.15).expect("one on it");
+    assert!(
+        crossing.0 == 1 && crossing.1[0].contains("axle 0") && crossing.1[0].contains("counts nothing"),
+        "{crossing:?}"
+    );
+    assert!(axles(1.5).expect_err("none on it").contains("hits no block"));
+}
+
+/// Number of forces of the last stage, and notes; or the first mistake.
+fn load_text(text: &str) -> Result<(usize, Vec<String>), String> {
+    let study = load(text, "axles.toml", &[]).map_err(|wrong| wrong[0].to_string())?;
+    let case = &study.cases[0];
+    Ok((case.stages.last().map_or(0, |stage| stage.forces.len()), case.notes.clone()))
+}

@@ -99,10 +99,12 @@ fn a_support_that_moves_back_stands_too() {
 /// A settlement without end is carried by constant forces.
 #[test]
 fn a_support_spreads_without_end_with_small_displacements() {
-    let text = arch("event_path", "{ support = \"left\", displacement = [-1.0, 0.0] }", "");
-    let result = answered(&changed(&text, "name = \"settle\"", "name = \"settle\"\nuntil = \"collapse\""));
-    assert_eq!(result.status, Status::Unbounded, "{:?}", result.notes);
-    passes(&result);
+    for solver in ["event_path", "newton_path"] {
+        let text = arch(solver, "{ support = \"left\", displacement = [-1.0, 0.0] }", "");
+        let result = answered(&changed(&text, "name = \"settle\"", "name = \"settle\"\nuntil = \"collapse\""));
+        assert_eq!(result.status, Status::Unbounded, "{:?}", result.notes);
+        passes(&result);
+    }
 }
 
 /// One block on a ground that moves, alone and in a wall: a rigid motion changes no force.
@@ -306,4 +308,25 @@ fn a_static_field_proves_that_elastic_blocks_stand() {
     assert_eq!((other.status, other.proved_by), (Status::Stands, Some(Proof::Path)), "{:?}", other.notes);
     passes(&associated);
     passes(&other);
+}
+
+/// Stages of loads and supports to and fro: loaded, settled, unloaded, settled, loaded until it collapses.
+#[test]
+fn loads_and_settlements_in_any_order_end_at_the_same_load() {
+    let load = |name: &str, factor: f64| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\nfactor = {factor:?}\nloads = [{{ kind = \"point\", span_fraction = 0.25, force = [0.0, -3e5] }}]\n"
+        )
+    };
+    let right = "[[stages]]\nname = \"right\"\nsettlement = [{ support = \"right\", displacement = [0.0, -0.03] }]\n";
+    for solver in ["event_path", "newton_path"] {
+        let after = format!("{}{right}{LIVE}", load("off", -1.0));
+        let text = arch(solver, "{ support = \"left\", displacement = [-0.02, 0.0], rotation = 0.01 }", &after);
+        let on = format!("{}[[stages]]\nname = \"settle\"", load("on", 1.0));
+        let result = answered(&changed(&text, "[[stages]]\nname = \"settle\"", &on));
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        passes(&result);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+        assert_eq!(result.stages.len(), 6);
+    }
 }
