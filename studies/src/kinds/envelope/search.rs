@@ -1,8 +1,9 @@
 //! The search for the worst place of one run: a scan, then golden sections between its neighbours where it is least.
 
 use super::places::Places;
-use super::{Request, solve_all};
+use super::request::Request;
 use crate::results::CaseResult;
+use rayon::prelude::*;
 use voussoir_core::limit::Status;
 
 /// Local minima of the scan above the least by more than this share are not searched further.
@@ -90,6 +91,16 @@ fn golden_section(
             return;
         }
     }
+}
+
+/// Solves places side by side, in order; those that make no case are left out.
+fn solve_all(
+    first: usize,
+    places: &[f64],
+    solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
+) -> Vec<(f64, CaseResult)> {
+    let one = |(index, value): (usize, &f64)| Some((*value, solve(first + index, *value)?));
+    places.par_iter().enumerate().filter_map(one).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What an envelope adds to the results: the worst place of each case of the study, and the factor at all places.
 
+use super::request::{Request, value_at};
 use super::search::rank;
-use super::{Request, value_at};
 use crate::results::CaseResult;
 use crate::study::Study;
 use serde_json::{Map, Value as Json, json};
