@@ -37,6 +37,7 @@ struct Fussy {
 #[typetag::serde(name = "fussy_limit")]
 impl LimitSolver for Fussy {
     fn solve(&self, _: &LimitProblem, _: LimitQuestion) -> LimitAnswer {
+        assert!(self.effort.is_none_or(|effort| effort.0 != 5), "an effort of 5 is too much");
         LimitAnswer {
             status: Status::Stalled,
             factor: None,
@@ -105,6 +106,17 @@ fn wrong(more: &str, sets: &[(&str, &str)]) -> Vec<String> {
     wrong.iter().map(ToString::to_string).collect()
 }
 
+/// A plug-in that panics ends its case, not the others.
+#[test]
+fn a_panic_ends_one_case() {
+    let more = "[solver]\nsolver = \"fussy_limit\"\n[sweep]\n\"solver.effort\" = { list = [5, 1] }\n";
+    let study = load(&format!("{ARCH}{more}"), "a.toml", &[]).expect("a study");
+    let results: Vec<CaseResult> = study.cases.iter().map(solve_case).collect();
+    assert!(results.iter().all(|result| result.status == Status::Stalled));
+    let said = |result: &CaseResult| result.notes.iter().any(|note| note.contains("an effort of 5 is too much"));
+    assert_eq!([said(&results[0]), said(&results[1])], [true, false], "{:?}", results[0].notes);
+}
+
 /// A solver table that its solver cannot read is a mistake with line and key, wherever it was written; never `auto`.
 #[test]
 fn a_solver_table_that_cannot_be_read_is_a_mistake() {
@@ -158,8 +170,7 @@ fn auto_chooses_what_it_chose_by_name() {
             let (assembly, settings) = (&case.assembly, &case.solver.settings);
             let input = CaseInput { solver: &SelectedSolver::Auto, ..CaseInput::of(case) };
             let chosen: Vec<String> = path_solvers(&input).into_iter().map(|(tag, _)| tag).collect();
-            let settles = case.stages.iter().any(|stage| !stage.settlements.is_empty());
-            if assembly.deforms() || settings.finite || settles {
+            if assembly.deforms() || settings.finite {
                 let facets = |j| assembly.law(j).is_none_or(|law| law.facets().is_some());
                 let linear = (0..assembly.bodies.len()).all(|b| assembly.bodies[b].fixed || !assembly.yields(b));
                 let exact = !settings.finite && linear && assembly.joints.iter().all(facets);

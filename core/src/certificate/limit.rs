@@ -556,7 +556,7 @@ fn fill_dissipation([least, greatest]: [f64; 2], speed: f64) -> f64 {
 
 /// ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area.
 /// The maximum of linear functions is integrated exactly between their crossings.
-fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
+pub(super) fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
     let end = |v: &[f64; 2], i: usize| -(v[0] * jump.open[i] + v[1] * jump.slip);
     let lines: Vec<[f64; 2]> = vertices.iter().map(|v| [end(v, 0), end(v, 1)]).collect();
     let mut cuts = vec![0.0, 1.0];

@@ -85,8 +85,8 @@ pub struct Mechanism {
     pub hinges: Vec<Hinge>,
     /// Every sliding joint.
     pub sliding: Vec<Sliding>,
-    /// Every joint that crushes over more than half its height, and every joint next to which a block
-    /// of a material that yields has crushed.
+    /// Every joint that crushes over more than [`CRUSHES`] of its height, and every joint next to which a block
+    /// of a material that yields has crushed, over whatever share; the kind counts shares above [`CRUSHES`].
     pub crushing: Vec<Crushing>,
 }
 
@@ -133,6 +133,10 @@ pub fn jumps(assembly: &Assembly, motion: &[CentroidVelocity]) -> Vec<Jump> {
     assembly.joints.iter().map(jump).collect()
 }
 
+/// Share of a joint's height that must crush before its hinge is none and the kind says so. A hinge whose toe
+/// crushes over less stays a hinge.
+pub const CRUSHES: f64 = 0.5;
+
 /// Jumps smaller than this share of the greatest count as none.
 const TOLERANCE: f64 = 1e-9;
 
@@ -168,6 +172,7 @@ pub fn mechanism_above(
         return None;
     }
     let rays: Vec<Vec<[f64; 2]>> = assembly.catalogue.laws.iter().map(|(_, law)| contact_rays(&**law, flow)).collect();
+    let can_crush: Vec<bool> = assembly.catalogue.laws.iter().map(|(_, law)| crushes(&**law)).collect();
     let mut found = Mechanism {
         kind: MechanismKind::Rocking,
         hinge_count: 0,
@@ -187,13 +192,19 @@ pub fn mechanism_above(
         if jump.slip.abs() > tolerance {
             found.sliding.push(Sliding { joint: index, between: between(), slip: jump.slip });
         }
-        let crushed = crushed_share(clear, tolerance);
-        if crushed > 0.5 {
+        // Where nothing can crush, an end that comes nearer was apart and closes again.
+        let crushable = can_crush[law];
+        if !crushable && clear.iter().all(|c| c.abs() > tolerance) {
+            continue;
+        }
+        let crushed = if crushable { crushed_share(clear, tolerance) } else { 0.0 };
+        if crushed > CRUSHES {
             found.crushing.push(Crushing { joint: index, between: between(), share: crushed });
         }
         let rotation = jump.rotation(height);
         if (rotation * height).abs() > tolerance && crushed < 1.0 {
-            let touching = usize::from(clear[1] < clear[0]);
+            let nearer = if crushable { clear[1] < clear[0] } else { clear[1].abs() < clear[0].abs() };
+            let touching = usize::from(nearer);
             let toward = joint.ends[1 - touching] - joint.ends[touching];
             let point = joint.ends[touching] + toward * crushed;
             let side = assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]);
@@ -221,10 +232,11 @@ impl Mechanism {
 
     /// Counts hinges and names the kind.
     fn name_kind(&mut self, assembly: &Assembly) {
-        let crushes = |joint: usize| self.crushing.iter().any(|c| c.joint == joint && c.share > 0.5);
+        let crushing = || self.crushing.iter().filter(|c| c.share > CRUSHES);
+        let crushes = |joint: usize| crushing().any(|c| c.joint == joint);
         let hinges: Vec<&Hinge> = self.hinges.iter().filter(|hinge| !crushes(hinge.joint)).collect();
         self.hinge_count = count_merged(assembly, &hinges);
-        self.kind = match (self.hinge_count, self.sliding.is_empty(), self.crushing.is_empty()) {
+        self.kind = match (self.hinge_count, self.sliding.is_empty(), crushing().next().is_none()) {
             (0, false, true) => MechanismKind::Sliding,
             (0, true, false) => MechanismKind::Crushing,
             (3, true, true) => MechanismKind::ThreeHinge,
@@ -234,6 +246,11 @@ impl Mechanism {
             _ => MechanismKind::Mixed,
         };
     }
+}
+
+/// Whether a law lets blocks come nearer than touching: it crushes, or gives its tractions from gaps.
+fn crushes(law: &dyn InterfaceLaw) -> bool {
+    law.facets().is_none_or(|facets| facets.iter().any(|facet| facet.mode == FacetMode::Crushing))
 }
 
 fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {

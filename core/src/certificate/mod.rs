@@ -4,10 +4,11 @@ mod limit;
 mod mechanism;
 mod path;
 mod products;
+mod settlement;
 
 pub use self::limit::{Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump};
 pub use self::mechanism::{
-    CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
+    CRUSHES, CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
     mechanism_above, velocity_at,
 };
 pub use self::path::{
@@ -15,3 +16,4 @@ pub use self::path::{
     ray_residual, tolerance,
 };
 pub use self::products::{COVERED, proved};
+pub use self::settlement::settlement_residuals;

@@ -6,4 +6,4 @@ mod solver;
 
 pub use self::lower_proof::{FIRST, LAST, LowerProof, LowerProofKind, ProductStep};
 pub use self::problem::{JointForce, LimitJoint, LimitProblem, Velocity};
-pub use self::solver::{Counters, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, Status};
+pub use self::solver::{Counters, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer, Status};

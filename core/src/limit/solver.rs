@@ -2,6 +2,7 @@
 
 use super::lower_proof::LowerProof;
 use super::problem::{JointForce, LimitProblem, Velocity};
+use crate::model::Wrenches;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -84,6 +85,22 @@ pub struct NonAssociated {
     pub associated_motion: Option<Vec<Velocity>>,
 }
 
+/// How rigid blocks follow supports that move.
+#[derive(Debug, Clone)]
+pub enum SettlementAnswer {
+    /// They do.
+    Follows {
+        /// One entry per joint of the problem.
+        field: Vec<JointForce>,
+        /// Displacement of each group, about the problem's pole \[m, rad\].
+        motion: Vec<Velocity>,
+        /// Whether it is the only one.
+        unique: Option<bool>,
+    },
+    /// Not decided, or impossible, and why.
+    Refused(String),
+}
+
 /// A way to do limit analysis, chosen by `[solver] solver = …`.
 #[typetag::serde(tag = "solver")]
 pub trait LimitSolver: Debug + Send + Sync {
@@ -92,4 +109,12 @@ pub trait LimitSolver: Debug + Send + Sync {
 
     /// Why this solver cannot take this problem, if so.
     fn refuses(&self, problem: &LimitProblem) -> Option<String>;
+
+    /// How rigid blocks follow supports that move, small displacements: of all motions q with the given `openings` of
+    /// both ends and slip \[m\] that the supports alone would cause at each joint, those of least potential energy
+    /// −w·q + Σ bᵢγᵢ under the loads w of each group about the pole; the dual is the field. Joints are read with
+    /// associated flow.
+    fn settle(&self, _: &LimitProblem, _: &Wrenches, _: &[[f64; 3]]) -> SettlementAnswer {
+        SettlementAnswer::Refused("this solver knows loads only, no supports that move".into())
+    }
 }

@@ -75,8 +75,11 @@ impl Quantity {
         match self {
             Quantity::Ratio => vec![("%", 0.01)],
             Quantity::Length => LENGTHS.to_vec(),
-            Quantity::Degrees => vec![("deg", 1.0), ("rad", 180.0 / std::f64::consts::PI)],
-            Quantity::Radians => vec![("rad", 1.0), ("deg", std::f64::consts::PI / 180.0)],
+            Quantity::Degrees => vec![("deg", 1.0), ("rad", 180.0 / std::f64::consts::PI), ("°", 1.0)],
+            Quantity::Radians => {
+                let degree = std::f64::consts::PI / 180.0;
+                vec![("rad", 1.0), ("deg", degree), ("°", degree)]
+            }
             Quantity::Force => FORCES.to_vec(),
             Quantity::Stress => STRESSES.to_vec(),
             Quantity::Stiffness => STIFFNESSES.to_vec(),
@@ -111,6 +114,18 @@ impl Quantity {
             // Dividing by an inverse power of ten is exact to rounding; multiplying by 1e-3 is not.
             Some(&(_, factor)) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
             Some(&(_, factor)) => Ok(number * factor),
+            None if unit.starts_with(',') => {
+                let point = text.replacen(',', ".", 1);
+                Err(format!("\"{text}\" has a comma where a decimal point is meant: write \"{point}\""))
+            }
+            None if self == Quantity::Ratio && ["deg", "°", "rad"].contains(&unit.as_str()) => {
+                let angle = if unit == "rad" { number } else { number.to_radians() };
+                Err(format!(
+                    "\"{text}\" is an angle, and a pure number is meant here; the tangent of the angle is {:.4} (a friction may \
+                     also be given as friction_angle)",
+                    angle.tan()
+                ))
+            }
             None => {
                 let names: Vec<_> = table.iter().map(|(name, _)| *name).collect();
                 Err(format!("unit \"{unit}\" does not fit; units here: {}", names.join(", ")))
@@ -133,6 +148,7 @@ mod tests {
         assert_eq!(read(Quantity::Force, "-1_000"), -1000.0);
         assert!((read(Quantity::Density, "21.582 kN/m3") - 2200.0).abs() < 1e-9);
         assert!((read(Quantity::Stress, "1 psi") - 6_894.757_293_168).abs() < 1e-6);
+        assert_eq!(read(Quantity::Degrees, "25°"), 25.0);
         assert!((read(Quantity::Radians, "180 deg") - std::f64::consts::PI).abs() < 1e-15);
     }
 
@@ -141,5 +157,10 @@ mod tests {
         let error = Quantity::Length.parse("3 kN", 9.81).unwrap_err();
         assert_eq!(error, "unit \"kN\" does not fit; units here: m, mm, cm, ft, in");
         assert!(Quantity::Force.parse("kN", 9.81).is_err());
+        let said = |quantity: Quantity, text: &str| quantity.parse(text, 9.81).unwrap_err();
+        assert!(said(Quantity::Length, "0,60 m").contains("write \"0.60 m\""));
+        assert!(said(Quantity::Length, "0,60").contains("write \"0.60\""));
+        assert!(said(Quantity::Ratio, "35 deg").contains("0.7002"));
+        assert!(said(Quantity::Ratio, "35°").contains("friction_angle"));
     }
 }

@@ -14,6 +14,7 @@ mod question;
 mod recovery;
 mod scale;
 pub mod sequential;
+mod settlement;
 mod systems;
 
 pub use self::engine::{Engine, Equilibrium, Greatest};

@@ -49,8 +49,13 @@ pub fn line_search(problem: &RateProblem, guess: &[ContactMode], trials: &mut u6
     for (k, point) in problem.points.iter().enumerate() {
         (0..2).for_each(|i| s[(2 * k + i, 2 * k + i)] -= REGULARISATION * point.stiffness);
     }
-    let softer =
-        RateProblem { points: problem.points.clone(), s, load_rate: problem.load_rate.clone(), from_nothing: false };
+    let softer = RateProblem {
+        points: problem.points.clone(),
+        s,
+        load_rate: problem.load_rate.clone(),
+        from_nothing: false,
+        settles: problem.settles,
+    };
     let mut gaps = match softer.attempt(guess, 1.0) {
         Some(attempt) if !attempt.singular => attempt.gaps,
         _ => DVector::zeros(2 * problem.points.len()),

@@ -49,6 +49,8 @@ pub enum RateOutcome {
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
 pub const INEQUALITY: f64 = 1e-10;
+/// Share of the forces of closed points on a moving support below which forces are not compared with themselves.
+const CANCELLED: f64 = 0.1;
 /// Unknowns above which linear algebra is that of large systems.
 const LARGE: usize = 30;
 
@@ -64,6 +66,9 @@ pub struct RateProblem<'a> {
     /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
     /// associated does not prove that the load cannot be carried.
     pub from_nothing: bool,
+    /// Whether a support moves: then forces may stand still while λ goes on, and their rates are rounding of what
+    /// cancels.
+    pub settles: bool,
 }
 
 /// The linear system of a combination of modes, solved.
@@ -175,7 +180,8 @@ impl RateProblem<'_> {
             // A mechanism moves without forces: their size is that of what stiffness could do.
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
-            1e-4 * self.load_rate.amax()
+            let share = if self.settles { CANCELLED } else { 1e-4 };
+            share * self.load_rate.amax()
         });
         let sizes = [force_size.max(1e-300), gap_size];
         let mut at = 0;

@@ -44,6 +44,7 @@ fn branching_agrees_with_every_combination() {
             s: &root * root.transpose() + DMatrix::identity(2 * count, 2 * count) * 0.01,
             load_rate: DVector::from_fn(2 * count, |_, _| random.next()),
             from_nothing: false,
+            settles: false,
         };
         let all = enumerate_modes(&problem, &mut 0);
         let known = if all.iter().any(|r| r.factor > 0.0) {
@@ -213,7 +214,7 @@ fn fuzzed_rate_problems_are_solved() {
             0 => &root * push,
             _ => DVector::from_fn(2 * count, |_, _| random.next()),
         };
-        let problem = RateProblem { points, s, load_rate, from_nothing: false };
+        let problem = RateProblem { points, s, load_rate, from_nothing: false, settles: false };
         let tally = tallies.entry(family).or_default();
         tally.problems += 1;
         let outcome = solve(&problem, false, &mut tally.order);

@@ -13,7 +13,10 @@ pub fn check(paths: &[PathBuf], sets: &[String]) -> u8 {
     let mut code = FINE;
     for path in paths {
         match files::study(path, &sets) {
-            Ok(study) => say(format!("{}: fine, {} case(s)", path.display(), study.count())),
+            Ok(study) => {
+                study.notes().into_iter().for_each(|note| say(format!("{}: note: {note}", path.display())));
+                say(format!("{}: fine, {} case(s)", path.display(), study.count()));
+            }
             Err(wrong) => code = code.max(wrong),
         }
     }

@@ -174,7 +174,9 @@ fn of_a_writer(name: &str) -> bool {
             let numbered = |start: &str| {
                 stem.strip_prefix(start).and_then(|rest| rest.chars().next()).is_some_and(|c| c.is_ascii_digit())
             };
-            ["sweep", "curve", "map", "comparison", "path"].contains(&stem) || numbered("case-") || numbered("curve-")
+            ["sweep", "curve", "map", "comparison", "envelope", "path"].contains(&stem)
+                || numbered("case-")
+                || numbered("curve-")
         }),
         _ => stem.starts_with("case-") && stem.ends_with(".vtu") || ["cases.pvd", "README.txt"].contains(&stem),
     }

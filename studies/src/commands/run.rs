@@ -138,7 +138,9 @@ fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) 
     progress.finish();
     let resolved = format!("{SOURCE}{}\n{resolved}", path.display().to_string().replace(['\n', '\r'], " "));
     folder.write("resolved.toml", resolved.as_bytes())?;
-    for (name, bytes) in &output.files {
+    // What is worth most comes first: a disk may be full.
+    let (results, others): (Vec<_>, Vec<_>) = output.files.iter().partition(|(name, _)| name == "results.json");
+    for (name, bytes) in results.into_iter().chain(others) {
         folder.write(name, bytes)?;
     }
     folder.remove_left_over(&output.files);

@@ -115,7 +115,13 @@ impl<'a> Checker<'a> {
         if !range.contains(number) {
             let unit = if *quantity == Quantity::Ratio { String::new() } else { format!(" {}", quantity.unit()) };
             let message = format!("{number}{unit} is out of range: it must be {}", range.describe());
-            self.wrong(&node.origin, key, message);
+            if *quantity == Quantity::Acceleration && number < 0.0 {
+                let help =
+                    "a single number acts downwards: write it without its sign, or a vector [gx, gy]".to_string();
+                self.wrong_with_help(&node.origin, key, message, help);
+            } else {
+                self.wrong(&node.origin, key, message);
+            }
             return None;
         }
         Some(number)

@@ -348,7 +348,10 @@ fn spaced(node: &Node, table: &Table, path: &str, mistakes: &mut Vec<LocatedDiag
         None if last == 0.0 => from,
         None => from + (to - from) * (i / last),
     };
-    let numbers: Vec<f64> = (0..=last as usize).map(|i| rounded(at(i as f64))).collect();
+    // What is left of a difference that should be 0 is 0.
+    let size = at(0.0).abs().max(at(last).abs());
+    let whole = |x: f64| if x.abs() < 1e-12 * size { 0.0 } else { rounded(x) };
+    let numbers: Vec<f64> = (0..=last as usize).map(|i| whole(at(i as f64))).collect();
     let written_whole = table.entries.iter().all(|entry| matches!(entry.node.value, Value::Integer(_)));
     let whole = written_whole && numbers.iter().all(|number| number.fract() == 0.0);
     let value = |number: f64| {

@@ -44,6 +44,21 @@ fn places(curve: &[(f64, f64)], factors: impl Iterator<Item = f64>) -> Vec<Optio
         .collect()
 }
 
+/// The mark of what a case claims: at the peak of the load where there is a load factor, else where the path ends.
+fn end(result: &CaseResult, line: &[(f64, f64)]) -> Option<Spot> {
+    let last = *line.last()?;
+    let off = |point: &(f64, f64), factor: f64| (point.1 - factor).abs();
+    let peak = result
+        .load_factor
+        .and_then(|factor| line.iter().copied().min_by(|a, b| off(a, factor).total_cmp(&off(b, factor))));
+    let kind = match (result.status, peak) {
+        (Status::Collapse, _) => "collapse",
+        (_, Some(_)) => "limit point",
+        (_, None) => "end of the path",
+    };
+    Some(Spot { at: peak.unwrap_or(last), kind, marker: Marker::Ring, label: String::new() })
+}
+
 /// Marks of a curve: hinges and sliding joints of the last stage, and where it ends.
 fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labelled: bool) -> Vec<Spot> {
     let last_stage = result.stages.last().map(|stage| stage.name.as_str());
@@ -72,10 +87,7 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
             Some(Spot { at: at?, kind, marker: *marker, label })
         })
         .collect();
-    if let Some(&end) = line.last() {
-        let kind = if result.status == Status::Collapse { "collapse" } else { "end of the path" };
-        spots.push(Spot { at: end, kind, marker: Marker::Ring, label: String::new() });
-    }
+    spots.extend(end(result, line));
     // Labels of events near each other would cover each other: the last names them all.
     for late in 1..spots.len() {
         let (before, after) = spots.split_at_mut(late);

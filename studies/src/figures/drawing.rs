@@ -49,6 +49,12 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
         let meaning = if reached.is_some() { "load at this factor" } else { "load, λ is its factor" };
         legend.push((Symbol::Load, meaning.into()));
     }
+    if loads.has_earlier() {
+        legend.push((Symbol::EarlierLoad, "load of an earlier stage".into()));
+    }
+    if loads.has_settlements() {
+        legend.push((Symbol::Settlement, "support that moves".into()));
+    }
     if let Some(mechanism) = &result.mechanism {
         legend.extend(mark(&mut canvas, assembly, mechanism, false, |_, point| point));
     }

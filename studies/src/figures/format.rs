@@ -1,7 +1,7 @@
 //! How numbers, units and results are written in words, for figures, tables and reports alike.
 
 use crate::results::CaseResult;
-use voussoir_core::certificate::MechanismKind;
+use voussoir_core::certificate::{Hinge, Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
@@ -87,7 +87,7 @@ pub fn status_word(status: Status) -> &'static str {
 pub fn status_meaning(status: Status) -> &'static str {
     match status {
         Status::Stands => "every stage reached its factor",
-        Status::Collapse => "collapses at this load factor; both bounds enclose it",
+        Status::Collapse => "collapses at this load factor",
         Status::Unbounded => "carries any multiple of the load: a strut proves it",
         Status::NoEquilibrium => "cannot carry the loads present before the stage begins",
         Status::LimitPoint => "no equilibrium path with a growing load factor",
@@ -119,6 +119,24 @@ pub fn kind_words(kind: MechanismKind) -> &'static str {
         MechanismKind::Crushing => "crushing",
         MechanismKind::Mixed => "mixed mechanism",
     }
+}
+
+/// Joints of hinges: neighbours that count as one hinge stand together, `4 8+9+10 14`.
+pub fn hinge_list(mechanism: &Mechanism) -> Vec<String> {
+    let mut groups: Vec<String> = Vec::new();
+    let mut last: Option<&Hinge> = None;
+    for hinge in &mechanism.hinges {
+        let one = last.is_some_and(|last| {
+            let alike = last.side.is_some() && last.side == hinge.side && last.rotation * hinge.rotation > 0.0;
+            alike && hinge.joint == last.joint + 1
+        });
+        match groups.last_mut().filter(|_| one) {
+            Some(group) => *group += &format!("+{}", hinge.joint),
+            None => groups.push(hinge.joint.to_string()),
+        }
+        last = Some(hinge);
+    }
+    groups
 }
 
 /// Unit of a study file's key, from the cards of all plug-ins by the key's last name; `None` where
@@ -176,6 +194,14 @@ pub fn unit_load(stages: &[Stage]) -> Option<f64> {
     (sum > 1e-9 * largest).then_some(sum)
 }
 
+/// Relative width from which bounds are open.
+const OPEN: f64 = 1e-6;
+
+/// \[proved, found\] where they are not one: the load found is then an upper bound only.
+pub fn open_bounds(result: &CaseResult) -> Option<[f64; 2]> {
+    result.bounds.filter(|[low, high]| (high - low).abs() > OPEN * high.abs().max(low.abs()))
+}
+
 /// What a case came to, in one line: `collapse, λ = 698.0 (load 698.0 kN)`.
 pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
     let load = |factor: f64| match unit_load(stages) {
@@ -183,6 +209,9 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
         None => format!("λ = {}", format_number(factor, 4)),
     };
     match (result.status, result.load_factor) {
+        (Status::Collapse, Some(found)) if let Some([proved, _]) = open_bounds(result) => {
+            format!("carries at least {}: proved; a collapse was found at {}", load(proved), load(found))
+        }
         (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
         (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),
         (Status::Stands, None) => "stands: every stage reached its factor".into(),

@@ -13,16 +13,18 @@ use voussoir_core::model::{Assembly, root};
 /// With more unknowns or more equations than this the gaps stay: they are a matter of looks.
 const GREATEST: usize = 150;
 
-/// Corrects placements so that hinges stay closed. Bodies at rest stay at rest. Mechanisms that
-/// slide or crush are left alone: their hinges do not stay where they are.
+/// Corrects placements so that hinges stay closed. Bodies at rest stay at rest. Hinges of joints that slide or
+/// crush themselves are left alone: they do not stay where they are.
 pub fn close_hinges(assembly: &Assembly, mechanism: &Mechanism, mut placements: Vec<Placement>) -> Vec<Placement> {
-    if !mechanism.sliding.is_empty() || !mechanism.crushing.is_empty() {
-        return placements;
-    }
+    let wanders = |joint: usize| {
+        mechanism.sliding.iter().any(|slide| slide.joint == joint)
+            || mechanism.crushing.iter().any(|crush| crush.joint == joint)
+    };
     let (link_of, links) = links(assembly, &placements);
     let hinges: Vec<(usize, usize, Vec2)> = mechanism
         .hinges
         .iter()
+        .filter(|hinge| !wanders(hinge.joint))
         .filter_map(|hinge| {
             let joint = assembly.joints.get(hinge.joint)?;
             (link_of[joint.minus] != link_of[joint.plus]).then(|| (joint.minus, joint.plus, Vec2::from(hinge.point)))

@@ -6,8 +6,9 @@ use super::format::{case_title, format_short, kind_words};
 use super::hinge_closure::close_hinges;
 use super::svg_canvas::SvgCanvas;
 use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
-use crate::results::CaseResult;
 use crate::results::inelastic_state::CRUSHED;
+use crate::results::{CaseResult, MotionEntry};
+use voussoir_core::certificate::{jumps, largest_jump};
 use voussoir_core::elastic::Mesh;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
@@ -15,7 +16,8 @@ use voussoir_core::model::geometry::Vec2;
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
 pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
     let (mechanism, motion) = (result.mechanism.as_ref()?, result.proof.motion.as_ref()?);
-    let (placements, scale) = displaced(assembly, motion)?;
+    let moved_on = moved_on(assembly, result, motion);
+    let (placements, scale) = displaced(assembly, moved_on.as_deref().unwrap_or(motion))?;
     let placements = close_hinges(assembly, mechanism, placements);
     let moved: Vec<Vec<Vec2>> = assembly
         .bodies
@@ -50,12 +52,43 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
         legend.push((Symbol::Yielded, text));
     }
     legend.extend(mark(&mut canvas, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
-    let caption = [format!(
-        "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {}. \
-         Only directions and ratios mean something, not the size.",
-        format_short(scale, 3)
-    )];
+    let scale = format_short(scale, 3);
+    let caption = [match moved_on {
+        Some(_) => format!(
+            "The blocks at the end of the path, moved on by the mechanism until the first open joint closes; displacements \
+             times {scale}."
+        ),
+        None => format!(
+            "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {scale}. \
+             Only directions and ratios mean something, not the size."
+        ),
+    }];
     Some(canvas.finish(&legend, &caption))
+}
+
+/// Jumps below this share of the greatest are deformation.
+const DEFORMATION: f64 = 1e-2;
+
+/// Displacements of the blocks at the end of a path in whose mechanism open joints close: those of its state and of
+/// the mechanism until the first of them is closed, since velocities alone would draw blocks inside each other.
+/// `None` where no joint closes, or blocks may come nearer by crushing.
+fn moved_on(assembly: &Assembly, result: &CaseResult, motion: &[MotionEntry]) -> Option<Vec<MotionEntry>> {
+    let displaced = result.path.displacements.as_ref().filter(|displaced| displaced.len() == motion.len())?;
+    let deforms = !result.path.yielded.is_empty() || result.mechanism.as_ref().is_none_or(|m| !m.crushing.is_empty());
+    let velocities: Vec<_> = motion.iter().map(|entry| entry.velocity).collect();
+    let displacements: Vec<_> = displaced.iter().map(|entry| entry.displacement).collect();
+    let rates = jumps(assembly, &velocities);
+    let least = -DEFORMATION * largest_jump(&rates);
+    let gaps = jumps(assembly, &displacements);
+    let ends =
+        rates.iter().zip(&gaps).flat_map(|(rate, gap)| [(rate.open[0], gap.open[0]), (rate.open[1], gap.open[1])]);
+    let closing = ends.filter(|(rate, _)| *rate < least).map(|(rate, gap)| gap.max(0.0) / -rate);
+    let time = closing.min_by(f64::total_cmp).filter(|_| !deforms)?;
+    let entry = |(motion, at): (&MotionEntry, &[f64; 3])| MotionEntry {
+        body: motion.body.clone(),
+        velocity: [0, 1, 2].map(|i| at[i] + time * motion.velocity[i]),
+    };
+    Some(motion.iter().zip(&displacements).map(entry).collect())
 }
 
 /// Corners of the elements that have yielded, moved.

@@ -2,7 +2,7 @@
 
 use super::svg_canvas::{LegendSymbol, SvgCanvas};
 use super::text_layout::{Area, Spot};
-use voussoir_core::certificate::Mechanism;
+use voussoir_core::certificate::{CRUSHES, Mechanism};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint};
 
@@ -16,6 +16,10 @@ pub const PRESSURE: &str = "#a05a00";
 pub const OUTLINE: &str = "#6b6150";
 /// Loads.
 pub const LOAD: &str = "#0072b2";
+/// Loads of stages before the last.
+pub const EARLIER: &str = "#86b8d8";
+/// Supports that move.
+pub const SETTLEMENT: &str = "#d55e00";
 /// Thrust line and joint forces.
 pub const THRUST: &str = "#009e73";
 /// Strut of an unbounded case.
@@ -42,6 +46,10 @@ pub enum Symbol {
     Pressure,
     /// A load's arrow.
     Load,
+    /// An arrow of a load before the last stage.
+    EarlierLoad,
+    /// An arrow along which a support moves.
+    Settlement,
     /// The thrust line.
     Thrust,
     /// A joint's force.
@@ -73,6 +81,8 @@ impl LegendSymbol for Symbol {
             Symbol::Fill => boxed(canvas, [x, y], FILL, "#b9ad93", ""),
             Symbol::Pressure => canvas.arrow(ends[0], ends[1], PRESSURE, 1.6, 7.0),
             Symbol::Load => canvas.arrow(ends[0], ends[1], LOAD, 2.2, 10.0),
+            Symbol::EarlierLoad => canvas.arrow(ends[0], ends[1], EARLIER, 2.2, 10.0),
+            Symbol::Settlement => canvas.arrow(ends[0], ends[1], SETTLEMENT, 3.0, 10.0),
             Symbol::Thrust => canvas.line(&ends, THRUST, 2.2, ""),
             Symbol::Force => canvas.line(&[[x + 6.0, y], [x + 28.0, y]], THRUST, 5.0, ""),
             Symbol::Strut => canvas.line(&ends, STRUT, 3.0, "9 5"),
@@ -147,7 +157,8 @@ pub fn mark(
 ) -> Vec<(Symbol, String)> {
     let mut legend = Vec::new();
     let joint_of = |index: usize| assembly.joints.get(index);
-    for crushing in &mechanism.crushing {
+    let crushes = || mechanism.crushing.iter().filter(|crushing| crushing.share > CRUSHES);
+    for crushing in crushes() {
         let Some(joint) = joint_of(crushing.joint) else { continue };
         let ends = joint.ends.map(|end| canvas.at(place(joint, end)));
         canvas.line(&ends, CRUSH, 6.0, "");
@@ -193,8 +204,8 @@ pub fn mark(
     if !mechanism.sliding.is_empty() {
         legend.push((Symbol::Sliding, "sliding joint".into()));
     }
-    if !mechanism.crushing.is_empty() {
-        legend.push((Symbol::Crushing, "crushing joint".into()));
+    if crushes().next().is_some() {
+        legend.push((Symbol::Crushing, "joint that crushes over more than half its height".into()));
     }
     legend
 }

@@ -5,7 +5,7 @@ use super::sweep::{study_chart, sweep_chart};
 use super::text_layout::Area;
 use super::*;
 use crate::results::{CaseResult, StudyResults};
-use crate::study::Output;
+use crate::study::{Drawn, Output};
 use crate::writers::{SceneOutput, StudyOutput, writers};
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
@@ -241,7 +241,8 @@ fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
         results: &results,
         scenes,
         sweep_keys: vec!["scene.profile.rise".into()],
-        output: Output { figures, ..Output::default() },
+        output: Output { figures: if figures { Drawn::All } else { Drawn::Nothing }, ..Output::default() },
+        drawn: None,
     })
 }
 

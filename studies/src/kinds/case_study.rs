@@ -54,6 +54,12 @@ impl LoadedStudy for Study {
         &self.resolved
     }
 
+    fn notes(&self) -> Vec<String> {
+        let mut seen = std::collections::BTreeSet::new();
+        let notes = self.cases.iter().flat_map(|case| &case.notes);
+        notes.filter(|note| seen.insert(note.as_str())).cloned().collect()
+    }
+
     fn explain(&self) -> String {
         explain(self)
     }

@@ -67,6 +67,11 @@ pub trait LoadedStudy: Send + Sync {
     /// The file with `--set` applied.
     fn resolved(&self) -> &toml::Value;
 
+    /// What a user should know before it is run: each note of its cases once.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// What will be solved, in words.
     fn explain(&self) -> String;
 

@@ -10,6 +10,7 @@ pub mod optimise;
 pub mod point;
 mod read;
 pub mod run;
+mod search;
 
 pub use kind::{
     KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,

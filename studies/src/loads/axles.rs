@@ -1,6 +1,6 @@
 //! `axles`: wheels or axles on the extrados of an arch.
 
-use super::extrados::{on_extrados, x_at};
+use super::extrados::{on_extrados, reach, x_at};
 use super::keys::{FRACTION, many};
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
@@ -32,14 +32,25 @@ impl LoadKind for Axles {
             return site.fail("positions", "there is no axle");
         }
         let start = x_at(site, self.at, "at")?;
-        let (mut placed, mut diagnostics) = (Vec::new(), Vec::new());
+        let (left, right) = reach(site, "at")?;
+        let on = |position: &f64| (left..=right).contains(&(start + position));
+        // Where all are off it is the place that is wrong.
+        let crossing = self.positions.iter().any(on);
+        let (mut placed, mut diagnostics, mut notes) = (Vec::new(), Vec::new(), Vec::new());
         for (i, (position, force)) in self.positions.iter().zip(&self.forces).enumerate() {
+            if crossing && !on(position) {
+                let x = start + position;
+                notes.push(format!(
+                    "axle {i}, at x = {x:.3} m, is off the extrados ({left:.3} to {right:.3} m): it counts nothing"
+                ));
+                continue;
+            }
             match on_extrados(site, start + position, Vec2::new(0.0, -force), &format!("positions.{i}")) {
                 Ok(mut forces) => placed.append(&mut forces),
                 Err(mut wrong) => diagnostics.append(&mut wrong),
             }
         }
-        if diagnostics.is_empty() { Ok(placed.into()) } else { Err(diagnostics) }
+        if diagnostics.is_empty() { Ok(Placed { notes, ..placed.into() }) } else { Err(diagnostics) }
     }
 }
 
@@ -54,7 +65,8 @@ voussoir_core::inventory::submit! {
             many("forces", &Shape::Number(Quantity::Force, Range::ANY), "downwards, one for each position"),
         ],
         file: file!(),
-        page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle.\n",
+        page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle. An axle \
+               that is not yet or no longer on the extrados counts nothing, and a note says so.\n",
         ..Card::BLANK
     }
 }

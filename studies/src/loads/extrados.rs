@@ -37,6 +37,13 @@ pub fn x_at(site: &LoadSite, fraction: f64, key: &str) -> Result<f64, Vec<Diagno
     Ok(left + fraction * span)
 }
 
+/// How far the faces reach on which loads stand \[m\].
+pub fn reach(site: &LoadSite, key: &str) -> Result<(f64, f64), Vec<Diagnostic>> {
+    let (left, right) = extent(&faces(site, key)?);
+    let tolerance = ROUNDING * site.assembly.size();
+    Ok((left - tolerance, right + tolerance))
+}
+
 /// A force at x: on the upper chord, at the boundary of two on the one nearer to midspan, at midspan half on each.
 pub fn on_extrados(site: &LoadSite, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
     let chords = faces(site, key)?;

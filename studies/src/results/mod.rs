@@ -7,6 +7,7 @@ mod entries;
 pub mod inelastic_state;
 pub mod load_entries;
 pub mod path_state;
+mod rank;
 pub mod stage_start;
 mod study_results;
 pub mod thrust_line;
@@ -16,4 +17,5 @@ pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, YieldedEntry,
 };
+pub use rank::load_rank;
 pub use study_results::StudyResults;

@@ -45,7 +45,7 @@ pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
     }
     let (assembly, finite) = (input.assembly, input.settings.finite);
     let settles = input.stages.iter().any(|stage| !stage.settlements.is_empty());
-    if !assembly.deforms() && !finite && !settles {
+    if !assembly.deforms() && !finite {
         return Vec::new();
     }
     let all = by_cost(PluginKind::PathSolver);

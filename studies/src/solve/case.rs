@@ -51,7 +51,8 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     };
     result.loads = load_entries(case);
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
-        let wrong = verify_case(case, &result);
+        let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
+        let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
@@ -68,7 +69,7 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
         return;
     }
     result.status = Status::Stalled;
-    result.load_factor = None;
+    (result.load_factor, result.proved_by) = (None, None);
     if let Some(last) = result.stages.last_mut() {
         (last.status, last.factor) = (Status::Stalled, None);
     }

@@ -4,8 +4,10 @@ use super::auto::limit_solvers;
 use super::case_input::CaseInput;
 use super::limit_result::certified;
 use super::safe_theorem::static_proof;
+use super::settlement::{Settling, follow_supports, settles};
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
+use voussoir_core::certificate::Hinge;
 use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
 
@@ -30,7 +32,8 @@ fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
         Target::Collapse => return false,
     };
     let idle = reached == 0.0 || loads[index].varying.iter().all(|w| *w == [0.0; 3]);
-    idle && next.target == Target::Collapse && next.gravity.is_none() && search_start(next) == 0.0
+    let moves = !stages[index].settlements.is_empty();
+    idle && !moves && next.target == Target::Collapse && next.gravity.is_none() && search_start(next) == 0.0
 }
 
 /// Solves a case stage by stage, until one does not stand.
@@ -43,14 +46,18 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
         if covered(stages, &loads, index) {
             continue;
         }
-        let mut result = match LimitProblem::new(assembly, &loads[index]) {
-            Ok(problem) => solve_stage(input, index, &problem, &loads[index]),
-            Err(why) => CaseResult::stalled(why),
+        let (mut result, hinges) = match LimitProblem::new(assembly, &loads[index]) {
+            Ok(problem) => {
+                let mut result = solve_stage(input, index, &problem, &loads[index]);
+                let hinges = settled_hinges(input, index, (&problem, &loads[index]), &mut result);
+                (result, hinges)
+            }
+            Err(why) => (CaseResult::stalled(why), Vec::new()),
         };
         for (name, count) in std::mem::take(&mut result.counters) {
             *counters.entry(name).or_default() += count;
         }
-        record_stages(&mut done, stages, index, &result);
+        record_stages(&mut done, stages, index, (&result, hinges));
         if result.status != Status::Stands || index + 1 == stages.len() {
             result.stages = done;
             result.counters = counters;
@@ -62,7 +69,12 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
 }
 
 /// Adds what stage `index` came to, and the stages before it that its check of its start answers too.
-fn record_stages(done: &mut Vec<StageResult>, stages: &[Stage], index: usize, result: &CaseResult) {
+fn record_stages(
+    done: &mut Vec<StageResult>,
+    stages: &[Stage],
+    index: usize,
+    (result, settled): (&CaseResult, Vec<Hinge>),
+) {
     let stage = |index: usize, status, factor, hinges| {
         let name = stages[index].name.clone();
         StageResult { name, status, factor, hinges }
@@ -79,8 +91,30 @@ fn record_stages(done: &mut Vec<StageResult>, stages: &[Stage], index: usize, re
         (Status::Stands, Target::Collapse) => result.proof.field_factor,
         _ => None,
     };
-    let hinges = result.mechanism.iter().flat_map(|m| &m.hinges).cloned().collect();
+    let hinges = result.mechanism.as_ref().map_or(settled, |m| m.hinges.clone());
     done.push(stage(index, result.status, reached, hinges));
+}
+
+/// How blocks have followed their supports by the end of a stage that stands, in its result, and the hinges.
+fn settled_hinges(
+    input: &CaseInput,
+    index: usize,
+    (problem, loads): (&LimitProblem, &StageLoads),
+    result: &mut CaseResult,
+) -> Vec<Hinge> {
+    let idle = problem.magnitude(&problem.varying) == 0.0;
+    let stands = result.status == Status::Stands || (result.status == Status::Unbounded && idle);
+    if !stands || !settles(input.stages, index) {
+        return Vec::new();
+    }
+    let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
+    let factor = result.proof.field_factor.unwrap_or(0.0);
+    match limit_solvers(selected, problem).iter().find(|(_, solver)| solver.refuses(problem).is_none()) {
+        Some((_, solver)) => {
+            follow_supports(input, index, Settling { solver: &**solver, problem, loads, factor }, result)
+        }
+        None => Vec::new(),
+    }
 }
 
 /// The first certified answer of the solvers to try; without one the stage is stalled.

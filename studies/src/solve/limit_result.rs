@@ -96,7 +96,7 @@ fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnsw
 
 /// Forces at the two ends of every joint; shear goes with the normal forces, so that each end's
 /// force lies in the cone of dry friction where the sum does.
-fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactForce> {
+pub(super) fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactForce> {
     let mut contacts = Vec::with_capacity(2 * forces.len());
     for (joint, force) in problem.joints.iter().zip(forces).filter(|(joint, _)| joint.fill.is_none()) {
         let sum = force.normal[0] + force.normal[1];
@@ -112,7 +112,12 @@ fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactF
     contacts
 }
 
-fn body_velocities(assembly: &Assembly, problem: &LimitProblem, motion: &[Velocity]) -> Vec<CentroidVelocity> {
+/// Velocity of every block at its centroid.
+pub(super) fn body_velocities(
+    assembly: &Assembly,
+    problem: &LimitProblem,
+    motion: &[Velocity],
+) -> Vec<CentroidVelocity> {
     let velocity = |body: usize| match problem.group_of[body] {
         None => [0.0; 3],
         Some(group) => {

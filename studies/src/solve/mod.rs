@@ -14,8 +14,10 @@ mod observer;
 mod path;
 mod path_result;
 mod safe_theorem;
+mod settlement;
 mod side_by_side;
 mod statics;
+mod symmetric;
 
 pub use case::{solve_case, solve_cases, solve_input};
 pub use case_input::CaseInput;

@@ -2,6 +2,7 @@
 
 use super::case_input::CaseInput;
 use super::coarse_joints::coarse_joints;
+use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
 use crate::results::load_entries::path_fill;
@@ -32,10 +33,11 @@ pub(super) fn path_result(
     input: &CaseInput,
     tag: &str,
     problem: &PathProblem,
-    solved: PathAnswer,
+    mut solved: PathAnswer,
     Seen { checker, ends, energy }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
+    prefer_symmetric(assembly, &checker, finite, &mut solved);
     let certificate = certificate(&solved, &checker, finite, energy);
     let (mut status, mut notes) = (solved.status, solved.notes.clone());
     notes.extend(coarse_note(problem, assembly));
@@ -94,6 +96,20 @@ pub(super) fn path_result(
         notes,
         path: path_record(input, problem, solved, checker),
         ..CaseResult::empty()
+    }
+}
+
+/// Replaces the mechanism of a symmetric scene by the symmetric one of its load.
+fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, finite: bool, solved: &mut PathAnswer) {
+    let (Status::Collapse, false, Some(structure), Some(rates)) =
+        (solved.status, finite, checker.structure(), &solved.motion)
+    else {
+        return;
+    };
+    let loading = &structure.load_steps[solved.load_step].loading;
+    if let Some(mean) = symmetric(assembly, &structure, loading, &solved.state.force, rates) {
+        // Its mirror image is another.
+        (solved.motion, solved.unique) = (Some(mean), Some(false));
     }
 }
 

@@ -4,6 +4,7 @@ use super::assemble::{assembly, catalogue};
 use super::diagnostics::DiagnosticList;
 use super::keys::{kind_tables, study_keys};
 use super::model::{Case, SelectedSolver};
+use super::plausibility::warnings;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::stages::build_stages;
 use crate::config::check::{Checker, Unused};
@@ -34,6 +35,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
+            notes.extend(warnings(&resolved, &assembly));
             let resolved = Json::Object(resolved);
             let brief = false;
             Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, brief, resolved })

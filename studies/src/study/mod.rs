@@ -11,6 +11,7 @@ mod keys;
 mod load;
 mod model;
 mod outline;
+mod plausibility;
 mod solver;
 mod source;
 mod stages;

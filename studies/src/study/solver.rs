@@ -240,13 +240,8 @@ fn needs_deformation(
         if stage["settlement"].as_array().is_none_or(Vec::is_empty) {
             continue;
         }
-        let at = format!("stages.{index}.settlement");
-        if limit {
-            let able = solvers_that(|card| card.offers(Capability::SETTLEMENT));
-            let help = format!("remove the settlement, or take a path solver: {}", or_none(&able));
-            diagnostics.wrong(&at, "limit analysis of rigid blocks knows loads only", help);
-        } else if rigid {
-            diagnostics.wrong(&at, reason, help);
+        if rigid && !limit && (finite || path) {
+            diagnostics.wrong(&format!("stages.{index}.settlement"), reason, help);
         }
     }
     if rigid && finite && !limit {

@@ -8,8 +8,8 @@ use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
-    case_title, escape, format_force, format_number, format_seconds, format_short, headline, key_with_unit, kind_words,
-    status_meaning, status_word, unit_load,
+    case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, key_with_unit,
+    kind_words, open_bounds, status_meaning, status_word, unit_load,
 };
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
@@ -133,9 +133,7 @@ fn summary(study: &StudyOutput) -> String {
     }
     let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.label.id).collect();
     text += &if failed.is_empty() {
-        " Every answer passed its certificate: equilibrium, strengths and, at collapse, both bounds were recomputed from the \
-         scene alone."
-            .to_string()
+        format!(" Every answer passed its certificate: {}.", checked(cases))
     } else {
         format!(
             " <strong class=\"bad\">The certificate failed for {}: do not rely on them.</strong>",
@@ -143,6 +141,23 @@ fn summary(study: &StudyOutput) -> String {
         )
     };
     text + "</p>\n"
+}
+
+/// What the certificates of these cases have checked, no more.
+fn checked(cases: &[CaseResult]) -> String {
+    let followed = |case: &&CaseResult| case.path.displacements.is_some();
+    let (paths, limits) = (cases.iter().any(|case| followed(&case)), cases.iter().any(|case| !followed(&case)));
+    let mut words = Vec::new();
+    if limits {
+        words.push("of limit analysis, equilibrium and strengths of the forces and the work of the motion were recomputed from the scene");
+    }
+    if paths {
+        words.push("of each path, equilibrium, strengths and contact were checked at every state");
+    }
+    if cases.iter().any(|case| open_bounds(case).is_some()) {
+        words.push("where two numbers stand, the lower one is proved and the upper one was found");
+    }
+    words.join("; ")
 }
 
 fn case_table(study: &StudyOutput) -> String {
@@ -167,7 +182,10 @@ fn case_table(study: &StudyOutput) -> String {
             study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(page::value).unwrap_or_default()),
         );
         row.push(status_word(case.status).replace('_', " "));
-        row.push(case.load_factor.map_or("–".into(), |factor| format_number(factor, 7)));
+        row.push(case.load_factor.map_or("–".into(), |factor| match open_bounds(case) {
+            Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+            None => format_number(factor, 7),
+        }));
         let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
         row.extend(with_load.then_some(force));
         row.push(
@@ -176,13 +194,15 @@ fn case_table(study: &StudyOutput) -> String {
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| {
             format!("{}{}", kind_words(m.kind), if m.unique == Some(false) { ", not unique" } else { "" })
         }));
-        let joints = case.mechanism.iter().flat_map(|m| &m.hinges).map(|h| h.joint.to_string()).collect::<Vec<_>>();
+        let joints = case.mechanism.as_ref().map(hinge_list).unwrap_or_default();
         row.push(if joints.len() > 12 { format!("{} joints", joints.len()) } else { joints.join(", ") });
         row.push(if case.certificate.passed { "passed" } else { "failed" }.into());
         row.push(format_seconds(case.seconds));
         row
     });
-    page::table(&header, rows)
+    let joined = cases.iter().filter_map(|case| case.mechanism.as_ref()).flat_map(hinge_list).any(|g| g.contains('+'));
+    let words = if joined { "<p>Joints joined by + are neighbours that count as one hinge.</p>\n" } else { "" };
+    page::table(&header, rows) + words
 }
 
 fn notes(cases: &[CaseResult]) -> String {
@@ -320,8 +340,8 @@ fn certificates(cases: &[CaseResult]) -> String {
         row
     });
     format!(
-        "<h2>Certificates</h2>\n<p>Relative residuals, recomputed from the scene by code that shares nothing with the solver; \
-         0 is perfect.</p>\n{}",
+        "<h2>Certificates</h2>\n<p>Relative residuals, recomputed from the scene; 0 is perfect. Those of limit \
+         analysis share nothing with the solver; those of paths share the elastic blocks and the rule by which contact points slide.</p>\n{}",
         page::table(&header, rows)
     )
 }

@@ -1,6 +1,6 @@
 //! What writers are given: the results and what they were computed from.
 
-use crate::results::{CaseResult, StudyResults};
+use crate::results::{CaseResult, StudyResults, load_rank};
 use crate::study::{Case, Drawn, Output, Study};
 use serde_json::Value as Json;
 use std::borrow::Cow;
@@ -22,7 +22,7 @@ pub struct StudyOutput<'a> {
     /// What is wanted besides the results.
     pub output: Output,
     /// Ids of the cases that are drawn, where not all are.
-    drawn: Option<BTreeSet<usize>>,
+    pub drawn: Option<BTreeSet<usize>>,
 }
 
 /// The scene of a case.
@@ -75,6 +75,7 @@ fn drawn(study: &Study, results: &StudyResults) -> Option<BTreeSet<usize>> {
         return Some(entries.iter().flat_map(of).flatten().map(|id| id as usize).collect());
     }
     (study.output.figures == Drawn::Worst).then(|| {
+        let rank = |case: &CaseResult| load_rank(case).unwrap_or(f64::INFINITY);
         let mut least: BTreeMap<_, &CaseResult> = BTreeMap::new();
         for case in &results.cases {
             let of = (&case.label.variant, case.status == Status::Stalled);
@@ -85,13 +86,4 @@ fn drawn(study: &Study, results: &StudyResults) -> Option<BTreeSet<usize>> {
         }
         least.values().map(|case| case.label.id).collect()
     })
-}
-
-/// What carries any load, or stands, comes after every load, what cannot carry its dead load before.
-fn rank(case: &CaseResult) -> f64 {
-    match case.status {
-        Status::NoEquilibrium => f64::NEG_INFINITY,
-        Status::Unbounded | Status::Stands | Status::Stalled => f64::INFINITY,
-        Status::Collapse | Status::LimitPoint => case.load_factor.unwrap_or(f64::INFINITY),
-    }
 }

@@ -1,7 +1,9 @@
 //! The table on the terminal.
 
 use super::study_output::StudyOutput;
-use crate::figures::format::{format_number, format_value, key_with_unit, kind_word, status_word};
+use crate::figures::format::{
+    format_number, format_short, format_value, hinge_list, key_with_unit, kind_word, open_bounds, status_word,
+};
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use voussoir_core::limit::Status;
@@ -68,14 +70,17 @@ fn cell(value: &serde_json::Value) -> String {
 fn factor(case: &CaseResult) -> String {
     match (case.status, case.load_factor) {
         (Status::Unbounded, _) => "unbounded".into(),
-        (_, Some(factor)) => format_number(factor, 7),
+        (_, Some(factor)) => match open_bounds(case) {
+            Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+            None => format_number(factor, 7),
+        },
         (_, None) => "-".into(),
     }
 }
 
 fn hinges(case: &CaseResult) -> String {
     let Some(mechanism) = &case.mechanism else { return String::new() };
-    let joints: Vec<String> = mechanism.hinges.iter().map(|h| h.joint.to_string()).collect();
+    let joints = hinge_list(mechanism);
     if joints.len() > 8 { format!("{} joints", joints.len()) } else { joints.join(" ") }
 }
 

@@ -6,9 +6,12 @@
 
 use serde_json::{Value, json};
 use voussoir::kinds::read_study;
+use voussoir::results::CaseResult;
+use voussoir::solve_case;
 use voussoir::study::Study;
+use voussoir::verify::case::verify_case;
 use voussoir_tests::written::{findings, results};
-use voussoir_tests::{Arch, changed, crushing, friction};
+use voussoir_tests::{Arch, changed, crushing, first_case, friction};
 
 /// What is not a claim about the structure.
 const FREE: [&str; 3] = ["/counters", "/seconds", "/version"];
@@ -128,7 +131,7 @@ fn path(solver: &str, kinematics: &str, settled: bool) -> String {
     let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"right\", displacement = [0.005, 0.0] }]\n";
     format!(
         "name = \"path\"\n[scene]\nscene = \"arch\"\nprofile = {{ shape = \"segmental\", span = 4.0, rise = 1.0 }}\n\
-         thickness = 0.4\nwidth = 1.0\nvoussoirs = 7\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n{ELASTIC}\
+         thickness = 0.3\nwidth = 1.0\nvoussoirs = 7\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n{ELASTIC}\
          [joints.dry]\nlaw = \"coulomb\"\nfriction = 0.7\n[solver]\nsolver = \"{solver}\"\nkinematics = \"{kinematics}\"\n\
          [output]\ncurve = true\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n{}[[stages]]\nname = \"live\"\n\
          until = \"collapse\"\nloads = [{{ kind = \"point\", span_fraction = 0.3, force = [0.0, -1000.0] }}]\n",
@@ -162,6 +165,55 @@ fn path_results() {
         ("newton_path", "finite", true),
     ] {
         forged(&format!("{solver}, {kinematics}, settled: {settled}"), &path(solver, kinematics, settled));
+    }
+}
+
+/// Each residual of a path's last state, violated: found by the proofs alone, without solving again. `run` uses the
+/// same function.
+#[test]
+fn violated_residuals_are_found_without_solving() {
+    let mut seen = std::collections::BTreeSet::new();
+    for (solver, kinematics) in [("event_path", "small"), ("newton_path", "finite")] {
+        let case = first_case(&path(solver, kinematics, false));
+        let result = solve_case(&case);
+        assert_eq!(verify_case(&case, &result), Vec::<String>::new(), "{kinematics}");
+        let field = result.proof.field.clone().expect("a field");
+        let pressed = |i: &usize| field[*i].force[0];
+        let most = (0..field.len()).max_by(|a, b| pressed(a).total_cmp(&pressed(b))).expect("a force");
+        let middle = result.path.displacements.as_ref().map_or(0, Vec::len) / 2;
+        let mut violate = |change: &dyn Fn(&mut CaseResult)| {
+            let mut changed = result.clone();
+            change(&mut changed);
+            let found = verify_case(&case, &changed);
+            assert!(!found.is_empty(), "{kinematics}");
+            seen.extend(found.iter().filter_map(|why| why.split(' ').next().map(String::from)));
+            seen.extend(found);
+        };
+        let force = |r: &mut CaseResult, i: usize, by: [f64; 2]| {
+            let entry = &mut r.proof.field.as_mut().expect("a field")[most].force;
+            entry[i] = by[0] * entry[i] + by[1] * field[most].force[0];
+        };
+        violate(&|r| force(r, 0, [1.0 + 1e-6, 0.0]));
+        violate(&|r| force(r, 1, [1.0, 2.0]));
+        violate(&|r| force(r, 0, [f64::NAN, 0.0]));
+        for by in [-1e-3, 1e-3] {
+            violate(&|r| r.path.displacements.as_mut().expect("displacements")[middle].displacement[1] += by);
+        }
+        violate(&|r| r.proof.field_factor = r.proof.field_factor.map(|factor| factor * (1.0 + 1e-6)));
+        if kinematics == "small" {
+            violate(&|r| r.proof.motion.as_mut().expect("a motion")[middle].velocity[2] += 1.0);
+            violate(&|r| r.proof.motion.iter_mut().flatten().flat_map(|e| &mut e.velocity).for_each(|v| *v *= 1.01));
+        }
+    }
+    for class in [
+        "path_equilibrium",
+        "path_strength",
+        "path_penetration",
+        "path_complementarity",
+        "the mechanism leaves",
+        "p·q̇ = 1",
+    ] {
+        assert!(seen.iter().any(|why| why.contains(class)), "{class}: {seen:?}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod figures;
 mod forgery;
+mod labels;
 mod lower_bound;
 mod pages;
 mod round_trip;

@@ -1,3 +1,4 @@
 //! What is said about wrong input, word for word.
 
 mod mistakes;
+mod warnings;

@@ -3,7 +3,7 @@
 
 use voussoir::core::certificate::Side;
 use voussoir::core::limit::Status;
-use voussoir::results::CaseResult;
+use voussoir::results::{CaseResult, Proof};
 use voussoir_tests::{answered, assert_close, changed};
 
 /// The reference arch of 15 elastic voussoirs: dead load, a settlement, a load at the quarter.
@@ -99,10 +99,12 @@ fn a_support_that_moves_back_stands_too() {
 /// A settlement without end is carried by constant forces.
 #[test]
 fn a_support_spreads_without_end_with_small_displacements() {
-    let text = arch("event_path", "{ support = \"left\", displacement = [-1.0, 0.0] }", "");
-    let result = answered(&changed(&text, "name = \"settle\"", "name = \"settle\"\nuntil = \"collapse\""));
-    assert_eq!(result.status, Status::Unbounded, "{:?}", result.notes);
-    passes(&result);
+    for solver in ["event_path", "newton_path"] {
+        let text = arch(solver, "{ support = \"left\", displacement = [-1.0, 0.0] }", "");
+        let result = answered(&changed(&text, "name = \"settle\"", "name = \"settle\"\nuntil = \"collapse\""));
+        assert_eq!(result.status, Status::Unbounded, "{:?}", result.notes);
+        passes(&result);
+    }
 }
 
 /// One block on a ground that moves, alone and in a wall: a rigid motion changes no force.
@@ -164,5 +166,167 @@ fn each_stage_has_its_own_strategy() {
         passes(&result);
         let factor = result.load_factor.expect("an end");
         assert!((factor - LOAD).abs() <= 1e-6 * LOAD, "{factor} {:?} {:?}", result.status, result.notes);
+    }
+}
+
+/// The same arch of rigid blocks without any compliance.
+fn rigid(joint: &str, settlement: &str, before: &str, after: &str) -> String {
+    let text = arch("auto", settlement, after);
+    let text = changed(&text, "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.3", "law = \"rigid\"");
+    let text = changed(&text, "law = \"coulomb\"", &format!("law = \"{joint}\""));
+    changed(&text, "[[stages]]\nname = \"settle\"", &format!("{before}\n[[stages]]\nname = \"settle\""))
+}
+
+/// Resultants (N, T, M about the middle) of the forces on each joint.
+fn resultants(result: &CaseResult, joints: usize) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]; joints];
+    let mut middles = vec![([0.0; 2], 0.0f64); joints];
+    let field = result.proof.field.as_ref().expect("a field");
+    for entry in field {
+        let middle = &mut middles[entry.joint];
+        (0..2).for_each(|i| middle.0[i] += entry.point[i]);
+        middle.1 += 1.0;
+    }
+    for entry in field {
+        let (sum, count) = middles[entry.joint];
+        let [x, y] = [0, 1].map(|i| entry.point[i] - sum[i] / count);
+        let own = &mut sums[entry.joint];
+        own[0] += entry.force[0];
+        own[1] += entry.force[1];
+        own[2] += entry.force[0] * x.hypot(y) * if x + 0.1 * y > 0.0 { 1.0 } else { -1.0 };
+    }
+    sums
+}
+
+/// Where three hinges make an arch determinate its thrust is that of statics, whatever the stiffness: rigid blocks by
+/// least energy and elastic ones by their path carry the same.
+#[test]
+fn rigid_and_elastic_blocks_carry_the_same_after_a_settlement() {
+    for x in [-0.05, 0.05] {
+        let moved = format!("{{ support = \"left\", displacement = [{x:?}, 0.0] }}");
+        let rigid = answered(&rigid("coulomb_associated", &moved, "", ""));
+        assert_eq!(rigid.status, Status::Stands, "{:?}", rigid.notes);
+        passes(&rigid);
+        let elastic = answered(&arch("event_path", &moved, ""));
+        let [a, b] = [&rigid, &elastic].map(|result| resultants(result, 16));
+        let size = b.iter().map(|r| r[0]).fold(0.0, f64::max);
+        for joint in 1..15 {
+            (0..2).for_each(|i| {
+                assert!((a[joint][i] - b[joint][i]).abs() < 1e-9 * size, "{x} {joint} {:?} {:?}", a[joint], b[joint])
+            });
+        }
+    }
+}
+
+/// Three hinges at A, B and C, a support at A that moves by d: d + θ₁ × (B − A) = θ₂ × (B − C).
+#[test]
+fn hinges_of_rigid_blocks_close_the_chain() {
+    let live = "[[stages]]\nname = \"live\"\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -3e5] }]";
+    for d in [[-0.05, 0.0], [0.02, 0.01], [0.0, -0.03]] {
+        let moved = format!("{{ support = \"left\", displacement = [{:?}, {:?}] }}", d[0], d[1]);
+        let result = answered(&rigid("coulomb_associated", &moved, live, ""));
+        assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+        passes(&result);
+        let hinges = &result.stages[2].hinges;
+        assert_eq!(hinges.len(), 3, "{hinges:?}");
+        let [a, b, c] = [0, 1, 2].map(|k| hinges[k].point);
+        // Unknowns θ₁, θ₂: d_x − θ₁ (b_y − a_y) = −θ₂ (b_y − c_y), d_y + θ₁ (b_x − a_x) = θ₂ (b_x − c_x).
+        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [b[0] - c[0], b[1] - c[1]]);
+        let determinant = -p[1] * -q[0] - q[1] * p[0];
+        let first = (-d[0] * -q[0] - q[1] * -d[1]) / determinant;
+        let second = (-p[1] * -d[1] - p[0] * -d[0]) / determinant;
+        for (hinge, rotation) in hinges.iter().zip([first, second - first, -second]) {
+            assert!((hinge.rotation - rotation).abs() < 1e-10, "{hinge:?} {rotation}");
+        }
+    }
+}
+
+/// What the supports do together changes nothing: a common translation, and with small displacements a common rotation.
+#[test]
+fn a_common_motion_of_all_supports_changes_nothing() {
+    let both = |d: &str, rotation: f64| {
+        let one = |side: &str| format!("{{ support = \"{side}\", displacement = {d}, rotation = {rotation:?} }}");
+        format!("{}, {}", one("left"), one("right"))
+    };
+    let result = answered(&rigid("coulomb_associated", &both("[0.03, -0.02]", 0.0), "", ""));
+    assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+    passes(&result);
+    assert!(result.stages[1].hinges.is_empty(), "{:?}", result.stages[1].hinges);
+    let (translation, rotation) = ([0.03, -0.02, 0.0], result.path.displacements.expect("displacements"));
+    for entry in rotation {
+        (0..3).for_each(|i| assert!((entry.displacement[i] - translation[i]).abs() < 1e-12, "{entry:?}"));
+    }
+    for solver in ["event_path", "newton_path"] {
+        let result = answered(&arch(solver, &both("[0.03, -0.02]", 0.0), LIVE));
+        passes(&result);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+    }
+}
+
+/// Rigid blocks whose loads cannot be carried do not follow anything.
+#[test]
+fn what_does_not_stand_before_does_not_settle() {
+    let thin = changed(
+        &rigid("coulomb_associated", "{ support = \"left\", displacement = [-0.05, 0.0] }", "", ""),
+        "thickness = 0.60",
+        "thickness = 0.02",
+    );
+    assert_eq!(answered(&thin).status, Status::NoEquilibrium);
+}
+
+/// The load after a settlement of rigid blocks, and the answer by friction that does not dilate, which says how it was read.
+#[test]
+fn rigid_blocks_carry_the_same_load_after_a_settlement() {
+    let moved = "{ support = \"left\", displacement = [-0.05, 0.0] }";
+    for joint in ["coulomb_associated", "coulomb"] {
+        let result = answered(&rigid(joint, moved, "", LIVE));
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+        assert!(!result.stages[1].hinges.is_empty());
+    }
+    let read = answered(&rigid("coulomb", moved, "", ""));
+    assert_eq!((read.status, read.flow_read_as.as_deref()), (Status::Stands, Some("associated")));
+}
+
+/// `auto` follows no path where a field proves already that the blocks stand.
+#[test]
+fn a_static_field_proves_that_elastic_blocks_stand() {
+    let text = arch(
+        "auto",
+        "",
+        "[[stages]]\nname = \"live\"\nfactor = 600.0\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }]",
+    );
+    let text = changed(&text, "settlement = []", "gravity = 9.81");
+    let of = |law: &str| answered(&changed(&text, "law = \"coulomb\"", &format!("law = \"{law}\"")));
+    let (associated, other) = (of("coulomb_associated"), answered(&text));
+    assert_eq!(
+        (associated.status, associated.proved_by),
+        (Status::Stands, Some(Proof::Static)),
+        "{:?}",
+        associated.notes
+    );
+    assert_eq!((other.status, other.proved_by), (Status::Stands, Some(Proof::Path)), "{:?}", other.notes);
+    passes(&associated);
+    passes(&other);
+}
+
+/// Stages of loads and supports to and fro: loaded, settled, unloaded, settled, loaded until it collapses.
+#[test]
+fn loads_and_settlements_in_any_order_end_at_the_same_load() {
+    let load = |name: &str, factor: f64| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\nfactor = {factor:?}\nloads = [{{ kind = \"point\", span_fraction = 0.25, force = [0.0, -3e5] }}]\n"
+        )
+    };
+    let right = "[[stages]]\nname = \"right\"\nsettlement = [{ support = \"right\", displacement = [0.0, -0.03] }]\n";
+    for solver in ["event_path", "newton_path"] {
+        let after = format!("{}{right}{LIVE}", load("off", -1.0));
+        let text = arch(solver, "{ support = \"left\", displacement = [-0.02, 0.0], rotation = 0.01 }", &after);
+        let on = format!("{}[[stages]]\nname = \"settle\"", load("on", 1.0));
+        let result = answered(&changed(&text, "[[stages]]\nname = \"settle\"", &on));
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        passes(&result);
+        assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
+        assert_eq!(result.stages.len(), 6);
     }
 }

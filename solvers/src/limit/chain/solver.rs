@@ -7,8 +7,11 @@ use crate::limit::conic::LimitConic;
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
 use crate::limit::question::answer_by;
 use crate::limit::scale::{force_scale, force_unit, with_unit_power};
+use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
-use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
+use voussoir_core::limit::{
+    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer,
+};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
@@ -24,6 +27,10 @@ impl LimitSolver for LimitChain {
             Some(mut engine) => answer_by(problem, question, &mut engine),
             None => LimitConic {}.solve(problem, question),
         }
+    }
+
+    fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
+        settle(problem, loads, openings)
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {

@@ -6,8 +6,9 @@ use super::system::{Loads, System};
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
 use crate::limit::question::answer_by;
 use crate::limit::scale::{force_scale, force_unit, with_unit_power};
+use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
-use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
+use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
@@ -23,6 +24,10 @@ pub struct LimitConic {}
 impl LimitSolver for LimitConic {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
         answer_by(problem, question, &mut ConicEngine { problem, work: Counters::new() })
+    }
+
+    fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
+        settle(problem, loads, openings)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

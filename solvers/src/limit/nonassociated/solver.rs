@@ -6,11 +6,13 @@ use super::products::{Bound, lower_bound};
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
 use crate::limit::sequential::{FlowState, Sequence, greatest_shares, sequence};
+use crate::limit::settlement::settle;
 use crate::limit::systems::{LARGEST, Systems};
 use crate::optimise::dense_simplex::Feasibility;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{
-    LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated, Status,
+    LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated, SettlementAnswer,
+    Status,
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -262,6 +264,10 @@ impl LimitSolver for LimitNonassociated {
         }
         own.lower_proof = Some(lower.proof(&least.systems, problem, start));
         finish(answer, own, best, lower.theta, (start, max, unit))
+    }
+
+    fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
+        settle(problem, loads, openings)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

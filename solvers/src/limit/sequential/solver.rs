@@ -3,8 +3,10 @@
 use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
+use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status};
+use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Sequential linear programming.
@@ -64,6 +66,10 @@ impl LimitSolver for LimitSequential {
             }
         }
         answer
+    }
+
+    fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
+        settle(problem, loads, openings)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

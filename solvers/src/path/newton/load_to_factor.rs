@@ -18,7 +18,7 @@ use voussoir_core::path::LoadStep;
 
 /// Longest step as a share of a load history, and the share below which a step is not made shorter for its energy.
 const LONGEST: f64 = 1.0 / 16.0;
-const SHORTEST_FOR_ENERGY: f64 = 2e-4;
+const SHORTEST_FOR_ENERGY: f64 = 1e-8;
 
 /// Why there is no first state.
 const NO_START: &str = "the first load has no state that Newton's method or pivoting found, and no proof that there is none: friction that is not associated may leave no state, or several; try event_path, smaller stages, or limit_least";

@@ -13,6 +13,7 @@ use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
+use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, LoadStep};
@@ -116,7 +117,10 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
     // What strengths bound is no ray: the facets have been looked at above with the ray's forces, and no
     // block that may yield carries any load.
     if target.is_infinite() && !tracer.system.problem.yields() && factor > 1e-9 * (motion + force) {
-        tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(|x| x / rate.factor)).collect());
+        // A support that moves what is statically determinate asks for no forces.
+        let constant = force <= 1e-7 * motion && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
+        tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
         end_path(
             tracer,
             if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Unbounded },

@@ -2,25 +2,12 @@
 
 use super::places::Places;
 use super::request::Request;
-use crate::results::CaseResult;
+use crate::kinds::search::golden_section;
+use crate::results::{CaseResult, load_rank};
 use rayon::prelude::*;
-use voussoir_core::limit::Status;
 
 /// Local minima of the scan above the least by more than this share are not searched further.
 const WORTHWHILE: f64 = 0.05;
-/// Golden section: (√5 − 1)/2.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
-/// The factor as the search compares it: what carries any load, or stands, is infinite, what cannot carry its dead load
-/// is −∞; `None` where there is no answer.
-pub(super) fn rank(result: &CaseResult) -> Option<f64> {
-    match result.status {
-        Status::NoEquilibrium => Some(f64::NEG_INFINITY),
-        Status::Unbounded | Status::Stands => Some(f64::INFINITY),
-        Status::Collapse | Status::LimitPoint => result.load_factor,
-        Status::Stalled => None,
-    }
-}
 
 /// Results at all places that were tried, in order of id.
 pub(super) fn worst_place(
@@ -28,7 +15,7 @@ pub(super) fn worst_place(
     request: &Request,
     solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
 ) -> Vec<CaseResult> {
-    let ranked = |(x, result): &(f64, CaseResult)| Some((*x, rank(result)?));
+    let ranked = |(x, result): &(f64, CaseResult)| Some((*x, load_rank(result)?));
     let mut tried = solve_all(0, &places.scan, solve);
     let mut values: Vec<(f64, f64)> = tried.iter().filter_map(ranked).collect();
     // Where the scan is low, edges of patches at joints are tried too.
@@ -42,7 +29,13 @@ pub(super) fn worst_place(
     let mut found = Vec::new();
     let width = request.tolerance * (request.range[1] - request.range[0]);
     for bracket in valleys(&values) {
-        golden_section(bracket, width, &mut next, solve, &mut found);
+        golden_section(bracket, width, |x| {
+            let result = solve(next, x)?;
+            next += 1;
+            let merit = load_rank(&result).map(|factor| -factor);
+            found.push(result);
+            merit
+        });
     }
     tried.into_iter().map(|(_, result)| result).chain(found).collect()
 }
@@ -59,40 +52,6 @@ fn valleys(values: &[(f64, f64)]) -> Vec<[f64; 2]> {
     (0..values.len()).filter_map(valley).collect()
 }
 
-/// Golden sections of a bracket down to a width; every result is kept.
-fn golden_section(
-    [mut low, mut high]: [f64; 2],
-    width: f64,
-    next: &mut usize,
-    solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
-    found: &mut Vec<CaseResult>,
-) {
-    let mut at = |x: f64| {
-        let result = solve(*next, x)?;
-        *next += 1;
-        let value = rank(&result);
-        found.push(result);
-        value
-    };
-    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (Some(mut f_a), Some(mut f_b)) = (at(a), at(b)) else { return };
-    while high - low > width {
-        // Equal values, as of two mirrored places, leave the left part.
-        let value = if f_a <= f_b {
-            (high, b, f_b) = (b, a, f_a);
-            a = high - GOLDEN * (high - low);
-            at(a).map(|value| f_a = value)
-        } else {
-            (low, a, f_a) = (a, b, f_b);
-            b = low + GOLDEN * (high - low);
-            at(b).map(|value| f_b = value)
-        };
-        if value.is_none() {
-            return;
-        }
-    }
-}
-
 /// Solves places side by side, in order; those that make no case are left out.
 fn solve_all(
     first: usize,
@@ -106,6 +65,7 @@ fn solve_all(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use voussoir_core::limit::Status;
 
     fn answer(id: usize, factor: f64) -> CaseResult {
         let mut result = CaseResult::empty();

@@ -1,8 +1,8 @@
 //! What an envelope adds to the results: the worst place of each case of the study, and the factor at all places.
 
 use super::request::{Request, value_at};
-use super::search::rank;
-use crate::results::CaseResult;
+use crate::kinds::search::intervals;
+use crate::results::{CaseResult, load_rank};
 use crate::study::Study;
 use serde_json::{Map, Value as Json, json};
 
@@ -57,10 +57,10 @@ fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
 
 /// The entry of the least factor.
 fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Option<Json> {
-    let ranked = places.iter().filter_map(|place| Some((rank(place.result)?, place)));
+    let ranked = places.iter().filter_map(|place| Some((load_rank(place.result)?, place)));
     let (_, place) = ranked.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let own: Vec<&Place> =
-        places.iter().filter(|p| p.vehicle == place.vehicle && p.direction == place.direction).collect();
+    let own = places.iter().filter(|p| p.vehicle == place.vehicle && p.direction == place.direction);
+    let own: Vec<(f64, Json)> = own.map(|place| (place.value, json!(place.result.status))).collect();
     Some(json!({
         "variant": base.variant,
         "parameters": base.parameters,
@@ -73,11 +73,4 @@ fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Opti
         "case": place.result.label.id,
         "intervals": intervals(&own),
     }))
-}
-
-/// Stretches of one status, from the first of its places to the last.
-fn intervals(places: &[&Place]) -> Vec<Json> {
-    let stretches = places.chunk_by(|a, b| a.result.status == b.result.status);
-    let ends = stretches.filter_map(|stretch| Some((stretch.first()?, stretch.last()?)));
-    ends.map(|(a, b)| json!({ "from": a.value, "to": b.value, "status": a.result.status })).collect()
 }

@@ -1,6 +1,7 @@
 //! What `optimise` adds to the results: the best value of each case of the study, and where there is none.
 
 use super::Request;
+use crate::kinds::search::intervals;
 use crate::results::CaseResult;
 use crate::study::{Case, Study};
 use serde_json::{Map, Value as Json, json};
@@ -62,6 +63,7 @@ fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
         (None, Some((value, result, own))) => (Some(value), Some(own), Some(result)),
         (None, None) => (None, None, tried.iter().find_map(|t| t.found).map(|(result, _)| result)),
     };
+    let statuses: Vec<(f64, Json)> = tried.iter().map(|t| (t.value, t.status())).collect();
     json!({
         "variant": base.variant,
         "parameters": base.parameters,
@@ -71,14 +73,7 @@ fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
         "status": shown.map(|result| result.status),
         "case": shown.map(|result| result.label.id),
         "best_finite": best_finite,
-        "intervals": intervals(tried),
+        "intervals": intervals(&statuses),
         "scan_spacing": (request.range[1] - request.range[0]) / (request.scan - 1) as f64,
     })
-}
-
-/// Stretches of one status, from the first of their values to the last.
-fn intervals(tried: &[Tried]) -> Vec<Json> {
-    let stretches = tried.chunk_by(|a, b| a.status() == b.status());
-    let ends = stretches.filter_map(|stretch| Some((stretch.first()?, stretch.last()?)));
-    ends.map(|(a, b)| json!({ "from": a.value, "to": b.value, "status": a.status() })).collect()
 }

@@ -1,11 +1,9 @@
 //! The search: a scan, bisection of the borders between finite results and none, golden sections around the best.
 
 use super::Request;
+use crate::kinds::search::golden_section;
 use crate::results::CaseResult;
 use rayon::prelude::*;
-
-/// Golden section: (√5 − 1)/2.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// What a value gives: its merit (greater is better, `None` where there is no finite result) and the result; `None`
 /// where it makes no scene.
@@ -42,7 +40,7 @@ pub(super) fn best_value(request: &Request, solve: &(dyn Fn(usize, f64) -> Answe
     tried.extend(borders);
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     for bracket in peaks(&tried) {
-        search.golden_section(bracket, width);
+        golden_section(bracket, width, |value| search.at(value));
     }
     search.results
 }
@@ -83,25 +81,6 @@ impl Search<'_> {
             ends[usize::from(merit.is_some() == ends[1].1.is_some())] = (middle, merit);
         }
         tried
-    }
-
-    /// Golden sections of a bracket down to a width.
-    fn golden_section(&mut self, [mut low, mut high]: [f64; 2], width: f64) {
-        let worst = f64::NEG_INFINITY;
-        let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        let (mut f_a, mut f_b) = (self.at(a).unwrap_or(worst), self.at(b).unwrap_or(worst));
-        while high - low > width {
-            // Equal values, as of two mirrored scenes, leave the left part.
-            if f_a >= f_b {
-                (high, b, f_b) = (b, a, f_a);
-                a = high - GOLDEN * (high - low);
-                f_a = self.at(a).unwrap_or(worst);
-            } else {
-                (low, a, f_a) = (a, b, f_b);
-                b = low + GOLDEN * (high - low);
-                f_b = self.at(b).unwrap_or(worst);
-            }
-        }
     }
 }
 

@@ -1,0 +1,63 @@
+//! What proves how rigid blocks follow supports that move: the supports move as they are told, joints move along the
+//! flow of their laws (associated), and the field does on every joint the work that it dissipates. With a field that
+//! is admissible no motion has less potential energy (weak duality).
+
+use super::limit::{ContactForce, largest_jump, support_integral};
+use super::mechanism::{CentroidVelocity, jumps};
+use crate::law::YieldPolygon;
+use crate::model::{Assembly, Bond};
+
+/// Residuals by name: `settlement_supports` (how far held blocks are from where they are told to be), `settlement_flow`
+/// (jumps that are no flow), both relative to the greatest displacement and to the greatest jump or a millionth of that, and `settlement_gap` (work of the
+/// field on all joints that is not dissipated, relative to the sum of |force| × greatest jump). `supports`: the motion
+/// of every held block, `None` of free ones.
+pub fn settlement_residuals(
+    assembly: &Assembly,
+    field: &[ContactForce],
+    motion: &[CentroidVelocity],
+    supports: &[Option<CentroidVelocity>],
+) -> [(&'static str, f64); 3] {
+    let size = |v: &CentroidVelocity| v[0].hypot(v[1]).max(v[2].abs() * assembly.size());
+    let greatest = motion.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+    let held = motion.iter().zip(supports).filter_map(|(v, own)| own.map(|own| [0, 1, 2].map(|i| v[i] - own[i])));
+    let off = held.map(|v| size(&v)).fold(0.0, f64::max) / greatest;
+    let jumps = jumps(assembly, motion);
+    let largest = largest_jump(&jumps).max(1e-6 * greatest);
+    let mut work: Vec<f64> = vec![0.0; jumps.len()];
+    let mut forces = 0.0;
+    for contact in field {
+        let (joint, jump) = (&assembly.joints[contact.joint], &jumps[contact.joint]);
+        let along = joint.ends[1] - joint.ends[0];
+        let share = (contact.point - joint.ends[0]).dot(&along) / along.norm_squared();
+        let open = jump.open[0] + share * (jump.open[1] - jump.open[0]);
+        work[contact.joint] += contact.force[0] * open + contact.force[1] * jump.slip;
+        forces += contact.force[0].hypot(contact.force[1]);
+    }
+    let (mut impossible, mut gap) = (0.0f64, 0.0);
+    let polygons: Vec<YieldPolygon> =
+        assembly.catalogue.laws.iter().map(|(_, law)| YieldPolygon::of(&law.facets().unwrap_or_default())).collect();
+    for ((joint, jump), work) in assembly.joints.iter().zip(&jumps).zip(&work) {
+        let held = |body: usize| supports[body].is_some();
+        let Bond::Law(law) = joint.bond else {
+            impossible = impossible.max(jump.size());
+            continue;
+        };
+        // Supports may move into each other: what they meet is the ground.
+        if held(joint.minus) && held(joint.plus) {
+            continue;
+        }
+        let polygon = &polygons[law];
+        for ray in &polygon.rays {
+            for open in jump.open {
+                impossible = impossible.max(-(ray[0] * open + ray[1] * jump.slip));
+            }
+        }
+        let dissipated = support_integral(&polygon.vertices, jump) * joint.height() * assembly.width;
+        gap += (work + dissipated).abs();
+    }
+    [
+        ("settlement_supports", off),
+        ("settlement_flow", impossible / largest),
+        ("settlement_gap", gap / (forces * largest).max(f64::MIN_POSITIVE)),
+    ]
+}

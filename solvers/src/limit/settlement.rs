@@ -1,0 +1,192 @@
+//! Rigid blocks on supports that move: the motion of least potential energy, and the field that is its dual.
+//!
+//! ```text
+//! motions   min −w·q + Σ b_i γ_i     Eᵀ q + g_s + Dᵀ γ = 0,  γ ≥ 0
+//! fields    max −r·g_s               E r + w = 0,  A r ≤ b
+//! ```
+//!
+//! g_s: openings and slip that the supports alone cause, D = A: flow is associated. By complementary slackness the best
+//! motions are those with γ_i = 0 wherever the best field has slack; one is taken in their relative interior, the mean
+//! of those with the greatest γ_i each, which is as symmetric as the scene. Source: Iannuzzo et al. 2018, Meccanica 53
+//! (rigid blocks under settlements by least energy).
+
+use super::systems::{LARGEST, Systems};
+use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
+use nalgebra::{DMatrix, DVector};
+use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
+use voussoir_core::model::Wrenches;
+
+/// Slack, relative to the greatest force, up to which a row may yield.
+const TIGHT: f64 = 1e-9;
+/// Multipliers that differ by more than this share of the greatest are two.
+const APART: f64 = 1e-7;
+/// Pivots of a linear program.
+const PIVOTS: u64 = 20_000;
+/// What least squares may leave, relative to their right-hand side.
+const RESIDUAL: f64 = 1e-9;
+
+/// Answers for any limit solver.
+pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
+    settled(problem, loads, openings).unwrap_or_else(SettlementAnswer::Refused)
+}
+
+fn settled(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> Result<SettlementAnswer, String> {
+    if problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+        return Err("settlements of rigid blocks take no joints that crush".into());
+    }
+    if problem.magnitude(loads) == 0.0 {
+        return Err("without loads nothing tells how rigid blocks follow their supports".into());
+    }
+    let loaded = LimitProblem { varying: loads.clone(), ..problem.clone() };
+    let systems = Systems::new(&loaded, loads);
+    if systems.entries() > LARGEST {
+        return Err(format!("the scene is too large for settlements of rigid blocks ({} entries)", systems.entries()));
+    }
+    // Openings over the force variables, in the length of the greatest.
+    let unit = openings.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
+    let mut driven = vec![0.0; systems.forces];
+    for (opening, &(first, count)) in openings.iter().zip(&systems.variables.joints) {
+        for k in 0..count {
+            driven[first + k] = if unit > 0.0 { opening[k] / unit } else { 0.0 };
+        }
+    }
+    let force = field(&systems, &driven)?;
+    let tight = tight(&systems, &force);
+    let (multipliers, unique) = multipliers(&systems, &driven, &tight)?;
+    let motion = motion(&systems, &driven, &tight, &multipliers)?;
+    let length = systems.length;
+    let of = |q: &[f64]| -> Velocity { [q[0] * unit, q[1] * unit, q[2] * unit / length] };
+    Ok(SettlementAnswer::Follows {
+        field: systems.variables.joint_forces(&force, systems.force),
+        motion: motion.chunks_exact(3).map(of).collect(),
+        unique,
+    })
+}
+
+/// The field on which the supports do most work against the blocks, in units of force.
+fn field(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
+    let (free, pairs) = (systems.forces, systems.pairs.len());
+    // s_i of all pairs, then the two parts of r·g_s.
+    let variables = pairs + 2;
+    let (mut rows, mut right) = (Vec::new(), Vec::new());
+    let mut equation = |entries: &[(usize, f64)], slack: &[(usize, f64)], value: f64| {
+        let mut row = vec![0.0; free + variables];
+        entries.iter().for_each(|&(j, v)| row[j] += v);
+        slack.iter().for_each(|&(j, v)| row[free + j] += v);
+        rows.push(row);
+        right.push(value);
+    };
+    for (entries, load) in systems.equilibrium.iter().zip(&systems.fixed) {
+        equation(entries, &[], -load);
+    }
+    for (i, pair) in systems.pairs.iter().enumerate() {
+        equation(&pair.normal, &[(i, 1.0)], pair.bound);
+    }
+    let work: Vec<(usize, f64)> = driven.iter().copied().enumerate().filter(|(_, g)| *g != 0.0).collect();
+    equation(&work, &[(pairs, -1.0), (pairs + 1, 1.0)], 0.0);
+    let mut program = Equations { free, variables, rows, right }.dictionary().ok_or("the equations of statics fail")?;
+    if program.feasible() != Feasibility::Point {
+        return Err("the loads before the supports move have no admissible field".into());
+    }
+    let (least, finished) = program
+        .minimise(&[(pairs, 1.0), (pairs + 1, -1.0)], PIVOTS)
+        .ok_or("rigid blocks cannot follow their supports: forces would grow without bound")?;
+    if !finished {
+        return Err("the program of the field took too many pivots".into());
+    }
+    // The forces of these slacks, with that work.
+    let height = systems.equilibrium.len() + pairs + 1;
+    let mut matrix = DMatrix::zeros(height, free);
+    let mut values = DVector::zeros(height);
+    let sides = systems.equilibrium.iter().zip(systems.fixed.iter().map(|w| -w));
+    let yields =
+        systems.pairs.iter().enumerate().map(|(i, pair)| (&pair.normal, pair.bound - program.value(i).max(0.0)));
+    for (row, (entries, value)) in sides.chain(yields).chain([(&work, least)]).enumerate() {
+        entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
+        values[row] = value;
+    }
+    least_squares(matrix, &values, "forces")
+}
+
+/// The least x of all that solve the equations.
+fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>, what: &str) -> Result<Vec<f64>, String> {
+    let (rows, columns) = matrix.shape();
+    if columns == 0 {
+        return Ok(Vec::new());
+    }
+    // Rows of zeros make it high enough for all right vectors.
+    let high = matrix.clone().resize_vertically(rows.max(columns), 0.0);
+    let tall = right.clone().resize_vertically(rows.max(columns), 0.0);
+    let svd = high
+        .clone()
+        .try_svd(true, true, f64::EPSILON, 10_000)
+        .ok_or_else(|| format!("no singular values of the {what}"))?;
+    let least = 1e-11 * svd.singular_values.max();
+    let mut x = svd.solve(&tall, least).map_err(|why| format!("{what}: {why}"))?;
+    let rest = &tall - &high * &x;
+    x += svd.solve(&rest, least).map_err(|why| format!("{what}: {why}"))?;
+    let left = (right - matrix * &x).amax();
+    if left > RESIDUAL * right.amax().max(1e-300) {
+        return Err(format!("the {what} of the settlement leave {left:.1e} of their equations"));
+    }
+    Ok(x.iter().copied().collect())
+}
+
+/// Pairs without slack.
+fn tight(systems: &Systems, force: &[f64]) -> Vec<usize> {
+    let size = force.iter().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let slack = |i: usize| {
+        let pair = &systems.pairs[i];
+        pair.bound - pair.normal.iter().map(|&(j, v)| v * force[j]).sum::<f64>()
+    };
+    (0..systems.pairs.len()).filter(|i| slack(*i) <= TIGHT * size).collect()
+}
+
+/// γ of the tight pairs, in the relative interior of all that fit, and whether they are the only ones.
+fn multipliers(systems: &Systems, driven: &[f64], tight: &[usize]) -> Result<(Vec<f64>, Option<bool>), String> {
+    let (free, variables) = (systems.equilibrium.len(), tight.len());
+    let mut rows = vec![vec![0.0; free + variables]; systems.forces];
+    for (i, entries) in systems.equilibrium.iter().enumerate() {
+        entries.iter().for_each(|&(j, v)| rows[j][i] += v);
+    }
+    for (k, &i) in tight.iter().enumerate() {
+        systems.pairs[i].normal.iter().for_each(|&(j, v)| rows[j][free + k] += v);
+    }
+    let right = driven.iter().map(|g| -g).collect();
+    let none = "no motion of the rigid blocks fits the field of the settlement";
+    let mut program: Dictionary = Equations { free, variables, rows, right }.dictionary().ok_or(none)?;
+    if program.feasible() != Feasibility::Point {
+        return Err(none.into());
+    }
+    let point = |program: &Dictionary| -> Vec<f64> { (0..variables).map(|k| program.value(k).max(0.0)).collect() };
+    let mut found = vec![point(&program)];
+    let mut bounded = true;
+    for k in 0..variables {
+        match program.minimise(&[(k, -1.0)], PIVOTS) {
+            Some((_, true)) => {
+                let other = point(&program);
+                let size = other.iter().fold(0.0, |a: f64, v| a.max(*v));
+                let same = |v: &Vec<f64>| v.iter().zip(&other).all(|(a, b)| (a - b).abs() <= APART * size);
+                if !found.iter().any(same) {
+                    found.push(other);
+                }
+            }
+            _ => bounded = false,
+        }
+    }
+    let mean = (0..variables).map(|k| found.iter().map(|v| v[k]).sum::<f64>() / found.len() as f64).collect();
+    Ok((mean, Some(bounded && found.len() == 1)))
+}
+
+/// q with Eᵀ q = −g_s − Dᵀ γ.
+fn motion(systems: &Systems, driven: &[f64], tight: &[usize], multipliers: &[f64]) -> Result<Vec<f64>, String> {
+    let mut matrix = DMatrix::zeros(systems.forces, systems.equilibrium.len());
+    for (i, entries) in systems.equilibrium.iter().enumerate() {
+        entries.iter().for_each(|&(j, v)| matrix[(j, i)] += v);
+    }
+    let mut right = DVector::from_iterator(systems.forces, driven.iter().map(|g| -g));
+    for (&i, gamma) in tight.iter().zip(multipliers) {
+        systems.pairs[i].normal.iter().for_each(|&(j, v)| right[j] -= gamma * v);
+    }
+    least_squares(matrix, &right, "motion")
+}

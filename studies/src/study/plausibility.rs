@@ -1,0 +1,150 @@
+//! Warnings: what can be computed and is hardly meant. They become notes of the case, not mistakes.
+
+use serde_json::{Map, Value as Json};
+use voussoir_core::model::geometry::{Vec2, bounding_box};
+use voussoir_core::model::{Assembly, Body, root};
+
+/// Densities of masonry and its fills \[kg/m³\].
+const DENSITIES: [f64; 2] = [1000.0, 3500.0];
+/// Friction from which it is doubted: an angle of 56°.
+const FRICTION: f64 = 1.5;
+/// Share of the scene's size below which an opening between blocks is doubted.
+const GAP: f64 = 1e-3;
+/// Sine of the angle between edges that face each other, at most.
+const SLANT: f64 = 0.05;
+/// Names listed before the others are counted.
+const LISTED: usize = 3;
+
+/// What is hardly meant in a case, from its checked study and its scene.
+pub(super) fn warnings(resolved: &Map<String, Json>, assembly: &Assembly) -> Vec<String> {
+    let mut found = Vec::new();
+    densities(assembly, &mut found);
+    for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
+        if let Some(friction) = law["friction"].as_f64().filter(|friction| *friction > FRICTION) {
+            found.push(format!(
+                "joints.{name}.friction = {friction} is an angle of {:.0}°; stone on stone has 0.5 to 0.8",
+                friction.atan().to_degrees()
+            ));
+        }
+    }
+    if let Some(scene) = resolved.get("scene")
+        && let (Some(thickness), Some(span)) = (scene["thickness"].as_f64(), scene["profile"]["span"].as_f64())
+        && thickness > span
+    {
+        found.push(format!("scene.thickness = {thickness} m is more than the span of {span} m"));
+    }
+    // Other scenes make their joints themselves.
+    if resolved.get("scene").is_some_and(|scene| scene["scene"] == "blocks") {
+        small_gaps(assembly, &mut found);
+        floating(assembly, &mut found);
+    }
+    found
+}
+
+fn densities(assembly: &Assembly, found: &mut Vec<String>) {
+    for (index, (name, material)) in assembly.catalogue.materials.iter().enumerate() {
+        let used = assembly.bodies.iter().any(|body| body.material == index && !body.fixed);
+        let density = material.density();
+        // Weightless blocks are meant.
+        if used && density != 0.0 && !(DENSITIES[0]..=DENSITIES[1]).contains(&density) {
+            let help = if (10.0..40.0).contains(&density) {
+                format!("; a specific weight is written \"{density} kN/m3\"")
+            } else {
+                String::new()
+            };
+            found.push(format!(
+                "materials.{name}.density = {density} kg/m3 is outside {} to {}, where masonry is{help}",
+                DENSITIES[0], DENSITIES[1]
+            ));
+        }
+    }
+}
+
+/// The greatest distance of two edges over the length on which they face each other; `None` where they do not, or
+/// touch.
+fn facing([a, b]: [Vec2; 2], [c, d]: [Vec2; 2], size: f64) -> Option<f64> {
+    let length = (b - a).norm();
+    let along = (b - a) / length;
+    let (across, other) = (Vec2::new(-along.y, along.x), d - c);
+    // Both polygons run the same way round: facing edges run against each other.
+    if other.dot(&along) >= 0.0 || other.dot(&across).abs() > SLANT * other.norm() {
+        return None;
+    }
+    let [from, to] = [(d - a).dot(&along), (c - a).dot(&along)];
+    let (low, high) = (from.max(0.0), to.min(length));
+    if high - low <= 0.01 * length.min(other.norm()) {
+        return None;
+    }
+    let at = |s: f64| ((d - a).dot(&across) + (c - d).dot(&across) * (s - from) / (to - from)).abs();
+    let [near, far] = [at(low), at(high)];
+    let widest = near.max(far);
+    (widest > 1e-9 * size && widest < GAP * size).then_some(widest)
+}
+
+fn edges(body: &Body) -> impl Iterator<Item = [Vec2; 2]> {
+    (0..body.vertices.len()).map(|i| [body.vertices[i], body.vertices[(i + 1) % body.vertices.len()]])
+}
+
+/// Blocks that nearly touch and share no joint.
+fn small_gaps(assembly: &Assembly, found: &mut Vec<String>) {
+    let size = assembly.size();
+    let boxes: Vec<(usize, Vec2, Vec2)> = (0..assembly.bodies.len())
+        .filter(|body| !assembly.bodies[*body].vertices.is_empty())
+        .map(|body| {
+            let (low, high) = bounding_box(&assembly.bodies[body].vertices);
+            (body, low, high)
+        })
+        .collect();
+    let mut order = boxes.clone();
+    order.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
+    let joined: std::collections::HashSet<[usize; 2]> =
+        assembly.joints.iter().map(|joint| [joint.minus.min(joint.plus), joint.minus.max(joint.plus)]).collect();
+    let mut pairs = Vec::new();
+    for (place, (a, low, high)) in order.iter().enumerate() {
+        let near = order[place + 1..].iter().take_while(|(_, other, _)| other.x <= high.x + GAP * size);
+        for (b, other_low, other_high) in near {
+            let level = other_low.y <= high.y + GAP * size && low.y <= other_high.y + GAP * size;
+            let bodies = [*a, *b].map(|body| &assembly.bodies[body]);
+            if !level || bodies.iter().all(|body| body.fixed) || joined.contains(&[*a.min(b), *a.max(b)]) {
+                continue;
+            }
+            let facing = edges(bodies[0]).flat_map(|e| edges(bodies[1]).filter_map(move |f| facing(e, f, size)));
+            if let Some(widest) = facing.reduce(f64::max) {
+                pairs.push((bodies.map(|body| body.name.as_str()), widest));
+            }
+        }
+    }
+    for ([a, b], widest) in pairs.iter().take(LISTED) {
+        found.push(format!(
+            "blocks \"{a}\" and \"{b}\" face each other up to {:.3} mm apart, less than 1/1000 of the scene, and share no \
+             joint: let their edges touch, or give the opening as gap of a pair",
+            widest * 1e3
+        ));
+    }
+    if pairs.len() > LISTED {
+        found.push(format!("{} more pairs of blocks nearly touch and share no joint", pairs.len() - LISTED));
+    }
+}
+
+/// Free blocks that no chain of joints leads from to the ground.
+fn floating(assembly: &Assembly, found: &mut Vec<String>) {
+    let mut parent: Vec<usize> = (0..assembly.bodies.len()).collect();
+    for joint in &assembly.joints {
+        let (a, b) = (root(&mut parent, joint.minus), root(&mut parent, joint.plus));
+        parent[a] = b;
+    }
+    let roots: Vec<usize> = (0..assembly.bodies.len()).map(|body| root(&mut parent, body)).collect();
+    let mut held = vec![false; roots.len()];
+    (0..roots.len()).filter(|body| assembly.bodies[*body].fixed).for_each(|body| held[roots[body]] = true);
+    let loose: Vec<String> = (0..roots.len())
+        .filter(|body| !held[roots[*body]])
+        .map(|body| format!("\"{}\"", assembly.bodies[body].name))
+        .collect();
+    if loose.is_empty() {
+        return;
+    }
+    let more = loose.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let names = loose[..loose.len().min(LISTED)].join(", ");
+    found.push(format!("no chain of joints joins {names}{more} to a fixed block: nothing holds what floats"));
+}

@@ -1,0 +1,87 @@
+//! What can be computed and is hardly meant: a note of the case, and no more.
+
+use voussoir::study::load;
+use voussoir_tests::study;
+
+/// Notes of the first case with some text of an arch changed.
+fn notes(changes: &[(&str, &str)]) -> Vec<String> {
+    let text = "name = \"arch\"\n[scene]\nscene = \"arch\"\nprofile = { shape = \"segmental\", span = 4.0, rise = 1.0 }\n\
+                thickness = 0.4\nwidth = 1.0\nvoussoirs = 7\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n\
+                [materials.stone]\nlaw = \"rigid\"\ndensity = 2200.0\n[joints.dry]\nlaw = \"coulomb_associated\"\n\
+                friction = 0.6\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n";
+    let text = changes.iter().fold(text.to_string(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    });
+    study(&text).cases[0].notes.clone()
+}
+
+#[test]
+fn implausible_values_are_noted() {
+    assert_eq!(notes(&[]), Vec::<String>::new());
+    let heavy = notes(&[("density = 2200.0", "density = 22.0")]);
+    assert!(heavy.len() == 1 && heavy[0].contains("\"22 kN/m3\""), "{heavy:?}");
+    assert_eq!(notes(&[("density = 2200.0", "density = \"22 kN/m3\"")]), Vec::<String>::new());
+    assert_eq!(notes(&[("density = 2200.0", "density = 0.0")]), Vec::<String>::new());
+    let rough = notes(&[("friction = 0.6", "friction = 2.0")]);
+    assert!(rough.len() == 1 && rough[0].contains("63°"), "{rough:?}");
+    let thick = notes(&[("thickness = 0.4", "thickness = 4.5"), ("rise = 1.0", "rise = 2.0")]);
+    assert!(thick.len() == 1 && thick[0].contains("more than the span"), "{thick:?}");
+}
+
+/// Two blocks on a ground, the second with its left edge at `x` below and `top` above.
+fn blocks(x: f64, top: f64, more: &str) -> Vec<String> {
+    let text = format!(
+        "name = \"blocks\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"s\"\njoint = \"d\"\n\
+         [[scene.blocks]]\nname = \"g\"\nvertices = [[0, 0], [2, 0], [2, -1], [0, -1]]\nfixed = true\n\
+         [[scene.blocks]]\nname = \"a\"\nvertices = [[0, 0], [1, 0], [1, 1], [0, 1]]\n\
+         [[scene.blocks]]\nname = \"b\"\nvertices = [[{x:?}, 0], [2, 0], [2, 1], [{top:?}, 1]]\n{more}\
+         [materials.s]\nlaw = \"rigid\"\ndensity = 2000\n[joints.d]\nlaw = \"coulomb\"\nfriction = 0.6\n\
+         [[stages]]\nname = \"dead\"\ngravity = 9.81\n"
+    );
+    load(&text, "blocks.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0])).cases[0].notes.clone()
+}
+
+#[test]
+fn blocks_that_nearly_touch_or_float_are_named() {
+    for (x, top, gap) in
+        [(1.0000001, 1.002, Some("2.000 mm")), (1.001, 1.001, Some("1.000 mm")), (1.0, 1.0, None), (1.1, 1.1, None)]
+    {
+        let said = blocks(x, top, "");
+        match gap {
+            Some(gap) => {
+                assert!(said.len() == 1 && said[0].contains(gap) && said[0].contains("\"a\" and \"b\""), "{said:?}")
+            }
+            None => assert_eq!(said, Vec::<String>::new(), "{x}"),
+        }
+    }
+    let floats = "[[scene.blocks]]\nname = \"c\"\nvertices = [[0.2, 2], [0.8, 2], [0.8, 2.5], [0.2, 2.5]]\n";
+    let said = blocks(1.0, 1.0, floats);
+    assert!(said.len() == 1 && said[0].contains("\"c\"") && said[0].contains("nothing holds"), "{said:?}");
+}
+
+/// An axle that is off the arch counts nothing, and a note says so; where all are off it is a mistake.
+#[test]
+fn an_axle_off_the_arch_counts_nothing() {
+    let axles = |at: f64| {
+        let arch = voussoir_tests::Arch::default().study();
+        let point = "{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }";
+        let load = format!("{{ kind = \"axles\", at = {at:?}, positions = [0.0, 1.8], forces = [1000.0, 1000.0] }}");
+        load_text(&voussoir_tests::changed(&arch, point, &load))
+    };
+    let on = axles(0.2).expect("both on it");
+    assert_eq!((on.0, on.1), (2, Vec::new()));
+    let crossing = axles(-0.15).expect("one on it");
+    assert!(
+        crossing.0 == 1 && crossing.1[0].contains("axle 0") && crossing.1[0].contains("counts nothing"),
+        "{crossing:?}"
+    );
+    assert!(axles(1.5).expect_err("none on it").contains("hits no block"));
+}
+
+/// Number of forces of the last stage, and notes; or the first mistake.
+fn load_text(text: &str) -> Result<(usize, Vec<String>), String> {
+    let study = load(text, "axles.toml", &[]).map_err(|wrong| wrong[0].to_string())?;
+    let case = &study.cases[0];
+    Ok((case.stages.last().map_or(0, |stage| stage.forces.len()), case.notes.clone()))
+}
