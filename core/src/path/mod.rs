@@ -12,6 +12,7 @@
 mod build;
 mod continuation;
 mod fill;
+mod peak;
 mod point_law;
 mod problem;
 mod response_check;
@@ -21,6 +22,7 @@ mod state;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
 pub use self::fill::fill_gravity;
+pub use self::peak::{Branching, ProvenPeak, StageStability};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;

@@ -1,6 +1,7 @@
 //! What a path solver is told and answers, and who looks on.
 
 use super::continuation::Continuation;
+use super::peak::{Branching, ProvenPeak, StageStability};
 use super::problem::PathProblem;
 use super::state::{PathEvent, PathState};
 use crate::limit::{Counters, Status};
@@ -25,6 +26,12 @@ pub struct PathAnswer {
     pub motion: Option<Vec<[f64; 3]>>,
     /// Whether the rate at the end is the only one: `None` where it was not examined.
     pub unique: Option<bool>,
+    /// Proven peaks of the factor in order.
+    pub limit_points: Vec<ProvenPeak>,
+    /// Stability of the state at the end of each stage that was reached.
+    pub stability: Vec<StageStability>,
+    /// Places where a branch was chosen, or the structure snapped.
+    pub branchings: Vec<Branching>,
     /// Rates of contact forces of a ray that carries any load \[N\].
     pub ray: Option<Vec<[f64; 2]>>,
     /// Events in order.

@@ -7,3 +7,4 @@ mod events;
 pub mod newton;
 mod outcome;
 mod self_check;
+mod stability;

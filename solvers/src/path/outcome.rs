@@ -3,7 +3,7 @@
 
 use super::self_check::confirmed;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, PathState};
+use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability};
 
 /// A status with what it claims.
 #[derive(Debug, Clone)]
@@ -27,6 +27,9 @@ pub(super) struct PathRecord {
     /// The last one, where the path went on beyond it.
     pub last: Option<PathState>,
     pub events: Vec<PathEvent>,
+    pub limit_points: Vec<ProvenPeak>,
+    pub stability: Vec<StageStability>,
+    pub branchings: Vec<Branching>,
     pub counters: Counters,
     pub notes: Vec<String>,
 }
@@ -55,8 +58,24 @@ impl Outcome {
     /// The answer as it is: for paths whose end cannot be checked without what came before.
     pub fn unconfirmed(self, record: PathRecord) -> PathAnswer {
         let Outcome { status, factor, motion, ray, unique } = self;
-        let PathRecord { load_step, state, last, events, counters, notes } = record;
-        PathAnswer { status, load_step, factor, state, last, motion, unique, ray, events, counters, notes }
+        let PathRecord { load_step, state, last, events, limit_points, stability, branchings, counters, notes } =
+            record;
+        PathAnswer {
+            status,
+            load_step,
+            factor,
+            state,
+            last,
+            motion,
+            unique,
+            limit_points,
+            stability,
+            branchings,
+            ray,
+            events,
+            counters,
+            notes,
+        }
     }
 }
 

@@ -103,7 +103,13 @@ pub fn blank(id: usize, status: Status) -> CaseResult {
             failures: vec![],
         },
         seconds: 1.2e-3,
-        stages: vec![StageResult { name: "live".into(), status, factor: None, hinges: vec![] }],
+        stages: vec![StageResult {
+            name: "live".into(),
+            status,
+            factor: None,
+            hinges: vec![],
+            stability: Default::default(),
+        }],
         ..CaseResult::empty()
     }
 }

@@ -1,6 +1,7 @@
 //! The result of a case, as it stands in `results.json`.
 
 use super::entries::{DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, YieldedEntry};
+use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
@@ -73,6 +74,15 @@ pub struct PathRecord {
     /// Blocks whose material has yielded at the state of the field.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub yielded: Vec<YieldedEntry>,
+    /// Proven peaks of the factor in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limit_points: Vec<LimitPointEntry>,
+    /// Factor of the first limit point of the stage that `load_factor` speaks of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_limit_point: Option<f64>,
+    /// Where the path left an equilibrium that became unstable.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub branches: Vec<BranchEntry>,
 }
 
 /// What proves that a case stands.
@@ -97,6 +107,9 @@ pub struct StageResult {
     /// Hinges of the mechanism that ended it, rotations per unit of motion; of a path's stage that stands the joints
     /// that are open over three quarters of their height at its end, with their rotation \[rad\].
     pub hinges: Vec<Hinge>,
+    /// Stability of its last state.
+    #[serde(flatten)]
+    pub stability: StabilityEntry,
 }
 
 /// The answer to one case with what proves it.

@@ -5,6 +5,7 @@ mod comparison;
 pub mod convert;
 mod entries;
 pub mod inelastic_state;
+mod limit_points;
 pub mod load_entries;
 pub mod path_state;
 mod rank;
@@ -17,5 +18,6 @@ pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, YieldedEntry,
 };
+pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 pub use rank::load_rank;
 pub use study_results::StudyResults;

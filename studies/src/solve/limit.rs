@@ -77,7 +77,7 @@ fn record_stages(
 ) {
     let stage = |index: usize, status, factor, hinges| {
         let name = stages[index].name.clone();
-        StageResult { name, status, factor, hinges }
+        StageResult { name, status, factor, hinges, stability: Default::default() }
     };
     let carried = !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
     let status = if carried { Status::Stands } else { result.status };

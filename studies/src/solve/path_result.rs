@@ -8,7 +8,10 @@ use crate::results::inelastic_state;
 use crate::results::load_entries::path_fill;
 use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
-use crate::results::{CaseResult, DisplacementEntry, EventEntry, PathRecord, Proof, ProofFields, StageResult};
+use crate::results::{
+    BranchEntry, CaseResult, DisplacementEntry, EventEntry, LimitPointEntry, PathRecord, Proof, ProofFields,
+    StabilityEntry, StageResult,
+};
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
     CentroidVelocity, Certificate, ContactForce, Hinge, PathChecker, flow_residual, jumps, largest_jump, tolerance,
@@ -16,7 +19,7 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{PathAnswer, PathEvent, PathProblem, PathState};
+use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability};
 
 /// What was seen of a path.
 pub(super) struct Seen {
@@ -92,7 +95,10 @@ pub(super) fn path_result(
         },
         certificate,
         counters,
-        stages: stage_results(input.stages, load_step.stage, status, reached, hinges),
+        stages: with_stability(
+            stage_results(input.stages, load_step.stage, status, reached, hinges),
+            &solved.stability,
+        ),
         notes,
         path: path_record(input, problem, solved, checker),
         ..CaseResult::empty()
@@ -119,13 +125,65 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
     let name = |body: usize| assembly.bodies[body].name.clone();
     let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
     let entry = |(body, displacement)| DisplacementEntry { body: name(body), displacement };
+    let first = first_limit_point(&solved);
+    let limit_points = solved.limit_points.iter().map(|peak| limit_point(input.stages, problem, peak)).collect();
+    let branches = solved.branchings.iter().map(|branching| branch(input.stages, problem, branching)).collect();
     PathRecord {
         displacements: Some(displaced.into_iter().enumerate().map(entry).collect()),
         yielded: inelastic_state::entries(assembly, problem, &solved.state),
         joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
         events: events(input, problem, &solved.events),
         curve: Some(checker.curve),
+        first_limit_point: first,
+        limit_points,
+        branches,
     }
+}
+
+/// Factor of the first limit point of the load step at which the path ended.
+fn first_limit_point(solved: &PathAnswer) -> Option<f64> {
+    let ends = matches!(solved.status, Status::Collapse | Status::LimitPoint);
+    let first = solved.limit_points.iter().find(|peak| peak.load_step == solved.load_step);
+    first.map(|peak| peak.factor).or(solved.factor).filter(|_| ends)
+}
+
+fn limit_point(stages: &[Stage], problem: &PathProblem, peak: &ProvenPeak) -> LimitPointEntry {
+    let load_step = &problem.load_steps[peak.load_step];
+    LimitPointEntry {
+        stage: stages[load_step.stage].name.clone(),
+        factor: peak.factor,
+        gravity: load_step.gravity,
+        displacement: peak.displacement,
+        fall: (peak.factor - peak.lowest).abs(),
+    }
+}
+
+fn branch(stages: &[Stage], problem: &PathProblem, branching: &Branching) -> BranchEntry {
+    BranchEntry {
+        stage: stages[problem.load_steps[branching.load_step].stage].name.clone(),
+        factor: branching.factor,
+        what: if branching.snaps { "snap" } else { "bifurcation" }.into(),
+        released_energy: branching.released,
+        twins: branching.twins,
+    }
+}
+
+/// Results of stages with the stability of their last states.
+fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Vec<StageResult> {
+    for (index, result) in results.iter_mut().enumerate() {
+        let Some(own) = found.iter().find(|own| own.stage == index) else { continue };
+        let word = match (own.under_load, own.sufficient_only) {
+            (None, _) => "not_proven",
+            (Some(_), true) => "sufficient",
+            (Some(_), false) => "proven",
+        };
+        result.stability = StabilityEntry {
+            stable_under_load: own.under_load,
+            stable_under_control: own.under_control,
+            stability: Some(word.into()),
+        };
+    }
+    results
 }
 
 /// Residuals of all states and of the mechanism's flow, against their bounds.
@@ -207,6 +265,7 @@ fn stage_results(
             status: Status::Stands,
             factor,
             hinges: hinges.next().unwrap_or_default(),
+            stability: StabilityEntry::default(),
         }
     };
     let mut results: Vec<StageResult> = stages[..last].iter().map(&mut stood).collect();

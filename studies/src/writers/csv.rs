@@ -19,9 +19,10 @@ impl Writer for ResultsCsv {
 }
 
 const BEFORE: [&str; 2] = ["id", "variant"];
-const AFTER: [&str; 17] = [
+const AFTER: [&str; 18] = [
     "status",
     "load_factor [-]",
+    "first_limit_point [-]",
     "lower_bound [-]",
     "upper_bound [-]",
     "associated_load_factor [-]",
@@ -60,6 +61,7 @@ fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<String> {
     row.extend([
         status_word(case.status).to_string(),
         number(case.load_factor),
+        number(case.path.first_limit_point),
         number(case.bounds.map(|b| b[0])),
         number(case.bounds.map(|b| b[1])),
         number(case.non_associated.associated_load_factor),

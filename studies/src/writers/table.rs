@@ -70,10 +70,14 @@ fn cell(value: &serde_json::Value) -> String {
 fn factor(case: &CaseResult) -> String {
     match (case.status, case.load_factor) {
         (Status::Unbounded, _) => "unbounded".into(),
-        (_, Some(factor)) => match open_bounds(case) {
-            Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
-            None => format_number(factor, 7),
-        },
+        (_, Some(factor)) => {
+            let first = case.path.first_limit_point.filter(|first| (first - factor).abs() > 1e-9 * factor.abs());
+            match (open_bounds(case), first) {
+                (Some([proved, _]), _) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+                (None, Some(first)) => format!("{} (first {})", format_number(factor, 7), format_number(first, 5)),
+                (None, None) => format_number(factor, 7),
+            }
+        }
         (_, None) => "-".into(),
     }
 }

@@ -85,9 +85,11 @@ fn each_is_found(name: &str, original: &Value, find: &dyn Fn(&Value) -> Vec<Stri
     assert_eq!(find(original), Vec::<String>::new(), "{name}: untouched");
     let mut all = Vec::new();
     forgeries(original, "", &mut all);
+    let possible = all.len();
     let (head, lists): (Vec<_>, Vec<_>) = all.into_iter().partition(|(path, _)| short(path));
     let tried: Vec<_> = sample(head, 150).into_iter().chain(sample(lists, 60)).collect();
     assert!(tried.len() > 25, "{name}: only {} forgeries", tried.len());
+    println!("{name}: {} of {possible} forgeries of single entries are tried", tried.len());
     for (path, forged) in tried {
         let mut changed = original.clone();
         *changed.pointer_mut(&path).expect("the path exists") = forged.clone();

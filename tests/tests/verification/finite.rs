@@ -143,8 +143,11 @@ fn a_three_hinged_arch_follows_its_closed_form_through_the_whole_loop() {
         let problem = two_bars(rise);
         let mut record = Record::default();
         let answer = NewtonPath {}.trace(&problem, &settings(Some(2.2 * rise), None), &mut record);
-        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
-        let factor = answer.factor.expect("a factor");
+        // Hanging it carries more than at the peak: an answer would depend on where it is stopped.
+        assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
+        assert!(answer.notes.iter().any(|note| note.starts_with("still rising")), "{:?}", answer.notes);
+        let [peak] = answer.limit_points[..] else { panic!("one peak: {:?}", answer.limit_points) };
+        let factor = peak.factor;
         let bar = Bar {
             crown: Vec2::new(SPAN, rise),
             load: Vec2::new(LOADED, 0.6 * rise),

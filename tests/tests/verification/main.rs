@@ -20,6 +20,7 @@ mod optimise;
 mod orthotropic;
 mod path_certificate;
 mod paths_read;
+mod peaks;
 mod plastic;
 mod semicircle;
 mod settled;

@@ -168,7 +168,6 @@ const ONCE_WRONG: [(usize, &[f64]); 5] = [
 
 /// Five of 160 scenes of the family: each has the peak that the energy has.
 #[test]
-#[ignore = "steps pass over these peaks: 806.61, 0.306, 357.6, 66.2 and 109.09 come out, certified"]
 fn peaks_that_steps_passed_over() {
     for (k, right) in ONCE_WRONG {
         let factor = answered(&scene(k).study(FINITE)).load_factor.expect("a factor");

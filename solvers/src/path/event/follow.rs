@@ -353,5 +353,5 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         outcome.factor = Some(state.factor);
     }
     let (load_step, events, notes) = (state.load_step, log.events, log.notes);
-    outcome.unconfirmed(PathRecord { load_step, state, last, events, counters, notes })
+    outcome.unconfirmed(PathRecord { load_step, state, last, events, counters, notes, ..PathRecord::default() })
 }

@@ -94,11 +94,14 @@ impl Equations {
         shift.push((2 * c + k, REGULARISATION));
     }
 
-    /// Adds the rows of the bodies.
-    pub fn bodies(&self, equations: &mut CsrMatrix, shifts: &mut CsrMatrix) {
+    /// Adds the rows of the bodies, with viscous wrenches of this rate.
+    pub fn bodies(&self, equations: &mut CsrMatrix, shifts: &mut CsrMatrix, damping: f64) {
         let base = self.gaps.len();
         for row in 0..self.bodies.len() {
             equations.open_row().extend_from_slice(self.bodies.row(row));
+            if damping != 0.0 {
+                equations.open_row().push((base + row, -damping));
+            }
             equations.end_row();
             shifts.open_row().push((base + row, -REGULARISATION));
             shifts.end_row();

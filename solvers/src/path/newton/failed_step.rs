@@ -70,7 +70,7 @@ fn blocks_yield(tracer: &mut Tracer, following: &Following, failure: &StepFailur
         if !tracer.strategy.passes_limit_points() {
             return AfterFailure::Ended(no_step(tracer, failure, &other, following.direction));
         }
-        note_peak(tracer, &other);
+        note_peak(tracer, &other, following.direction);
     }
     AfterFailure::Corner(Branch { tangent: other, modes: None })
 }
@@ -81,22 +81,28 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
     let found = match branch_beyond_fold(tracer, tangent, following.limits.first / plan.per_tangent) {
         Ok(found) => found,
         Err(why) => {
-            note_peak(tracer, tangent);
+            if following.slope > 0.0 {
+                note_peak(tracer, tangent, direction);
+            }
             return Some(AfterFailure::Ended(end_path(tracer, Status::Collapse, why)));
         }
     };
     let (mut tangent, mut modes) = found?;
     let mut falls = tangent.factor * direction <= 0.0;
+    let arrives = !tracer.system.finite() || following.slope > 0.0;
     let state = tracer.state.clone();
-    if falls && let Some(rising) = rising_branch(tracer, &state, direction) {
+    if falls
+        && arrives
+        && let Some(rising) = rising_branch(tracer, &state, direction)
+    {
         (tangent, modes) = rising;
         falls = false;
     }
     if falls && !tracer.strategy.passes_limit_points() {
         return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
     }
-    if falls {
-        note_peak(tracer, &tangent);
+    if falls && arrives {
+        note_peak(tracer, &tangent, direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))
 }

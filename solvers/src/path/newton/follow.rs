@@ -6,19 +6,22 @@ use super::failed_step::{AfterFailure, SHORTEST, after_failure};
 use super::following::{Branch, Following, per_tangent};
 use super::limit_point::{not_followed, rising_branch};
 use super::measure::{increment_between, motion_size};
-use super::peak::{locate_peak, note_trough, peak_at};
+use super::orientation::Orientation;
+use super::peak::{Bracketed, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
 use super::plastic_plateau::note_plateau;
 use super::response::branch_changes;
 use super::softening::{dissipating_sense, softening_peak};
-use super::state::Tangent;
+use super::stable_branch::{Departure, leave_unstable};
+use super::state::{State, Tangent};
 use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::termination::{ends_in_ray, no_step, stops};
 use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
 use super::trial::{StepPlan, Trial, attempt, plan};
+use crate::path::energy::load_size;
 use voussoir_core::limit::Status;
-use voussoir_core::path::LoadStep;
+use voussoir_core::path::{Branching, LoadStep, LoadStepEnd};
 
 /// Greatest number of steps of a load step.
 const MOST_STEPS: u64 = 5000;
@@ -26,6 +29,12 @@ const MOST_STEPS: u64 = 5000;
 /// Contact points up to which every change of mode counts for the length of the next step; of more the
 /// same share does, so that the number of steps does not grow with the number of joints.
 const ORDINARY: usize = 200;
+
+/// Length, relative to the first step, at which a bifurcation is passed.
+const PINNED: f64 = 1e-3;
+
+/// Share of a settlement by which it goes on beyond a limit point from which it snaps.
+const SNAP: f64 = 1e-7;
 
 /// Jump of λ in a step that is not one along a path with finite displacements, as a share of λ.
 const JUMP: f64 = 1e-4;
@@ -39,13 +48,17 @@ struct Step {
     accuracy: f64,
     /// Whether the load passes a peak in it.
     falls: bool,
+    orientation: Option<Orientation>,
+    plan: StepPlan,
 }
 
 /// How a step ends.
 enum StepEnd {
     Accepted(Step),
-    /// The load passes a first peak in it.
+    /// The load passes a peak in it, with small displacements the first.
     Peak(Step),
+    /// It ends in an unstable equilibrium, from which other branches lead.
+    Unstable(Step),
     /// To be tried again with this length.
     CutBack(f64),
     /// The path goes on along another branch.
@@ -68,9 +81,11 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
                 None
             }
             StepEnd::Corner(branch) => {
-                following.switch_to(branch);
+                let here = tracer.state.clone();
+                following.switch_to(&mut tracer.system, &here, branch);
                 None
             }
+            StepEnd::Unstable(step) => leave(tracer, &mut following, step),
             StepEnd::Ended(outcome) => Some(outcome),
         };
         if let Some(outcome) = ended {
@@ -85,11 +100,16 @@ fn next_step(tracer: &mut Tracer, following: &mut Following) -> StepEnd {
     let Some(plan) = plan(tracer, following) else { return strategy_stopped(tracer, following) };
     match attempt(tracer, following, &plan) {
         Ok(trial) => examine(tracer, following, &plan, trial),
-        Err(failure) => match after_failure(tracer, following, &plan, &failure) {
-            AfterFailure::CutBack(length) => StepEnd::CutBack(length),
-            AfterFailure::Corner(branch) => StepEnd::Corner(branch),
-            AfterFailure::Ended(outcome) => StepEnd::Ended(outcome),
-        },
+        Err(failure) => failed(tracer, following, &plan, &failure),
+    }
+}
+
+/// What follows a step that did not converge, or is none along the path.
+fn failed(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, failure: &StepFailure) -> StepEnd {
+    match after_failure(tracer, following, plan, failure) {
+        AfterFailure::CutBack(length) => StepEnd::CutBack(length),
+        AfterFailure::Corner(branch) => StepEnd::Corner(branch),
+        AfterFailure::Ended(outcome) => StepEnd::Ended(outcome),
     }
 }
 
@@ -146,9 +166,95 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         return cut_back(tracer, following, "the load falls in the step", &tangent);
     }
     let falls = fell || (falls && following.slope > 0.0);
-    let peak = falls && !softens && !trial.reaches && tracer.limit.peak.is_none();
-    let step = Step { trial, tangent, accuracy, falls };
-    if peak { StepEnd::Peak(step) } else { StepEnd::Accepted(step) }
+    let orientation = Orientation::along(&mut tracer.system, &trial.next, &tangent, direction);
+    let first = tracer.limit.peak.is_none();
+    let grew = following.slope > 0.0 && following.orientation.as_ref().is_none_or(|before| !before.still);
+    let peak = falls && !softens && !trial.reaches && (first || (finite && grew));
+    let step = Step { trial, tangent, accuracy, falls, orientation, plan: *plan };
+    if let Some(other) = off_the_branch(tracer, following, plan, &step) {
+        return other;
+    }
+    match &step.orientation {
+        Some(orientation) if orientation.unstable && beyond_all_peaks(tracer, following, &step) => {
+            StepEnd::Unstable(step)
+        }
+        _ if peak => StepEnd::Peak(step),
+        _ => StepEnd::Accepted(step),
+    }
+}
+
+/// Whether the load at the end of a step is above all peaks of its load step: below them what is followed is the
+/// post-peak branch, stable or not.
+fn beyond_all_peaks(tracer: &Tracer, following: &Following, step: &Step) -> bool {
+    let own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.load_step);
+    own.map(|peak| (step.trial.next.factor - peak.factor) * following.direction).all(|above| above > 0.0)
+}
+
+/// What follows a step whose end does not lie on the branch of its start, by their second-order work: a shorter one. At
+/// the shortest a step that turns back has failed; a bifurcation is passed.
+fn off_the_branch(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, step: &Step) -> Option<StepEnd> {
+    let (before, after) = (following.orientation.as_ref()?, step.orientation.as_ref()?);
+    if before.leads_to(after) || before.is_singular() || after.is_singular() {
+        return None;
+    }
+    if before.rises == after.rises && following.length < PINNED * following.limits.first {
+        note_bifurcation(tracer, before, after, step.trial.next.factor);
+        return None;
+    }
+    tracer.system.count("off_the_branch", 1);
+    Some(if before.rises == after.rises {
+        StepEnd::CutBack(0.3 * following.length)
+    } else {
+        failed(tracer, following, plan, &StepFailure::new("the step turned back, or to another branch"))
+    })
+}
+
+/// Names a bifurcation that is passed on a branch that stays stable under its loads: points that slide would stick on
+/// the way to another one, which starts under growing loads only (Shanley 1947, J. Aeronaut. Sci. 14, 261-268).
+fn note_bifurcation(tracer: &mut Tracer, before: &Orientation, after: &Orientation, factor: f64) {
+    if after.rises && !after.unstable && after.work.turned > before.work.turned {
+        let load_step = tracer.load_step;
+        tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: false });
+        tracer.record.notes.push(format!(
+            "at factor {factor} another branch starts under growing load, on which points stop sliding; the one that is followed is stable under its loads"
+        ));
+    }
+}
+
+/// From an unstable equilibrium to the stable one that damped descent reaches.
+fn leave(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
+    let Some(orientation) = step.orientation.clone() else { return accept(tracer, following, step) };
+    let reaches = step.trial.reaches;
+    if !commit(tracer, step.trial.next) {
+        return Some(LoadStepEnding::Ended);
+    }
+    let state = tracer.state.clone();
+    match leave_unstable(tracer, &state, &orientation.work, false) {
+        Departure::Stopped => Some(LoadStepEnding::Ended),
+        Departure::Stable if reaches => Some(LoadStepEnding::Reached),
+        Departure::Stable => match Following::begin(tracer, following.load_step, following.target) {
+            Ok(anew) => {
+                *following = anew;
+                None
+            }
+            Err(ending) => Some(ending),
+        },
+        Departure::Falls if tracer.limit.peak.is_some() => {
+            let factor = tracer.state.factor;
+            let why = format!(
+                "at factor {factor} the branch after the peak becomes unstable under its loads, and damped descent reaches no stable one"
+            );
+            Some(end_path(tracer, Status::Collapse, why))
+        }
+        Departure::Falls => {
+            note_peak(tracer, &step.tangent, following.direction);
+            let factor = tracer.state.factor;
+            let why = format!(
+                "at factor {factor} the equilibrium becomes unstable under its loads, and no stable one is near: the path ends here"
+            );
+            Some(end_path(tracer, Status::LimitPoint, why))
+        }
+    }
 }
 
 /// Shortens a step that converged and is none along the path, or ends the path where it is too short for that.
@@ -161,24 +267,89 @@ fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangen
     StepEnd::CutBack(length)
 }
 
-/// Over the first peak: along another branch where one rises from it, else on.
+/// Over a peak: along another branch where one rises from it, else on. A settlement that goes no further by itself
+/// snaps, where it is to go to a factor.
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
-    let (state, beyond) = locate_peak(tracer, following, following.direction);
-    if let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
+    let Bracketed { state, beyond, kinked } = match locate_peak(tracer, following, following.direction) {
+        Some(bracketed) => bracketed,
+        None => {
+            let why = StepFailure::new("two converged states of one branch do not bracket the peak");
+            return match failed(tracer, following, &step.plan, &why) {
+                StepEnd::CutBack(length) => {
+                    following.length = length;
+                    None
+                }
+                StepEnd::Corner(branch) => {
+                    let here = tracer.state.clone();
+                    following.switch_to(&mut tracer.system, &here, branch);
+                    None
+                }
+                StepEnd::Ended(outcome) => Some(outcome),
+                _ => None,
+            };
+        }
+    };
+    if kinked && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
         // Newton's method went over to a falling branch where another one rises.
         if !commit(tracer, state) {
             return Some(LoadStepEnding::Ended);
         }
-        following.switch_to(Branch { tangent, modes: Some(modes) });
+        let here = tracer.state.clone();
+        following.switch_to(&mut tracer.system, &here, Branch { tangent, modes: Some(modes) });
         return None;
     }
-    tracer.limit.peak = Some(peak_at(tracer, state, &beyond));
+    if snaps(tracer, following) && step.orientation.is_some() {
+        return snap(tracer, following, state, &beyond);
+    }
+    // What an unstable branch carries is no peak of the path under its loads.
+    if following.orientation.as_ref().is_none_or(|before| !before.unstable) {
+        let peak = peak_at(tracer, state, &beyond);
+        note_proven_peak(tracer, peak, following.direction);
+    }
     accept(tracer, following, step)
+}
+
+/// Whether what grows is a settlement that is to go to a factor: beyond a limit point it goes on by a snap.
+fn snaps(tracer: &Tracer, following: &Following) -> bool {
+    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+    tracer.system.finite() && settles && matches!(following.load_step.end, LoadStepEnd::Factor(_))
+}
+
+/// Beyond a limit point of a settlement: to the equilibrium that damped descent reaches.
+fn snap(tracer: &mut Tracer, following: &mut Following, state: State, beyond: &Tangent) -> Option<LoadStepEnding> {
+    let orientation = Orientation::of(&mut tracer.system, &state, true);
+    if !commit(tracer, state) {
+        return Some(LoadStepEnding::Ended);
+    }
+    let mut pushed = tracer.state.clone();
+    pushed.factor += SNAP * (following.target - following.load_step.start);
+    let departure = match &orientation {
+        Some(orientation) => leave_unstable(tracer, &pushed, &orientation.work, true),
+        None => Departure::Falls,
+    };
+    match departure {
+        Departure::Stopped => Some(LoadStepEnding::Ended),
+        Departure::Stable => match Following::begin(tracer, following.load_step, following.target) {
+            Ok(anew) => {
+                *following = anew;
+                None
+            }
+            Err(ending) => Some(ending),
+        },
+        Departure::Falls => {
+            note_peak(tracer, beyond, following.direction);
+            let factor = tracer.state.factor;
+            let why = format!(
+                "at factor {factor} no equilibrium follows as the settlement goes on, and damped descent reaches none: the path ends here"
+            );
+            Some(end_path(tracer, Status::LimitPoint, why))
+        }
+    }
 }
 
 /// Takes a step over; how the load step ends with it, if so.
 fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
-    let Step { trial: Trial { next, iterations, reaches, .. }, tangent, accuracy, falls } = step;
+    let Step { trial: Trial { next, iterations, reaches, .. }, tangent, accuracy, falls, orientation, .. } = step;
     let (direction, target, finite) = (following.direction, following.target, tracer.system.finite());
     let rises =
         tangent.factor * direction > 1e-10 * tracer.system.units().factor * motion_size(&tracer.system, &tangent);
@@ -196,6 +367,7 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
     if !commit(tracer, next) {
         return Some(LoadStepEnding::Ended);
     }
+    following.orientation = orientation;
     if reaches {
         if tracer.limit.peak.is_some() {
             tracer.record.notes.push(format!("after a limit point the path came back to the factor {target}"));

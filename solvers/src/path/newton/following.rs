@@ -3,11 +3,16 @@
 use super::control::Control;
 use super::control_row::work_along;
 use super::measure::{increment_along, motion_size, tangent_size};
+use super::orientation::Orientation;
 use super::response::update_at_rest;
-use super::state::Tangent;
+use super::state::{State, Tangent};
+use super::system::StepSystem;
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::contact::mode::ContactMode;
+use crate::path::continuation::arc_length::ArcLength;
+use crate::path::energy::load_size;
+use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 
@@ -62,6 +67,8 @@ pub(super) struct Following<'d> {
     pub length: f64,
     /// Times that the step has been refined for its energy.
     pub refinements: u32,
+    /// Sense of the factor and second-order work at the last state (finite displacements).
+    pub orientation: Option<Orientation>,
     pub tried: Tried,
 }
 
@@ -80,8 +87,15 @@ impl<'d> Following<'d> {
             return Err(end_path(tracer, Status::Stalled, why));
         };
         let mixed_weight = mixed_weight(tracer);
+        let nothing = |one: f64, tracer: &Tracer| one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent);
+        if nothing(per_tangent(tracer, &tangent, None), tracer)
+            && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0
+        {
+            // Without a load there is no displacement of one to control.
+            tracer.strategy = Arc::new(ArcLength::default());
+        }
         let one = per_tangent(tracer, &tangent, None);
-        if one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent) {
+        if nothing(one, tracer) {
             let why = "what the continuation strategy controls does not change under this load";
             return Err(end_path(tracer, Status::Stalled, why.into()));
         }
@@ -102,12 +116,15 @@ impl<'d> Following<'d> {
             mixed_weight,
             linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
         };
+        let slope = tangent.factor * direction;
+        let here = tracer.state.clone();
         Ok(Following {
             load_step,
             target,
             direction,
             limits,
-            slope: tangent.factor * direction,
+            slope,
+            orientation: Orientation::of(&mut tracer.system, &here, slope > 0.0),
             branch: Branch { tangent, modes: None },
             previous: None,
             length,
@@ -117,8 +134,10 @@ impl<'d> Following<'d> {
     }
 
     /// Goes on along another branch, with short steps at first.
-    pub fn switch_to(&mut self, branch: Branch) {
+    pub fn switch_to(&mut self, system: &mut StepSystem, state: &State, branch: Branch) {
         self.slope = branch.tangent.factor * self.direction;
+        let mode = branch.modes.clone().unwrap_or_else(|| state.mode.clone());
+        self.orientation = Orientation::of(system, &State { mode, ..state.clone() }, self.slope > 0.0);
         self.branch = branch;
         self.previous = None;
         self.length = BRANCH * self.limits.first;

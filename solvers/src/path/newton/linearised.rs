@@ -61,6 +61,10 @@ pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gra
             for k in 0..3 {
                 let unit = if k == 2 { u.force * u.length } else { u.force };
                 out[2 * points + 3 * free + k] = balance[k] / unit;
+                if let Some(damping) = &system.damping {
+                    let moved = (state.motion[body][k] - damping.from[body][k]) / u.motion()[k];
+                    out[2 * points + 3 * free + k] -= damping.rate * moved;
+                }
             }
         }
     }
@@ -71,9 +75,9 @@ fn is_constant(system: &StepSystem, hessian: &Hessian) -> bool {
     system.cache.hessian.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, hessian))
 }
 
-/// The modes' linear equations, factorised: where nothing else than modes makes them, those of
+/// The modes' linear equations, factorised, and whether that is done before: where nothing else than modes makes them, those of
 /// the same modes are taken again.
-fn factorise(
+pub(super) fn factorised(
     system: &mut StepSystem,
     state: &State,
     hessian: &Hessian,
@@ -108,7 +112,7 @@ fn factorise(
             shifts.end_row();
         }
     }
-    equations.bodies(&mut rows, &mut shifts);
+    equations.bodies(&mut rows, &mut shifts, system.damping.as_ref().map_or(0.0, |damping| damping.rate));
     system.count("factorisations", 1);
     let held = BorderedFactors::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.analysis)?;
     let held = Rc::new(held);
@@ -125,14 +129,14 @@ pub(super) fn solve_linear(
     row: &[f64],
     right: &[f64],
 ) -> Option<(Vec<f64>, bool)> {
-    let (held, again) = factorise(system, state, hessian, row)?;
+    let (held, again) = factorised(system, state, hessian, row)?;
     let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
     if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
         return found;
     }
     // Another unknown held may serve this control better.
     system.cache.factors.last = None;
-    let (held, _) = factorise(system, state, hessian, row)?;
+    let (held, _) = factorised(system, state, hessian, row)?;
     refined(&BorderedSystem::new(held, row)?, right)
 }
 

@@ -5,15 +5,17 @@ use super::load_to_factor::load_to_factor;
 use super::loads::StagedLoads;
 use super::monitors::resolve;
 use super::recorded::{recorded, work_state};
+use super::second_order::{StateStability, second_order_work, stability};
+use super::stable_branch::{Departure, leave_unstable};
 use super::system::StepSystem;
 use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
 use crate::path::continuation::arc_length::ArcLength;
-use crate::path::energy::{EnergyBalance, StageBalance};
+use crate::path::energy::{EnergyBalance, StageBalance, load_size};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings};
+use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability};
 
 /// Follows all load steps.
 pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
@@ -40,6 +42,8 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
             state: seen,
             events: Vec::new(),
             notes: Vec::new(),
+            stability: Vec::new(),
+            branchings: Vec::new(),
         },
         ending: Ending { status: Status::Stalled, motion: None, ray: None },
         limit: LimitPoint::default(),
@@ -76,6 +80,10 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
             tracer.ending.status = Status::Collapse;
             outcome = LoadStepEnding::Ended;
         }
+        let ends = problem.load_steps.get(index + 1).is_none_or(|next| next.stage != load_step.stage);
+        if ends && matches!(outcome, LoadStepEnding::Reached) {
+            outcome = end_stage(tracer, load_step);
+        }
         match outcome {
             LoadStepEnding::Reached => earlier.push((tracer.state.factor - load_step.start, &load_step.loading)),
             LoadStepEnding::Ended => {
@@ -93,9 +101,45 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
 }
 
+/// The stability of the state at which a stage ends. From an unstable one damped descent leads to a stable one; where
+/// it leads to none the stage does not stand.
+fn end_stage(tracer: &mut Tracer, load_step: &LoadStep) -> LoadStepEnding {
+    let settles = load_size(tracer.system.problem, &load_step.loading) == 0.0;
+    let state = tracer.state.clone();
+    let mut found = stability(&mut tracer.system, &state, settles);
+    if tracer.system.finite()
+        && found.under_load == Some(false)
+        && let Some(work) = second_order_work(&mut tracer.system, &state).filter(|work| work.turned > 0)
+    {
+        match leave_unstable(tracer, &state, &work, false) {
+            Departure::Stopped => return LoadStepEnding::Ended,
+            Departure::Falls => {
+                let why = "the stage ends in an unstable equilibrium, from which damped descent reaches no stable one";
+                record_stability(tracer, load_step.stage, found);
+                return end_path(tracer, Status::LimitPoint, why.into());
+            }
+            Departure::Stable => {
+                let state = tracer.state.clone();
+                found = stability(&mut tracer.system, &state, settles);
+            }
+        }
+    }
+    record_stability(tracer, load_step.stage, found);
+    LoadStepEnding::Reached
+}
+
+/// Writes the stability of a stage's last state down.
+fn record_stability(tracer: &mut Tracer, stage: usize, found: StateStability) {
+    let StateStability { under_load, under_control, sufficient_only } = found;
+    tracer.record.stability.push(StageStability { stage, under_load, under_control, sufficient_only });
+}
+
 /// The answer of a trace that has ended.
 fn answer(mut tracer: Tracer) -> PathAnswer {
-    if let (Status::LimitPoint, Some(why)) = (tracer.ending.status, tracer.limit.unproven.take()) {
+    let finite_peak = tracer.system.finite() && tracer.limit.peak.is_some();
+    let claims =
+        tracer.ending.status == Status::LimitPoint || (finite_peak && tracer.ending.status == Status::Collapse);
+    if let (true, Some(why)) = (claims, tracer.limit.unproven.take()) {
         tracer.limit.peak = None;
         end_path(&mut tracer, Status::Stalled, format!("the limit point on the path is not proven: {why}"));
     }
@@ -149,7 +193,17 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
             (tracer.record.state, None, factor, tracer.ending.motion)
         }
     };
-    let record = PathRecord { load_step: tracer.load_step, state, last, events: tracer.record.events, counters, notes };
+    let record = PathRecord {
+        load_step: tracer.load_step,
+        state,
+        last,
+        events: tracer.record.events,
+        limit_points: tracer.limit.proven_peaks,
+        stability: tracer.record.stability,
+        branchings: tracer.record.branchings,
+        counters,
+        notes,
+    };
     Outcome::at(tracer.ending.status, factor).moving(motion).carried_by(tracer.ending.ray).answer(
         tracer.system.problem,
         tracer.system.finite(),

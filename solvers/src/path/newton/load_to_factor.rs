@@ -9,6 +9,7 @@ use super::iteration::iterate;
 use super::measure::motion_size;
 use super::peak::scaled_motion;
 use super::response::tractions_dissipate;
+use super::second_order::second_order_work;
 use super::state::{State, Tangent, in_proportion};
 use super::step::solve_step;
 use super::step_energy::step_energy;
@@ -39,7 +40,8 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
         let slips = slips || next.yields();
         let far = !small && iterations > 12;
         let straight = !slips && !far && !tractions_dissipate(&tracer.system, &next);
-        let whole = (small && is_proportional(tracer)) || (straight && step_energy(tracer, &next).holds);
+        let whole = (small && is_proportional(tracer))
+            || (straight && step_energy(tracer, &next).holds && (small || is_stable(tracer, &next)));
         if whole {
             return if commit(tracer, next) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
         }
@@ -51,6 +53,11 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
         return start_proportional(tracer, load_step, factor);
     }
     follow(tracer, load_step, factor)
+}
+
+/// Whether a state that one step reached is stable: with finite displacements others may be in equilibrium as well.
+fn is_stable(tracer: &mut Tracer, next: &State) -> bool {
+    second_order_work(&mut tracer.system, next).is_none_or(|work| work.turned == 0)
 }
 
 /// The first load step where it is proportional and no state at its factor was found: by a mixed control, which

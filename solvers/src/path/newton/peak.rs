@@ -2,42 +2,89 @@
 
 use super::control::Control;
 use super::following::{Following, per_tangent};
-use super::measure::{increment_along, motion_size};
+use super::measure::{increment_along, increment_between, motion_size};
+use super::orientation::{Orientation, STILL};
 use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
-use super::tracer::{Peak, Tracer, foreseen, moved_along};
+use super::tracer::{Peak, PostPeak, Tracer, foreseen, moved_along};
 use crate::path::energy::load_size;
+use voussoir_core::path::ProvenPeak;
 
-/// Bisects the step from the present state for the point where λ stops growing in the sense `direction`:
-/// the state there and the rate just beyond it.
-pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> (State, Tangent) {
+/// Share of a step up to which the states on both sides of a peak are apart where one branch leads through it.
+const CONTINUOUS: f64 = 1e-3;
+
+/// A peak that two states of one branch bracket.
+pub(super) struct Bracketed {
+    pub state: State,
+    /// The rate just beyond it.
+    pub beyond: Tangent,
+    /// Whether contact modes change there.
+    pub kinked: bool,
+}
+
+/// Bisects the step from the present state for the peak of λ in the sense `direction`. With finite displacements the
+/// states on both sides must be close to each other and of one branch by their second-order work; `None` where they are
+/// not, or were not found.
+pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> Option<Bracketed> {
+    let (low, high, share) = bisect(tracer, following, direction);
+    if !tracer.system.finite() {
+        let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
+        return Some(Bracketed { state: low, beyond, kinked: true });
+    }
+    let (high, beyond) = high?;
+    let apart = increment_between(&tracer.system, &low, &high).motion;
+    let step = increment_between(&tracer.system, &tracer.state, &high).motion;
+    let oriented = [
+        Orientation::of(&mut tracer.system, &low, true),
+        Orientation::along(&mut tracer.system, &high, &beyond, direction)
+            .map(|high| Orientation { rises: false, ..high }),
+    ];
+    let one_branch = match &oriented {
+        // Where the eigenvalue passes through nothing its sign is rounding.
+        [Some(low), Some(high)] => low.leads_to(high) || [low, high].iter().any(|side| side.is_singular()),
+        _ => following.orientation.is_none(),
+    };
+    let kinked = low.mode != high.mode;
+    let continuous = apart <= (CONTINUOUS + 2.0 * share) * step;
+    (one_branch && continuous).then_some(Bracketed { state: low, beyond, kinked })
+}
+
+/// Bisects the step from the present state for the point where λ stops growing in the sense `direction`: the last
+/// state before it, the first one beyond it with its rate, and how far apart they are as a share of the step.
+fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State, Option<(State, Tangent)>, f64) {
     let (rate, previous, length) = (&following.branch.tangent, following.previous, following.length);
     let strategy = tracer.strategy.clone();
     let per_rate = per_tangent(tracer, rate, previous.as_ref());
     let (mut low, mut high) = (0.0, length);
     let mut best = (tracer.state.clone(), rate.clone());
-    let mut beyond = rate.clone();
+    let mut beyond = None;
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         let control = Control::Strategy { strategy: strategy.clone(), previous, length: middle };
         let guess = moved_along(tracer, rate, middle / per_rate);
         let Ok((state, _)) = solve_step(&mut tracer.system, &tracer.state, guess, &control) else { break };
         let Some(here) = tangent_at(&mut tracer.system, &tracer.state, &state, &control) else { break };
-        if here.factor * direction > 0.0 {
+        // A load that stands still is one that does not grow, as for the step itself.
+        let still = if tracer.system.finite() {
+            STILL * tracer.system.units().factor * motion_size(&tracer.system, &here)
+        } else {
+            0.0
+        };
+        if here.factor * direction > still {
             low = middle;
             best = (state, here);
         } else {
             high = middle;
-            beyond = here;
+            beyond = Some((state, here));
         }
         let gain = best.1.factor.abs() * (high - low);
         if low > 0.0 && gain <= 1e-11 * best.0.factor.abs().max(1e-6 * tracer.system.units().factor) {
             break;
         }
     }
-    (best.0, beyond)
+    (best.0, beyond, (high - low) / length)
 }
 
 /// Where the load rises again after a peak with finite displacements: the least load between, if it is
@@ -47,8 +94,23 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
     let lower =
         |factor: f64| tracer.post_peak.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
     if !tracer.post_peak.risen && lower(tracer.state.factor) {
-        let (state, beyond) = locate_peak(tracer, following, -direction);
+        let (state, beyond, _) = bisect(tracer, following, -direction);
+        let beyond = beyond.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
         tracer.post_peak.trough = Some(peak_at(tracer, state, &beyond));
+    }
+}
+
+/// Keeps a proven peak; the greatest is what the path's answer speaks of (with small displacements the first).
+pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
+    let (factor, displacement) = (peak.factor, peak.state.displacement);
+    let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
+    if tracer.system.finite() {
+        let load_step = tracer.load_step;
+        tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });
+        tracer.post_peak = PostPeak::default();
+    }
+    if tracer.limit.peak.as_ref().is_none_or(greatest) {
+        tracer.limit.peak = Some(peak);
     }
 }
 
@@ -63,11 +125,12 @@ pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -
     Peak { factor: state.factor, state: seen, motion }
 }
 
-/// Keeps the present state as the first peak, where there was none, with the rate just beyond it.
-pub(super) fn note_peak(tracer: &mut Tracer, beyond: &Tangent) {
-    if tracer.limit.peak.is_none() {
+/// Keeps the present state as a peak, with the rate just beyond it: with small displacements only the first.
+pub(super) fn note_peak(tracer: &mut Tracer, beyond: &Tangent, direction: f64) {
+    if tracer.system.finite() || tracer.limit.peak.is_none() {
         let motion = scaled_motion(tracer, &tracer.state, beyond);
-        tracer.limit.peak = Some(Peak { factor: tracer.state.factor, state: tracer.record.state.clone(), motion });
+        let peak = Peak { factor: tracer.state.factor, state: tracer.record.state.clone(), motion };
+        note_proven_peak(tracer, peak, direction);
     }
 }
 

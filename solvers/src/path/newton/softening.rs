@@ -7,7 +7,7 @@
 
 use super::control::LocalControl;
 use super::measure::increment_along;
-use super::peak::peak_at;
+use super::peak::{note_proven_peak, peak_at};
 use super::response::{local_control_of_step, local_controls, tractions_dissipate};
 use super::state::{State, Tangent};
 use super::step::solve_step;
@@ -125,7 +125,8 @@ pub(super) fn softening_peak(tracer: &mut Tracer, next: &State, falls: bool, dir
         if let Some(earlier) = earlier {
             tracer.record.notes.push(format!("after a limit point at factor {earlier} the load rises above it again"));
         }
-        tracer.limit.peak = Some(peak_at(tracer, best, &beyond));
+        let peak = peak_at(tracer, best, &beyond);
+        note_proven_peak(tracer, peak, direction);
     }
 }
 

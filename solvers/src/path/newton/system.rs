@@ -54,6 +54,16 @@ pub(super) struct StepSystem<'a> {
     pub residuals: Vec<f64>,
     /// Whether Newton's method may resort to a line search.
     pub line_search: bool,
+    /// Viscous wrenches of a descent to a stable equilibrium.
+    pub damping: Option<Damping>,
+}
+
+/// Viscous wrenches on the free bodies: rate × the motion since, both in units.
+#[derive(Debug, Clone)]
+pub(super) struct Damping {
+    pub rate: f64,
+    /// Motions from which they pull.
+    pub from: Vec<[f64; 3]>,
 }
 
 /// Why a step was not found.
@@ -136,6 +146,7 @@ impl<'a> StepSystem<'a> {
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
             line_search: true,
+            damping: None,
             blocks: undeformed(problem)?,
             cache: Cache::default(),
             monitors: Vec::new(),

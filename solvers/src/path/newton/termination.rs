@@ -21,6 +21,11 @@ use voussoir_core::path::{Continuation, LoadStep};
 /// Share of its fall by which the load must rise for the least one to be that of a snap-through.
 const RISES: f64 = 0.1;
 
+/// Movement of the load point after a peak, as a share of the scene's size, from which on a path may end, and at which
+/// it does.
+const MOVED_ON: f64 = 0.02;
+const FURTHEST: f64 = 0.1;
+
 /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
 pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent, direction: f64) -> LoadStepEnding {
     let points: Vec<String> = failure
@@ -162,6 +167,11 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
 /// Whether the path went as far after its peak as was asked for.
 pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
+    if let Some(last) = tracer.limit.proven_peaks.last_mut()
+        && (last.lowest - factor) * direction > 0.0
+    {
+        last.lowest = factor;
+    }
     let Some(peak) = &tracer.limit.peak else {
         if tracer.system.finite() && displacement.abs() > tracer.system.units().length {
             end_path(
@@ -176,10 +186,21 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     if !tracer.system.laws.responses.is_empty() && (factor - peak.factor) * direction > 0.0 {
         return false;
     }
-    let beyond = (displacement - peak.state.displacement).abs();
     if let Some(trough) = &tracer.post_peak.trough {
         tracer.post_peak.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
     }
+    if tracer.system.finite() {
+        stops_finite(tracer, load_step, direction)
+    } else {
+        stops_small(tracer, load_step, direction)
+    }
+}
+
+/// With small displacements: after the first limit point.
+fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
+    let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
+    let Some(peak) = &tracer.limit.peak else { return false };
+    let beyond = (displacement - peak.state.displacement).abs();
     let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
     let done = match (stop_displacement, stop_factor) {
         (None, None) => {
@@ -190,24 +211,54 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
             most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
-    if !done && tracer.system.finite() {
-        let asked = stop_displacement.unwrap_or(match stop_factor {
-            Some(_) => tracer.system.units().length,
-            None => peak.state.displacement.abs(),
-        });
+    if done {
+        end_path(tracer, Status::LimitPoint, String::new());
+    }
+    done
+}
+
+/// With finite displacements: after the last proven peak. By default where the load has fallen to half of it and its
+/// point has moved on, at the latest at [`FURTHEST`].
+fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
+    let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
+    let length = tracer.system.units().length;
+    let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
+        return false;
+    };
+    let last = tracer.limit.proven_peaks.last();
+    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+    let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));
+    let beyond = (displacement - from).abs();
+    let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
+    let done = match (stop_displacement, stop_factor) {
+        // A support that goes no further by itself: what follows is a fall.
+        (None, None) if settles => true,
+        (None, None) => {
+            let halved = (factor - 0.5 * top) * direction <= 0.0;
+            (halved && beyond >= MOVED_ON * length) || beyond >= FURTHEST * length
+        }
+        (most, least) => {
+            most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
+        }
+    };
+    if done && (factor - greatest) * direction > 1e-9 * greatest.abs() {
+        end_path(
+            tracer,
+            Status::Stalled,
+            format!("still rising: {beyond} m after the last peak the load is above all peaks, at factor {factor}"),
+        );
+        return true;
+    }
+    if !done {
+        let asked = stop_displacement.unwrap_or(if stop_factor.is_some() { length } else { FURTHEST * length });
         let place = [displacement, factor];
-        if let Some(why) = tracer.post_peak.cycles.leads_nowhere(
-            place,
-            &tracer.record.state.motion,
-            asked,
-            tracer.system.units().length,
-        ) {
+        let motion = &tracer.record.state.motion;
+        if let Some(why) = tracer.post_peak.cycles.leads_nowhere(place, motion, asked, length) {
             end_path(tracer, Status::Collapse, why);
             return true;
         }
+        return false;
     }
-    if done {
-        end_path(tracer, if tracer.system.finite() { Status::Collapse } else { Status::LimitPoint }, String::new());
-    }
-    done
+    end_path(tracer, Status::Collapse, String::new());
+    true
 }

@@ -9,7 +9,9 @@ use super::system::StepSystem;
 use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, PathEvent, PathObserver, PathSettings, PathState};
+use voussoir_core::path::{
+    Branching, Continuation, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
+};
 
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
 /// come apart: what is left is rounding.
@@ -41,6 +43,8 @@ pub(super) struct Record {
     pub state: PathState,
     pub events: Vec<PathEvent>,
     pub notes: Vec<String>,
+    pub stability: Vec<StageStability>,
+    pub branchings: Vec<Branching>,
 }
 
 /// How a path ends.
@@ -50,10 +54,12 @@ pub(super) struct Ending {
     pub ray: Option<Vec<[f64; 2]>>,
 }
 
-/// The first limit point and what is known of it.
+/// The greatest limit point, with small displacements the first, and what is known of it.
 #[derive(Default)]
 pub(super) struct LimitPoint {
     pub peak: Option<Peak>,
+    /// Proven peaks of finite displacements in order.
+    pub proven_peaks: Vec<ProvenPeak>,
     /// Why it is not proven to be one.
     pub unproven: Option<String>,
     /// Factor at which it is proven that no rate has growing λ.
@@ -161,8 +167,14 @@ fn left_its_pairing(tracer: &Tracer) -> Option<String> {
     Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))
 }
 
+/// The present state a share of a rate on.
 pub(super) fn moved_along(tracer: &Tracer, rate: &Tangent, share: f64) -> State {
-    let mut guess = tracer.state.clone();
+    moved(&tracer.state, rate, share)
+}
+
+/// A state a share of a rate on.
+pub(super) fn moved(state: &State, rate: &Tangent, share: f64) -> State {
+    let mut guess = state.clone();
     for (r, dr) in guess.force.iter_mut().zip(&rate.force) {
         (0..2).for_each(|k| r[k] += share * dr[k]);
     }

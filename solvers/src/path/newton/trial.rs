@@ -26,6 +26,7 @@ const SEARCHED: f64 = 1e-3;
 const LAST: f64 = 1e-8;
 
 /// A step to be tried.
+#[derive(Clone, Copy)]
 pub(super) struct StepPlan {
     /// What the strategy measures along the tangent.
     pub per_tangent: f64,

@@ -124,7 +124,7 @@ impl UpdatedEquations {
                 shifts.end_row();
             }
         }
-        self.equations.bodies(&mut rows, &mut shifts);
+        self.equations.bodies(&mut rows, &mut shifts, 0.0);
         let held = BorderedFactors::new(
             rows.with(&shifts),
             CsrMatrix::empty(self.control.len() - 1),

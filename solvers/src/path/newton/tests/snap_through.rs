@@ -106,8 +106,11 @@ fn two_bars_snap_through() {
         how.stop_displacement = Some(0.35);
         let mut states = Kept(Vec::new());
         let answer = NewtonPath {}.trace(&two_bars(a, h, c), &how, &mut states);
-        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
-        let factor = answer.factor.expect("a peak");
+        // Hanging, the bars carry more than at the peak: an answer would depend on where the path is stopped.
+        assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
+        assert!(answer.notes.iter().any(|note| note.starts_with("still rising")), "{:?}", answer.notes);
+        assert_eq!(answer.limit_points.len(), 1);
+        let factor = answer.limit_points[0].factor;
         assert!((factor - peak).abs() < 1e-10 * peak, "{factor} {peak}");
         let motion = answer.motion.expect("a motion");
         let velocity = motion[1][1] + motion[1][2] * 0.5;

@@ -1,0 +1,162 @@
+//! Second-order work of a converged state: the flexibility of its bodies with the contact modes held, column by
+//! column from the factorised equations.
+
+use super::control::Control;
+use super::linearised::factorised;
+use super::measure::increment_along;
+use super::state::State;
+use super::system::StepSystem;
+use super::tangent::tangent_at;
+use crate::contact::facet::slack;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::BorderedSystem;
+use crate::optimise::lcg::Lcg;
+use crate::path::stability::SecondOrderWork;
+use nalgebra::{DMatrix, DVector};
+
+/// Motions up to which all columns of the flexibility are computed; of more only its greatest eigenvalues are, by
+/// subspace iteration.
+const ALL: usize = 150;
+/// Size of that subspace, and its iterations.
+const SUBSPACE: usize = 10;
+const ITERATIONS: usize = 16;
+/// Eigenvalues of the flexibility, relative to the mean compliance of a contact, that are those of motions which the
+/// modes exclude: what is added to the equations is below them.
+const SOFTEST: f64 = 1e-6;
+/// Slack, relative to the greatest force, with which a point is weakly active.
+const WEAK: f64 = 1e-9;
+
+/// Second-order work of a state with its modes held, loads and settlements fixed; `None` where its equations have no
+/// factorisation.
+pub(super) fn second_order_work(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
+    let held = held_factor(system, state)?;
+    let (first, motions) = (2 * system.unknowns.contacts, 3 * system.unknowns.bodies);
+    if motions == 0 {
+        return None;
+    }
+    system.count("second_order_works", 1);
+    if motions <= ALL {
+        let mut rights = vec![vec![0.0; system.size()]; motions];
+        rights.iter_mut().enumerate().for_each(|(j, right)| right[first + j] = 1.0);
+        let columns = solved(&held, &rights, first)?;
+        // Balance is −∂V/∂q: what it says of K is −K.
+        let flexibility = DMatrix::from_fn(motions, motions, |i, j| -columns[j][i]);
+        return SecondOrderWork::of(&flexibility, SOFTEST);
+    }
+    let basis = softest_motions(&held, first, motions, system.size())?;
+    let images = images(&held, &basis, first, system.size())?;
+    let mut found = SecondOrderWork::of(&(basis.transpose() * images), SOFTEST)?;
+    let mode = &basis * DVector::from_vec(found.critical.0);
+    found.critical.0 = mode.as_slice().to_vec();
+    Some(found)
+}
+
+/// The equations with the factor held.
+fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem> {
+    let gradient = system.gradient(state);
+    let hessian = system.hessian(state, &gradient);
+    let mut row = vec![0.0; system.size()];
+    row[system.size() - 1] = 1.0;
+    let (held, _) = factorised(system, state, &hessian, &row)?;
+    BorderedSystem::new(held, &row)
+}
+
+/// Motions that solve the equations for some right-hand sides.
+fn solved(held: &BorderedSystem, rights: &[Vec<f64>], first: usize) -> Option<Vec<Vec<f64>>> {
+    let equations = held.equations();
+    let found = equations.condense(rights)?;
+    let motions = rights.first()?.len() - 1 - first;
+    Some(found.iter().map(|y| (0..motions).map(|j| equations.other(first + j, y)).collect()).collect())
+}
+
+/// S times the columns of a matrix.
+fn images(held: &BorderedSystem, basis: &DMatrix<f64>, first: usize, size: usize) -> Option<DMatrix<f64>> {
+    let right = |column: usize| {
+        let mut right = vec![0.0; size];
+        (0..basis.nrows()).for_each(|j| right[first + j] = -basis[(j, column)]);
+        right
+    };
+    let rights: Vec<Vec<f64>> = (0..basis.ncols()).map(right).collect();
+    let columns = solved(held, &rights, first)?;
+    Some(DMatrix::from_fn(basis.nrows(), basis.ncols(), |i, j| columns[j][i]))
+}
+
+/// An orthonormal basis of the motions of the greatest flexibility, by subspace iteration.
+fn softest_motions(held: &BorderedSystem, first: usize, motions: usize, size: usize) -> Option<DMatrix<f64>> {
+    let mut random = Lcg::new(11);
+    let mut basis = DMatrix::from_fn(motions, SUBSPACE.min(motions), |_, _| random.next()).qr().q();
+    for _ in 0..ITERATIONS {
+        basis = images(held, &basis, first, size)?.qr().q();
+    }
+    Some(basis)
+}
+
+/// Stability of a state: whether second-order work is positive with its loads and settlements held, and with the load
+/// point held. `None` where that is not decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StateStability {
+    pub under_load: Option<bool>,
+    pub under_control: Option<bool>,
+    /// Whether second-order work is only sufficient: some point slides without associated flow.
+    pub sufficient_only: bool,
+}
+
+/// Stability of a state at the end of a stage, in which a load grows or a support `settles`. At rest points that slide,
+/// or are about to, are weakly active: they may move on or stick. Second-order work must be positive on the cone of
+/// these rates: positive with all of them free suffices; negative with all of them held is instability.
+pub(super) fn stability(system: &mut StepSystem, state: &State, settles: bool) -> StateStability {
+    let free = with_weak_points(system, state, |released, _| released);
+    let held = with_weak_points(system, state, |_, held| held);
+    let found = second_order_work(system, &free);
+    let sufficient_only = found.as_ref().is_some_and(|work| !work.symmetric);
+    let stuck = if free.mode == held.mode { found.clone() } else { second_order_work(system, &held) };
+    let decided = |free: Option<bool>, held: Option<bool>| match (free, held) {
+        (Some(true), _) => Some(true),
+        (_, Some(false)) => Some(false),
+        _ => None,
+    };
+    let positive = |work: &Option<SecondOrderWork>| work.as_ref().map(|work| work.negative == 0);
+    let under_load = decided(positive(&found), positive(&stuck));
+    if settles || under_load == Some(true) {
+        return StateStability { under_load, under_control: under_load, sufficient_only };
+    }
+    let mut controlled = |state: &State, work: &Option<SecondOrderWork>| {
+        let rate = tangent_at(system, state, state, &Control::Factor(state.factor))?;
+        let yields = increment_along(system, state, &rate).displacement;
+        work.as_ref().map(|work| work.stable_under_control(yields))
+    };
+    let under_control = decided(controlled(&free, &found), controlled(&held, &stuck));
+    StateStability { under_load, under_control, sufficient_only }
+}
+
+/// Whether a state is unstable under its loads although the points that slide stick.
+pub(super) fn is_unstable_at_rest(system: &mut StepSystem, state: &State) -> bool {
+    let held = with_weak_points(system, state, |_, held| held);
+    second_order_work(system, &held).is_some_and(|work| work.turned > 0)
+}
+
+/// The state with its weakly active points in modes of our choice among released and held: points that slide, and
+/// stuck ones without slack.
+fn with_weak_points(
+    system: &StepSystem,
+    state: &State,
+    choose: impl Fn(ContactMode, ContactMode) -> ContactMode,
+) -> State {
+    let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let mut chosen = state.clone();
+    for (c, mode) in chosen.mode.iter_mut().enumerate() {
+        let Some(law) = system.law(c) else { continue };
+        let (force, area) = (state.force[c], system.problem.contacts[c].area);
+        let tight = |i: &usize| slack(&law.facets[*i], force, area) <= WEAK * largest;
+        let released = match *mode {
+            ContactMode::Stick if force.iter().all(|r| r.abs() <= WEAK * largest) => Some(ContactMode::Open),
+            ContactMode::Stick => (0..law.facets.len()).find(tight).map(|facet| ContactMode::Facet(facet as u8)),
+            own if law.opens(own) => None,
+            own => Some(own),
+        };
+        if let Some(released) = released {
+            *mode = choose(released, ContactMode::Stick);
+        }
+    }
+    chosen
+}

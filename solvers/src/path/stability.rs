@@ -1,0 +1,102 @@
+//! Stability of a state of equilibrium: its second-order work, by the flexibility of its bodies.
+//!
+//! With the modes of all contact points held, rates obey K q̇ = λ̇ p + f for any small wrenches f on the bodies,
+//! contact forces condensed out. What a solver has factorised gives the flexibility S = K⁻¹ column by column. By
+//! Sylvester's law S has as many negative eigenvalues as K, and ½(S + Sᵀ) as many as ½(K + Kᵀ), since
+//! ½(S + Sᵀ) = S ½(K + Kᵀ) Sᵀ; motions that the modes exclude are eigenvectors of S to nothing, and do not count.
+//!
+//! ```text
+//! loads held           second-order work q̇ᵀ K q̇ > 0 for all q̇: no negative eigenvalue
+//! load point held      for all q̇ with p·q̇ = 0: one fewer where pᵀ S p < 0, its displacement falling with the load
+//! ```
+//!
+//! Where slip is not associated K is not symmetric: positive second-order work is then sufficient for stability, not
+//! necessary (Hill 1958, J. Mech. Phys. Solids 6, 236-249); limit points are where a real eigenvalue of K itself
+//! changes sign.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Asymmetry of S, relative to its greatest entry, above which second-order work is not a potential's.
+const ASYMMETRY: f64 = 1e-7;
+/// Negative eigenvalues of S nearer to nothing than this, relative to the greatest, are rounding of excluded motions.
+const ROUNDING: f64 = 1e-9;
+
+/// The second-order work of a state with loads and settlements held.
+#[derive(Debug, Clone)]
+pub(super) struct SecondOrderWork {
+    /// Directions of negative second-order work.
+    pub negative: usize,
+    /// Negative real eigenvalues of K: with the sense of the factor, it tells limit points from other branches.
+    pub turned: usize,
+    /// Whether K is symmetric.
+    pub symmetric: bool,
+    /// The direction of the least second-order work, of unit size in the unknowns' units, and its eigenvalue.
+    pub critical: (Vec<f64>, f64),
+    /// Magnitude of the eigenvalue nearest to nothing.
+    pub nearest: f64,
+}
+
+impl SecondOrderWork {
+    /// From the flexibility S; eigenvalues of S below `softest` are those of motions that the modes exclude. `None`
+    /// where it has none, or its eigenvalues were not found.
+    pub fn of(flexibility: &DMatrix<f64>, softest: f64) -> Option<Self> {
+        if flexibility.is_empty() || flexibility.iter().any(|s| !s.is_finite()) {
+            return None;
+        }
+        let size = flexibility.amax();
+        let transposed = flexibility.transpose();
+        let symmetric = (flexibility - &transposed).amax() <= ASYMMETRY * size;
+        let half = (flexibility + &transposed) * 0.5;
+        let eigen = half.try_symmetric_eigen(1e-15, 0)?;
+        let nothing = softest.max(ROUNDING * eigen.eigenvalues.amax());
+        let negative = eigen.eigenvalues.iter().filter(|s| **s < -nothing).count();
+        let turned = if symmetric {
+            negative
+        } else {
+            let schur = nalgebra::linalg::Schur::try_new(flexibility.clone(), 1e-14, 10_000)?;
+            let values = schur.complex_eigenvalues();
+            values.iter().filter(|s| s.re < -nothing && s.im.abs() <= 1e-9 * s.re.abs()).count()
+        };
+        // 1/s is least where s is negative and nearest to nothing, else where it is greatest.
+        let curvature = |i: &usize| 1.0 / eigen.eigenvalues[*i];
+        let relevant = (0..eigen.eigenvalues.len()).filter(|i| eigen.eigenvalues[*i].abs() > nothing);
+        let least = relevant.min_by(|a, b| curvature(a).total_cmp(&curvature(b)))?;
+        let mode: DVector<f64> = eigen.eigenvectors.column(least).into();
+        let critical = (mode.as_slice().to_vec(), curvature(&least));
+        let nearest = 1.0 / eigen.eigenvalues.amax();
+        Some(SecondOrderWork { negative, turned, symmetric, critical, nearest })
+    }
+
+    /// Whether second-order work is positive with the load point held, whose displacement grows by `yields` a unit of
+    /// the load with the modes held.
+    pub fn stable_under_control(&self, yields: f64) -> bool {
+        self.negative == usize::from(yields < 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// K of two springs of stiffnesses −1 and 2 turned by 30°, and of nothing that a third motion can do.
+    #[test]
+    fn a_negative_spring_is_counted_and_an_excluded_motion_is_not() {
+        let (c, s) = (0.75f64.sqrt(), 0.5);
+        let turn = DMatrix::from_row_slice(3, 3, &[c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0]);
+        let flexibility =
+            &turn * DMatrix::from_diagonal(&DVector::from_vec(vec![-1.0, 0.5, -1e-18])) * turn.transpose();
+        let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
+        assert_eq!((found.negative, found.turned, found.symmetric), (1, 1, true));
+        assert!((found.critical.1 + 1.0).abs() < 1e-12 && (found.critical.0[0].abs() - c).abs() < 1e-12);
+        // Held at a point whose load softens it, the structure is stable; at one whose load does not, unstable.
+        assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
+    }
+
+    /// A follower-like coupling: eigenvalues of K are ±i, second-order work is nothing, no real eigenvalue changes sign.
+    #[test]
+    fn eigenvalues_that_are_not_real_turn_no_path() {
+        let flexibility = DMatrix::from_row_slice(2, 2, &[1.0, 5.0, -5.0, 1.0]);
+        let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
+        assert_eq!((found.negative, found.turned, found.symmetric), (0, 0, false));
+    }
+}
