@@ -2,8 +2,10 @@
 #![doc = include_str!("optimise.md")]
 
 mod optima;
+mod request;
 mod search;
 
+use self::request::{Request, STRIDE};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
@@ -11,13 +13,10 @@ use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
 use crate::study::{Case, Outline, Study, StudySource};
 use serde_json::Value as Json;
 use std::borrow::Cow;
-use voussoir_core::limit::Status;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 /// Greatest number of values on the scan.
 const MAX_SCAN: i64 = 100_000;
-/// Cases made from one case of the study have ids from a multiple of this on, after those of the study.
-const STRIDE: usize = 1_000_000;
 
 struct Optimise;
 
@@ -76,69 +75,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         page: include_str!("optimise.md"),
         ..Card::BLANK
-    }
-}
-
-/// `[optimise]`, read.
-#[derive(Debug, Clone)]
-pub(super) struct Request {
-    keys: Vec<String>,
-    range: [f64; 2],
-    scan: usize,
-    tolerance: f64,
-    /// 1 to maximise, −1 to minimise.
-    sense: f64,
-    /// `load_factor` or `first_limit_point`; as the displacements say where there is none.
-    result: Option<String>,
-}
-
-impl Request {
-    fn of(outline: &Outline) -> Option<Self> {
-        let table = &outline.table;
-        let number = |key: &str| table.get(key)?.as_f64();
-        let text = |key: &str| Some(table.get(key)?.as_str()?.to_string());
-        let several = table.get("parameters").and_then(|list| serde_json::from_value(list.clone()).ok());
-        Some(Request {
-            keys: several.or_else(|| Some(vec![text("parameter")?]))?,
-            range: [number("from")?, number("to")?],
-            scan: table.get("scan").and_then(Json::as_u64).map_or(41, |scan| scan as usize),
-            tolerance: number("tolerance").unwrap_or(1e-3),
-            sense: if text("goal").as_deref() == Some("minimise") { -1.0 } else { 1.0 },
-            result: text("result"),
-        })
-    }
-
-    /// The case of the study with other values, and the id that it has among all.
-    fn case(&self, study: &Study, base: usize, id: usize, value: f64) -> Option<Case> {
-        let values: Vec<(&str, Json)> = self.keys.iter().map(|key| (key.as_str(), Json::from(value))).collect();
-        let mut case = study.at(base, &values).ok()?;
-        case.id = id;
-        case.brief = true;
-        Some(case)
-    }
-
-    /// What an answer counts in the sense of the goal: better is greater. `None` where there is no finite result.
-    fn merit(&self, case: &Case, result: &CaseResult) -> Option<f64> {
-        Some(self.sense * self.result_of(case, result)?)
-    }
-
-    /// The result that is optimised; `None` where it is not finite.
-    fn result_of(&self, case: &Case, result: &CaseResult) -> Option<f64> {
-        let answered = matches!(result.status, Status::Collapse | Status::LimitPoint);
-        let first = match self.result.as_deref() {
-            Some(word) => word == "first_limit_point",
-            None => case.solver.settings.finite,
-        };
-        let found = if first { result.path.first_limit_point.or(result.load_factor) } else { result.load_factor };
-        found.filter(|_| answered)
-    }
-
-    /// The statuses for which there is no optimum.
-    fn without_bound(&self, status: Status) -> bool {
-        match self.sense > 0.0 {
-            true => matches!(status, Status::Unbounded | Status::Stands),
-            false => status == Status::NoEquilibrium,
-        }
     }
 }
 

@@ -40,49 +40,80 @@ pub fn solve(system: &System) -> Word {
     }
 }
 
+/// A system in the solver's form: A x + s = b, s in a product of cones.
+struct Conic {
+    a: CscMatrix<f64>,
+    b: Vec<f64>,
+    sets: Vec<SupportedConeT<f64>>,
+    /// Blocks by their planes, in the rows after the linear ones.
+    planes: Vec<usize>,
+    /// Blocks by their cones, three rows each.
+    cones: Vec<usize>,
+    /// First row of the cones.
+    first_cone: usize,
+}
+
+/// κ of u² ≤ F w as |(2u, F/κ − κ w)| ≤ F/κ + κ w, which balances the entries.
+fn balance(total: f64) -> f64 {
+    total.max(1e-12).sqrt()
+}
+
+impl Conic {
+    fn new(system: &System, flat: f64) -> Self {
+        let e = system.equations.len();
+        let (planes, cones): (Vec<usize>, Vec<usize>) =
+            (0..system.blocks.len()).partition(|&k| system.blocks[k].strength.total >= flat);
+        let first_cone = e + system.rows.len() + planes.len();
+        let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        let mut push = |i: usize, j: usize, v: f64| {
+            rows.push(i);
+            columns.push(j);
+            values.push(v);
+        };
+        for (i, row) in system.equations.iter().chain(&system.rows).enumerate() {
+            row.iter().for_each(|&(j, v)| push(i, j, v));
+        }
+        let mut b: Vec<f64> = system.right.iter().chain(&system.bounds).copied().collect();
+        for (i, &k) in planes.iter().enumerate() {
+            let block = &system.blocks[k];
+            push(e + system.rows.len() + i, block.normal[block.end], -2.0);
+            b.push(block.strength.tension);
+        }
+        for (place, &k) in cones.iter().enumerate() {
+            let block = &system.blocks[k];
+            let first = first_cone + 3 * place;
+            let (tension, kappa) = (block.strength.tension, balance(block.strength.total));
+            let scaled = block.strength.total / kappa;
+            let end = block.normal[block.end];
+            push(first, end, -2.0 * kappa);
+            push(first + 2, end, 2.0 * kappa);
+            block.normal.iter().for_each(|&j| push(first + 1, j, -2.0));
+            b.extend([scaled + kappa * tension, 2.0 * tension, scaled - kappa * tension]);
+        }
+        let a = CscMatrix::new_from_triplets(b.len(), system.variables, rows, columns, values);
+        let mut sets = vec![SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(first_cone - e)];
+        sets.extend(cones.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
+        Conic { a, b, sets, planes, cones, first_cone }
+    }
+
+    /// The pair of a solution.
+    fn pair(&self, system: &System, x: &[f64], z: &[f64]) -> Pair {
+        let (e, rows) = (system.equations.len(), system.rows.len());
+        let mut blocks = vec![0.0; system.blocks.len()];
+        self.planes.iter().enumerate().for_each(|(i, &k)| blocks[k] = z[e + rows + i]);
+        for (place, &k) in self.cones.iter().enumerate() {
+            let first = self.first_cone + 3 * place;
+            blocks[k] = balance(system.blocks[k].strength.total) * (z[first] - z[first + 2]);
+        }
+        Pair { x: x.to_vec(), equations: z[..e].to_vec(), rows: z[e..e + rows].to_vec(), blocks }
+    }
+}
+
 fn solve_with(system: &System, flat: f64) -> Word {
-    let e = system.equations.len();
-    let (planes, cones): (Vec<usize>, Vec<usize>) =
-        (0..system.blocks.len()).partition(|&k| system.blocks[k].strength.total >= flat);
-    let l = system.rows.len() + planes.len();
-    let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    let mut right: Vec<f64> = system.right.clone();
-    let mut push = |i: usize, j: usize, v: f64| {
-        rows.push(i);
-        columns.push(j);
-        values.push(v);
-    };
-    for (i, row) in system.equations.iter().enumerate() {
-        row.iter().for_each(|&(j, v)| push(i, j, v));
-    }
-    for (i, row) in system.rows.iter().enumerate() {
-        row.iter().for_each(|&(j, v)| push(e + i, j, v));
-    }
-    right.extend(&system.bounds);
-    for (i, &k) in planes.iter().enumerate() {
-        let block = &system.blocks[k];
-        push(e + system.rows.len() + i, block.normal[block.end], -2.0);
-        right.push(block.strength.tension);
-    }
-    // u² ≤ F w as |(2u, F/κ − κ w)| ≤ F/κ + κ w, κ balancing the entries.
-    let balance = |total: f64| total.max(1e-12).sqrt();
-    for (place, &k) in cones.iter().enumerate() {
-        let block = &system.blocks[k];
-        let first = e + l + 3 * place;
-        let (tension, kappa) = (block.strength.tension, balance(block.strength.total));
-        let scaled = block.strength.total / kappa;
-        let end = block.normal[block.end];
-        push(first, end, -2.0 * kappa);
-        push(first + 2, end, 2.0 * kappa);
-        block.normal.iter().for_each(|&j| push(first + 1, j, -2.0));
-        right.extend([scaled + kappa * tension, 2.0 * tension, scaled - kappa * tension]);
-    }
-    let a = CscMatrix::new_from_triplets(right.len(), system.variables, rows, columns, values);
+    let conic = Conic::new(system, flat);
     let p = CscMatrix::<f64>::zeros((system.variables, system.variables));
     let mut q = vec![0.0; system.variables];
     q[system.theta] = -1.0;
-    let mut sets = vec![SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(l)];
-    sets.extend(cones.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
     let settings = DefaultSettings::<f64> {
         verbose: false,
         max_iter: 200,
@@ -92,7 +123,7 @@ fn solve_with(system: &System, flat: f64) -> Word {
         max_threads: 1,
         ..DefaultSettings::default()
     };
-    let mut solver = match DefaultSolver::new(&p, &q, &a, &right, &sets, settings) {
+    let mut solver = match DefaultSolver::new(&p, &q, &conic.a, &conic.b, &conic.sets, settings) {
         Ok(solver) => solver,
         Err(error) => {
             return Word::Other(format!("the conic solver refused the problem: {error:?}"), 0);
@@ -108,22 +139,7 @@ fn solve_with(system: &System, flat: f64) -> Word {
             Word::Other("the conic solver found no admissible field".into(), iterations)
         }
         // Whatever it calls its end, the polish and the certificate decide what the pair is worth.
-        _ if finite => {
-            let z = &solution.z;
-            let mut blocks = vec![0.0; system.blocks.len()];
-            planes.iter().enumerate().for_each(|(i, &k)| blocks[k] = z[e + system.rows.len() + i]);
-            for (place, &k) in cones.iter().enumerate() {
-                let first = e + l + 3 * place;
-                blocks[k] = balance(system.blocks[k].strength.total) * (z[first] - z[first + 2]);
-            }
-            let pair = Pair {
-                x: solution.x.clone(),
-                equations: z[..e].to_vec(),
-                rows: z[e..e + system.rows.len()].to_vec(),
-                blocks,
-            };
-            Word::Pair(pair, iterations)
-        }
+        _ if finite => Word::Pair(conic.pair(system, &solution.x, &solution.z), iterations),
         status => Word::Other(format!("the conic solver ended with {status:?}"), iterations),
     }
 }

@@ -1,6 +1,6 @@
 //! What `optimise` adds to the results: the best value of each case of the study, and where there is none.
 
-use super::Request;
+use super::request::{Request, STRIDE};
 use crate::kinds::search::intervals;
 use crate::results::CaseResult;
 use crate::study::{Case, Study};
@@ -22,8 +22,8 @@ impl Tried<'_> {
 /// `optima` of results.json.
 pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
     let optimum = |base: &Case| {
-        let first = study.cases.len() + base.id * super::STRIDE;
-        let own = cases.iter().filter(|result| (first..first + super::STRIDE).contains(&result.label.id));
+        let first = study.cases.len() + base.id * STRIDE;
+        let own = cases.iter().filter(|result| (first..first + STRIDE).contains(&result.label.id));
         let mut tried: Vec<Tried> = own.filter_map(|result| of_case(request, base, result)).collect();
         (!tried.is_empty()).then(|| {
             add_impossible(request, &mut tried);
