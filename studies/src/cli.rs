@@ -68,6 +68,9 @@ enum Command {
     Explain {
         /// Tag of a plug-in, or a study file
         what: String,
+        /// Print the study's first case in another form instead: every block by its vertices
+        #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
+        export: Option<String>,
     },
     /// List plug-ins
     List {
@@ -104,7 +107,8 @@ pub fn main() -> ExitCode {
             let options = commands::run::Options { out, set, jobs: 1, case: None, resume: false, quiet };
             commands::run::run(&studies, &options)
         }
-        Command::Explain { what } => commands::explain::explain(&what),
+        Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
+        Command::Explain { what, export: None } => commands::explain::explain(&what),
         Command::List { kind } => commands::explain::list(kind.as_deref()),
         Command::Schema => commands::explain::schema(),
         Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),

@@ -81,6 +81,10 @@ pub struct SettledScene {
     load: String,
     mirrored_settlement: String,
     mirrored_load: String,
+    /// Settlement and load, each shifted by 1e-6 of the scene.
+    shifted: [String; 2],
+    /// Scene, settlement and load with the blocks in another order, where there is such a form.
+    renumbered: Option<[String; 3]>,
 }
 
 /// What to draw a scene from.
@@ -109,17 +113,41 @@ impl SettledScene {
         self.written(solver, false, false)
     }
 
+    /// The study without its settlement, slip associated.
+    pub fn unmoved(&self, solver: &str) -> String {
+        let text = self.study(solver);
+        let stage = format!("[[stages]]\nname = \"settle\"\nsettlement = [{}]\n", self.settlement);
+        text.replace(&stage, "").replace("law = \"coulomb\"", "law = \"coulomb_associated\"")
+    }
+
     /// The mirror image of [`study`](Self::study), blocks numbered from the other end.
     pub fn mirrored(&self, solver: &str) -> String {
         self.written(solver, true, true)
     }
 
+    /// The study with the load, or else the settled support, shifted by 1e-6 of the scene.
+    pub fn shifted(&self, solver: &str, load: bool) -> String {
+        let (settlement, live) =
+            if load { (&self.settlement, &self.shifted[1]) } else { (&self.shifted[0], &self.load) };
+        self.text(solver, [&self.scene, settlement, live], true)
+    }
+
+    /// The study with its blocks in another order; `None` where ends are bonded.
+    pub fn renumbered(&self, solver: &str) -> Option<String> {
+        let [scene, settlement, load] = self.renumbered.as_ref()?;
+        Some(self.text(solver, [scene, settlement, load], true))
+    }
+
     fn written(&self, solver: &str, mirrored: bool, loaded: bool) -> String {
-        let (scene, settlement, load) = if mirrored {
-            (&self.mirrored, &self.mirrored_settlement, &self.mirrored_load)
+        let parts = if mirrored {
+            [&self.mirrored, &self.mirrored_settlement, &self.mirrored_load]
         } else {
-            (&self.scene, &self.settlement, &self.load)
+            [&self.scene, &self.settlement, &self.load]
         };
+        self.text(solver, parts, loaded)
+    }
+
+    fn text(&self, solver: &str, [scene, settlement, load]: [&String; 3], loaded: bool) -> String {
         let live = format!("[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{load}]\n");
         format!(
             "name = \"settled\"\n{scene}{}[joints.dry]\n{}[solver]\n{solver}\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"settle\"\nsettlement = [{settlement}]\n{}",
@@ -152,6 +180,10 @@ fn motions(random: &mut Random, settling: Settling, size: f64) -> [[f64; 3]; 2] 
         }
     }
     [left, right]
+}
+
+fn shifted([x, y, turn]: [f64; 3], size: f64) -> [f64; 3] {
+    [x + 1e-6 * size, y - 1e-6 * size, turn]
 }
 
 fn mirror([x, y, turn]: [f64; 3]) -> [f64; 3] {
@@ -211,6 +243,9 @@ fn arch(random: &mut Random, draw: Draw, materials: String, joint: String) -> Se
         format!("{{ kind = \"point\", span_fraction = {place:?}, force = [{:?}, -1000.0] }}", 1000.0 * x)
     };
     SettledScene {
+        renumbered: (ends == "jointed")
+            .then(|| as_blocks(&scene, &materials, &joint, [left, right], across, across_load, place)),
+        shifted: [both(shifted(left, span), right), load(place + 1e-6, across_load)],
         shape: Shape::Arch,
         span,
         mirrored: scene.clone(),
@@ -256,7 +291,7 @@ fn pier(random: &mut Random, draw: Draw, materials: String, joint: String) -> Se
     }
     let level = total * random.uniform(0.8, 0.99);
     let share = random.uniform(-0.3, 0.0);
-    let load = |sign: f64| {
+    let load = |sign: f64, level: f64| {
         format!(
             "{{ kind = \"point\", block = \"b{}\", point = [{:?}, {level:?}], force = [{:?}, {:?}] }}",
             courses - 1,
@@ -266,6 +301,8 @@ fn pier(random: &mut Random, draw: Draw, materials: String, joint: String) -> Se
         )
     };
     SettledScene {
+        renumbered: Some([mirrored.clone(), motion("ground", left), load(1.0, level)]),
+        shifted: [motion("ground", shifted(left, total)), load(1.0, level * (1.0 - 1e-6))],
         shape: Shape::Pier,
         span: total,
         scene,
@@ -273,8 +310,58 @@ fn pier(random: &mut Random, draw: Draw, materials: String, joint: String) -> Se
         materials,
         joint,
         settlement: motion("ground", left),
-        load: load(1.0),
+        load: load(1.0, level),
         mirrored_settlement: motion("ground", mirror(left)),
-        mirrored_load: load(-1.0),
+        mirrored_load: load(-1.0, level),
     }
+}
+
+/// The arch as blocks, those of odd places first, its supports as blocks of their own: scene, settlement, load.
+fn as_blocks(
+    scene: &str,
+    materials: &str,
+    joint: &str,
+    motions: [[f64; 3]; 2],
+    across: usize,
+    across_load: f64,
+    place: f64,
+) -> [String; 3] {
+    let load = format!("{{ kind = \"point\", span_fraction = {place:?}, force = [0.0, -1.0] }}");
+    let case = crate::first_case(&format!(
+        "name = \"arch\"\n{scene}{materials}[joints.dry]\n{joint}[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{load}]\n[solver]\nsolver = \"limit_conic\"\n"
+    ));
+    let assembly = &case.assembly;
+    let last = assembly.bodies.len() - 1;
+    let vertices = |points: &[voussoir::core::model::geometry::Vec2]| {
+        let all: Vec<String> = points.iter().map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
+        format!("[{}]", all.join(", "))
+    };
+    let mut blocks = Vec::new();
+    for (body, joint, outwards) in [(0, 0, -1.0), (last, assembly.joints.len() - 1, 1.0)] {
+        let joint = &assembly.joints[joint];
+        let off = joint.frame().0 * (0.3 * outwards);
+        let quad = [joint.ends[0], joint.ends[1], joint.ends[1] + off, joint.ends[0] + off];
+        blocks.push(format!("{{ name = \"ground{body}\", vertices = {}, fixed = true }}", vertices(&quad)));
+    }
+    let order = (1..last).filter(|k| k % 2 == 1).chain((1..last).filter(|k| k % 2 == 0));
+    blocks
+        .extend(order.map(|k| format!("{{ name = \"b{k}\", vertices = {} }}", vertices(&assembly.bodies[k].vertices))));
+    let force = case.stages[0].forces[0];
+    let scene = format!(
+        "[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\nmesh = {{ elements = [1, {across}] }}\nblocks = [\n{}\n]\n",
+        blocks.join(",\n")
+    );
+    let settlement: Vec<String> = [(0, motions[0]), (last, motions[1])]
+        .into_iter()
+        .filter(|(_, m)| *m != [0.0; 3])
+        .map(|(body, m)| motion(&format!("ground{body}"), m))
+        .collect();
+    let load = format!(
+        "{{ kind = \"point\", block = \"b{}\", point = [{:?}, {:?}], force = [{:?}, -1000.0] }}",
+        force.body,
+        force.point.x,
+        force.point.y,
+        1000.0 * across_load
+    );
+    [scene, settlement.join(", "), load]
 }

@@ -34,6 +34,24 @@ pub fn schema() -> u8 {
     FINE
 }
 
+/// Forms in which a study can be written.
+pub const EXPORTS: [&str; 1] = ["blocks"];
+
+/// Prints the first case of a study in another form.
+pub fn export(path: &Path) -> u8 {
+    match files::study(path, &[]).map(|study| study.as_blocks()) {
+        Ok(Ok(text)) => {
+            say(text);
+            FINE
+        }
+        Ok(Err(why)) => {
+            eprintln!("{}: cannot be written as blocks: {why}", path.display());
+            WRONG_INPUT
+        }
+        Err(code) => code,
+    }
+}
+
 /// Explains a plug-in by its tag, or a study file by the plan of its solution.
 pub fn explain(what: &str) -> u8 {
     if what.ends_with(".toml") || Path::new(what).is_file() {

@@ -2,15 +2,16 @@
 //! all writers.
 
 use super::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification, kind};
+use crate::figures::format::format_number;
 use crate::results::{CaseLabel, CaseResult, StudyResults};
 use crate::solve::explain::explain;
 use crate::solve::{Observer, side_by_side};
-use crate::study::{Case, Study};
+use crate::study::{Case, Study, as_blocks};
 use crate::verify::{solve_again, verify_against};
 use crate::writers::comparison::comparison_table;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
-use serde_json::Value as Json;
+use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use voussoir_core::limit::Status;
@@ -63,6 +64,10 @@ impl LoadedStudy for Study {
         explain(self)
     }
 
+    fn as_blocks(&self) -> Result<String, String> {
+        as_blocks(self.cases.first().ok_or("the study has no case")?, &self.name)
+    }
+
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
         let stored = request.stored.as_ref().map(|stored| self.own_cases(stored)).unwrap_or_default();
         let is_wanted = |id: &usize| request.wanted.binary_search(id).is_ok();
@@ -87,6 +92,7 @@ impl LoadedStudy for Study {
             table += "\n";
             table += &comparison_table(comparison);
         }
+        table += &found(&results.own);
         let certified = results.cases.iter().all(|case| case.certificate.passed);
         RunOutput { files, table, remarks: remarks(request, others, self.count()), certified }
     }
@@ -111,6 +117,25 @@ impl LoadedStudy for Study {
             how: HOW,
         })
     }
+}
+
+/// What a kind that searches has found, a line each.
+fn found(own: &Map<String, Json>) -> String {
+    let entries = |name: &str| own.get(name).and_then(Json::as_array).into_iter().flatten();
+    let line = |entry: &Json| {
+        let words =
+            ["variant", "vehicle", "direction"].iter().filter_map(|key| Some(format!(", {}", entry[key].as_str()?)));
+        let number = |key: &str| entry[key].as_f64().map_or("-".to_string(), |x| format_number(x, 6));
+        let status = entry["status"].as_str().unwrap_or_default();
+        let (key, case) = (entry["parameter"].as_str().unwrap_or_default(), &entry["case"]);
+        format!(
+            "\nworst: {} ({status}) at {key} = {}{} (case {case})\n",
+            number("result"),
+            number("value"),
+            words.collect::<String>()
+        )
+    };
+    entries("worsts").map(line).collect()
 }
 
 /// What `verify` has done with each case.

@@ -2,15 +2,16 @@
 #![doc = include_str!("envelope.md")]
 
 mod places;
+mod request;
 mod search;
 mod worsts;
 
+use self::request::{Request, Run};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
 use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
 use crate::study::{Case, Outline, Study, StudySource};
-use rayon::prelude::*;
 use serde_json::Value as Json;
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -71,79 +72,6 @@ voussoir_core::inventory::submit! {
         page: include_str!("envelope.md"),
         ..Card::BLANK
     }
-}
-
-/// `[envelope]`, read.
-#[derive(Debug, Clone)]
-pub(super) struct Request {
-    parameter: String,
-    range: [f64; 2],
-    tolerance: f64,
-    scan: usize,
-    directions: Option<String>,
-    vehicles: Option<Vec<String>>,
-}
-
-impl Request {
-    pub(super) fn of(outline: &Outline) -> Option<Self> {
-        let table = &outline.table;
-        let number = |key: &str| table.get(key)?.as_f64();
-        Some(Request {
-            parameter: table.get("parameter")?.as_str()?.to_string(),
-            range: [number("from")?, number("to")?],
-            tolerance: number("tolerance").unwrap_or(1e-3),
-            scan: table.get("scan").and_then(Json::as_u64).map_or(41, |scan| scan as usize),
-            directions: table.get("directions").and_then(|word| Some(word.as_str()?.to_string())),
-            vehicles: table.get("vehicles").and_then(|list| serde_json::from_value(list.clone()).ok()),
-        })
-    }
-
-    /// A key beside the parameter, in the same table.
-    fn beside(&self, key: &str) -> String {
-        let table = self.parameter.rsplit_once('.').map_or("", |(table, _)| table);
-        format!("{table}.{key}")
-    }
-
-    /// What is tried on a case: vehicle and direction, each where there is one.
-    fn runs(&self, case: &Case) -> Vec<Run> {
-        let load = self.parameter.rsplit_once('.').and_then(|(table, _)| value_at(&case.resolved, table));
-        let own = load.and_then(|load| Some(load.get("vehicle")?.as_str()?.to_string()));
-        let Some(own) = own else { return vec![Run { vehicle: None, direction: None }] };
-        let vehicles = self.vehicles.clone().unwrap_or_else(|| vec![own]);
-        let directions: &[&str] = match self.directions.as_deref() {
-            Some("forward") => &["forward"],
-            Some("backward") => &["backward"],
-            _ => &["forward", "backward"],
-        };
-        let each = |vehicle: &String| {
-            let run = |direction: &&str| Run { vehicle: Some(vehicle.clone()), direction: Some(direction.to_string()) };
-            directions.iter().map(run).collect::<Vec<_>>()
-        };
-        vehicles.iter().flat_map(each).collect()
-    }
-
-    /// The values of a run at a place, by key.
-    fn values(&self, run: &Run, value: f64) -> Vec<(String, Json)> {
-        let mut values = vec![(self.parameter.clone(), Json::from(value))];
-        values.extend(run.vehicle.iter().map(|vehicle| (self.beside("vehicle"), vehicle.clone().into())));
-        values.extend(run.direction.iter().map(|direction| (self.beside("direction"), direction.clone().into())));
-        values
-    }
-}
-
-/// A vehicle that moves one way.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Run {
-    vehicle: Option<String>,
-    direction: Option<String>,
-}
-
-/// The value under a dotted key of a checked study.
-fn value_at<'a>(root: &'a Json, path: &str) -> Option<&'a Json> {
-    path.split('.').try_fold(root, |value, key| match value {
-        Json::Array(list) => list.get(key.parse::<usize>().ok()?),
-        _ => value.get(key),
-    })
 }
 
 /// The case of a study at other values, with the id that it has among all.
@@ -234,14 +162,4 @@ impl StudyKind for Envelope {
         let Some(request) = Request::of(&study.outline) else { return OwnResults::default() };
         OwnResults { other: worsts::entries(study, &request, cases), ..OwnResults::default() }
     }
-}
-
-/// Solves places side by side, in order; those that make no case are left out.
-fn solve_all(
-    first: usize,
-    places: &[f64],
-    solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
-) -> Vec<(f64, CaseResult)> {
-    let one = |(index, value): (usize, &f64)| Some((*value, solve(first + index, *value)?));
-    places.par_iter().enumerate().filter_map(one).collect()
 }

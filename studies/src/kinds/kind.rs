@@ -75,6 +75,11 @@ pub trait LoadedStudy: Send + Sync {
     /// What will be solved, in words.
     fn explain(&self) -> String;
 
+    /// Its first case as a study of the scene `blocks`; an error says why there is none.
+    fn as_blocks(&self) -> Result<String, String> {
+        Err("this study has no scene".into())
+    }
+
     /// Solves what is wanted and turns it into the texts of files.
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
 

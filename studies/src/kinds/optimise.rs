@@ -129,7 +129,7 @@ impl Request {
             Some(word) => word == "first_limit_point",
             None => case.solver.settings.finite,
         };
-        let found = if first { result.load_factor } else { result.load_factor };
+        let found = if first { result.path.first_limit_point.or(result.load_factor) } else { result.load_factor };
         found.filter(|_| answered)
     }
 

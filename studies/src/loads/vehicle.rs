@@ -78,9 +78,7 @@ impl LoadKind for VehicleLoad {
             let (x, half) = (self.place_of(axle), axle.length / 2.0);
             let patch = Patch { from: x - half, to: x + half, share: 1.0 };
             let Some(spread) = from_road(site, patch, "at")? else {
-                placed
-                    .notes
-                    .push(format!("axle {i} of \"{}\" at x = {x} m is off the bridge: it counts zero", self.vehicle));
+                placed.notes.push(format!("axle {i} of \"{}\" is off the bridge: it counts zero", self.vehicle));
                 continue;
             };
             let force = axle.force * axle.lift_off * width / self.carrying(axle, width, spread.reach);

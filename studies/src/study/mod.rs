@@ -6,6 +6,7 @@
 mod assemble;
 mod case;
 mod diagnostics;
+mod export;
 mod keys;
 mod load;
 mod model;
@@ -17,6 +18,7 @@ mod stages;
 
 pub(crate) use assemble::read_plugin;
 pub use diagnostics::DiagnosticList;
+pub use export::as_blocks;
 pub use keys::{OUTPUT, VARIANT, study_keys};
 pub use load::load;
 pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study};

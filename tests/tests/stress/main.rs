@@ -4,3 +4,5 @@ mod cap;
 mod limit;
 mod nonassociated;
 mod path;
+mod settlements;
+mod strategies;

@@ -1,73 +1,71 @@
-//! Chains of bodies and the joint forces as affine forms of their redundants.
+//! Bodies as trees rooted at supports, closed by a few joints, and the joint forces as affine forms of their redundants.
+//!
+//! Each joint of the trees transmits what the loads behind it and the redundants of the closing joints make of it
+//! (force method; Livesley 1978). An arch is a tree of two branches that one joint closes: three redundants.
 
 use nalgebra::Vector3;
+use std::collections::VecDeque;
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::Wrenches;
 
-/// A row of bodies, each touching the next.
-#[derive(Debug, Clone)]
-pub struct Chain {
-    /// Joints in order from a support, each with the group behind it (`None`: the far support).
-    pub links: Vec<(usize, Option<usize>)>,
-    /// Whether the last joint is at a support too.
-    pub closed: bool,
+/// With more closing joints sparse programs are faster.
+const MOST_CUTS: usize = 8;
+
+/// A joint of a tree.
+#[derive(Debug, Clone, Copy)]
+pub struct Link {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Group towards the root, `None` for the ground.
+    pub behind: Option<usize>,
+    /// Group away from it.
+    pub ahead: usize,
 }
 
-/// The problem's bodies as chains that each begin at a support, if they are that.
-pub fn chains(problem: &LimitProblem) -> Option<Vec<Chain>> {
-    if problem.joints.iter().any(|joint| joint.fill.is_some()) {
+/// Trees that reach every group, breadth first from the supports, so that closing joints lie midway between them and
+/// no branch collects all the rounding.
+#[derive(Debug, Clone)]
+pub struct Trees {
+    /// Each after the one behind it.
+    pub links: Vec<Link>,
+    /// Joints that close the trees.
+    pub cuts: Vec<usize>,
+}
+
+/// The problem's bodies as trees, if few joints close them.
+pub fn trees(problem: &LimitProblem) -> Option<Trees> {
+    if problem.joints.len() > problem.groups + MOST_CUTS || problem.joints.iter().any(|joint| joint.fill.is_some()) {
         return None;
     }
     let mut joints_of: Vec<Vec<usize>> = vec![Vec::new(); problem.groups];
-    let mut at_ground = Vec::new();
+    let mut queue: VecDeque<(usize, Option<usize>)> = VecDeque::new();
     for (index, joint) in problem.joints.iter().enumerate() {
+        [joint.minus, joint.plus].into_iter().flatten().for_each(|group| joints_of[group].push(index));
         match (joint.minus, joint.plus) {
-            (Some(a), Some(b)) => {
-                joints_of[a].push(index);
-                joints_of[b].push(index);
-            }
-            (Some(a), None) | (None, Some(a)) => {
-                joints_of[a].push(index);
-                at_ground.push(index);
-            }
             (None, None) => return None,
+            (None, _) | (_, None) => queue.push_back((index, None)),
+            _ => {}
         }
     }
-    if joints_of.iter().any(|joints| joints.is_empty() || joints.len() > 2) {
-        return None;
-    }
-    let mut used = vec![false; problem.joints.len()];
-    let mut all = Vec::new();
-    for &first in &at_ground {
-        if used[first] {
+    let (mut reached, mut used) = (vec![false; problem.groups], vec![false; problem.joints.len()]);
+    let mut trees = Trees { links: Vec::new(), cuts: Vec::new() };
+    while let Some((joint, behind)) = queue.pop_front() {
+        if std::mem::replace(&mut used[joint], true) {
             continue;
         }
-        let mut chain = Chain { links: Vec::new(), closed: false };
-        let (mut joint, mut behind) = (first, None);
-        loop {
-            used[joint] = true;
-            let LimitJointEnds(minus, plus) = ends(problem, joint);
-            let ahead = if minus == behind { plus } else { minus };
-            chain.links.push((joint, ahead));
-            let Some(group) = ahead else {
-                chain.closed = true;
-                break;
-            };
-            match joints_of[group].iter().find(|&&next| next != joint) {
-                Some(&next) => (joint, behind) = (next, Some(group)),
-                None => break,
+        let own = &problem.joints[joint];
+        let ahead = if own.minus == behind { own.plus } else { own.minus };
+        match ahead.filter(|group| !reached[*group]) {
+            Some(ahead) => {
+                reached[ahead] = true;
+                trees.links.push(Link { joint, behind, ahead });
+                queue.extend(joints_of[ahead].iter().filter(|next| !used[**next]).map(|next| (*next, Some(ahead))));
             }
+            None => trees.cuts.push(joint),
         }
-        all.push(chain);
     }
-    // Joints never reached belong to rings that touch no support.
-    used.iter().all(|&u| u).then_some(all)
-}
-
-struct LimitJointEnds(Option<usize>, Option<usize>);
-
-fn ends(problem: &LimitProblem, joint: usize) -> LimitJointEnds {
-    LimitJointEnds(problem.joints[joint].minus, problem.joints[joint].plus)
+    // Groups never reached touch no support.
+    (reached.iter().all(|&r| r) && trees.cuts.len() <= MOST_CUTS).then_some(trees)
 }
 
 /// (N_0, N_1, T) of every joint as affine forms of the variables, in units of the force scale.
@@ -80,71 +78,64 @@ pub struct Forms {
 }
 
 impl Forms {
-    /// Variables: three redundants per closed chain, then one factor per entry of `columns`
+    /// Variables: three redundants per closing joint, then one factor per entry of `columns`
     /// (loads with the factor that one unit of the variable stands for).
     pub fn new(
         problem: &LimitProblem,
-        chains: &[Chain],
+        trees: &Trees,
         constant: (&Wrenches, f64),
         columns: &[(&Wrenches, f64)],
         force: f64,
     ) -> Self {
-        let redundants = 3 * chains.iter().filter(|chain| chain.closed).count();
+        let redundants = 3 * trees.cuts.len();
         let variables = redundants + columns.len();
         let stride = 3 * (variables + 1);
         let mut values = vec![0.0; stride * problem.joints.len()];
-        let mut offset = 0;
-        for chain in chains {
-            for (place, &(wrenches, factor)) in columns.iter().chain([&constant]).enumerate() {
-                for (position, wrench) in transmitted(chain, wrenches).into_iter().enumerate() {
-                    let joint = chain.links[position].0;
-                    let forces = resolved(problem, chain, position, wrench * (factor / force));
-                    (0..3).for_each(|i| values[joint * stride + i * (variables + 1) + redundants + place] = forces[i]);
-                }
+        let mut set = |joint: usize, column: usize, forces: [f64; 3]| {
+            (0..3).for_each(|i| values[joint * stride + i * (variables + 1) + column] = forces[i]);
+        };
+        for (place, &(wrenches, factor)) in columns.iter().chain([&constant]).enumerate() {
+            let loads = wrenches.iter().map(|wrench| Vector3::from(*wrench)).collect();
+            for (link, wrench) in trees.links.iter().zip(transmitted(trees, loads)) {
+                let forces = resolved(problem, link.joint, Some(link.ahead), wrench * (factor / force));
+                set(link.joint, redundants + place, forces);
             }
-            if chain.closed {
-                for k in 0..3 {
-                    let mut wrench = Vector3::zeros();
-                    wrench[k] = if k == 2 { problem.length } else { 1.0 };
-                    for (position, &(joint, _)) in chain.links.iter().enumerate() {
-                        let forces = resolved(problem, chain, position, wrench);
-                        (0..3).for_each(|i| values[joint * stride + i * (variables + 1) + offset + k] = forces[i]);
+        }
+        for (number, &cut) in trees.cuts.iter().enumerate() {
+            let joint = &problem.joints[cut];
+            for k in 0..3 {
+                let mut wrench = Vector3::zeros();
+                wrench[k] = if k == 2 { problem.length } else { 1.0 };
+                let mut loads = vec![Vector3::zeros(); problem.groups];
+                for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+                    group.into_iter().for_each(|group| loads[group] += wrench * sign);
+                }
+                set(cut, 3 * number + k, resolved(problem, cut, joint.plus, wrench));
+                for (link, wrench) in trees.links.iter().zip(transmitted(trees, loads)) {
+                    // Branches that the cut does not close stay without forces.
+                    if wrench != Vector3::zeros() {
+                        set(link.joint, 3 * number + k, resolved(problem, link.joint, Some(link.ahead), wrench));
                     }
                 }
-                offset += 3;
             }
         }
         Forms { variables, values }
     }
 }
 
-/// The wrench transmitted at each joint onto what lies ahead, with zero redundants: for a closed
-/// chain relative to that at its middle, so that neither end collects all the rounding.
-fn transmitted(chain: &Chain, wrenches: &Wrenches) -> Vec<Vector3<f64>> {
-    let load = |link: &(usize, Option<usize>)| link.1.map_or(Vector3::zeros(), |g| Vector3::from(wrenches[g]));
-    let mut sums = vec![Vector3::zeros(); chain.links.len()];
-    // Ahead of joint k: R_k + load = R_{k+1}.
-    if chain.closed {
-        let middle = chain.links.len() / 2;
-        for k in middle + 1..chain.links.len() {
-            sums[k] = sums[k - 1] + load(&chain.links[k - 1]);
-        }
-        for k in (0..middle).rev() {
-            sums[k] = sums[k + 1] - load(&chain.links[k]);
-        }
-    } else {
-        let mut behind = Vector3::zeros();
-        for k in (0..chain.links.len()).rev() {
-            behind -= load(&chain.links[k]);
-            sums[k] = behind;
-        }
+/// The wrench that each link transmits onto what lies ahead: it balances all loads there.
+fn transmitted(trees: &Trees, mut loads: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let mut wrenches = vec![Vector3::zeros(); trees.links.len()];
+    for (link, wrench) in trees.links.iter().zip(&mut wrenches).rev() {
+        let sum = loads[link.ahead];
+        link.behind.into_iter().for_each(|behind| loads[behind] += sum);
+        *wrench = -sum;
     }
-    sums
+    wrenches
 }
 
 /// (N_0, N_1, T) of a joint that transmits `wrench` (about the pole) onto what lies ahead.
-fn resolved(problem: &LimitProblem, chain: &Chain, position: usize, wrench: Vector3<f64>) -> [f64; 3] {
-    let (index, ahead) = chain.links[position];
+fn resolved(problem: &LimitProblem, index: usize, ahead: Option<usize>, wrench: Vector3<f64>) -> [f64; 3] {
     let joint = &problem.joints[index];
     let sign = if joint.plus == ahead { 1.0 } else { -1.0 };
     let force = nalgebra::Vector2::new(sign * wrench[0], sign * wrench[1]);

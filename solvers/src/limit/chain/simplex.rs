@@ -1,7 +1,7 @@
 //! The simplex method on elementary mechanisms: min β·y with Σ y_i a_i = c, y ≥ 0, columns priced
 //! joint by joint, stress blocks by their tangents.
 
-use super::layout::{Chain, Forms};
+use super::layout::{Forms, Trees};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use std::cmp::Ordering;
 use voussoir_core::law::StressBlock;
@@ -29,7 +29,7 @@ pub enum Column {
     Artificial { variable: usize },
 }
 
-/// A linear program over the affine joint forces of chains.
+/// A linear program over the affine joint forces.
 pub struct Program<'a> {
     problem: &'a LimitProblem,
     forms: &'a Forms,
@@ -496,32 +496,27 @@ impl<'a> Program<'a> {
     }
 
     /// Velocities of the groups about the pole from the multipliers of the columns: each yielding
-    /// row moves its joint by −y times its normal; motions add up along the chain.
-    pub fn motion(&self, problem: &LimitProblem, chains: &[Chain], columns: &[(Column, f64)]) -> Vec<Velocity> {
+    /// row moves its joint by −y times its normal; motions add up along the trees.
+    pub fn motion(&self, problem: &LimitProblem, trees: &Trees, columns: &[(Column, f64)]) -> Vec<Velocity> {
         let mut rates = vec![[0.0; 3]; problem.joints.len()];
         for &(column, weight) in columns {
             if let Some((joint, weights)) = self.weights(column) {
                 (0..3).for_each(|i| rates[joint][i] -= weight * weights[i]);
             }
         }
-        let mut motion = vec![[0.0; 3]; problem.groups];
-        for chain in chains {
-            let mut velocity = Vector3::zeros();
-            for &(index, ahead) in &chain.links {
-                let joint = &problem.joints[index];
-                let [open_0, open_1, slip] = rates[index];
-                let height = (joint.ends[1] - joint.ends[0]).norm();
-                let rotation = (open_0 - open_1) / height;
-                let lever = joint.ends[0] - problem.pole;
-                let at_end: Vector2<f64> = joint.normal * open_0 + joint.tangent * slip;
-                let twist = Vector3::new(at_end.x + rotation * lever.y, at_end.y - rotation * lever.x, rotation);
-                velocity += if joint.plus == ahead { twist } else { -twist };
-                if let Some(group) = ahead {
-                    motion[group] = velocity.into();
-                }
-            }
+        let mut motion = vec![Vector3::zeros(); problem.groups];
+        for link in &trees.links {
+            let joint = &problem.joints[link.joint];
+            let [open_0, open_1, slip] = rates[link.joint];
+            let height = (joint.ends[1] - joint.ends[0]).norm();
+            let rotation = (open_0 - open_1) / height;
+            let lever = joint.ends[0] - problem.pole;
+            let at_end: Vector2<f64> = joint.normal * open_0 + joint.tangent * slip;
+            let twist = Vector3::new(at_end.x + rotation * lever.y, at_end.y - rotation * lever.x, rotation);
+            let behind = link.behind.map_or(Vector3::zeros(), |group| motion[group]);
+            motion[link.ahead] = behind + if joint.plus == Some(link.ahead) { twist } else { -twist };
         }
-        motion
+        motion.into_iter().map(Into::into).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The solver `limit_chain` and its engine.
 
-use super::layout::{Chain, Forms, chains};
+use super::layout::{Forms, Trees, trees};
 use super::optimum::centre;
 use super::simplex::{Outcome, Program, Solved};
 use crate::limit::conic::LimitConic;
@@ -15,7 +15,7 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
-/// Limit analysis of chains.
+/// Limit analysis in few redundants.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimitChain {}
@@ -34,9 +34,9 @@ impl LimitSolver for LimitChain {
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
-        chains(problem)
-            .is_none()
-            .then(|| "its bodies do not form chains between supports; limit_conic takes any scene".into())
+        trees(problem).is_none().then(|| {
+            "more than a few joints close its bodies to rings, or fill resists; limit_conic takes any scene".into()
+        })
     }
 }
 
@@ -44,7 +44,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::LimitSolver,
         tag: "limit_chain",
-        summary: "limit analysis of arches and other chains of blocks in three redundants and λ, by simplex, to rounding",
+        summary: "limit analysis of arches, viaducts and whatever few joints close to rings, in its redundants and λ, by simplex, to rounding",
         parameters: &[],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(20),
@@ -55,10 +55,10 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// The three optimisations over chains.
+/// The three optimisations over redundants.
 struct ChainEngine<'a> {
     problem: &'a LimitProblem,
-    chains: Vec<Chain>,
+    trees: Trees,
     pivots: u64,
     newton_iterations: u64,
     programs: u64,
@@ -66,23 +66,23 @@ struct ChainEngine<'a> {
 
 impl<'a> ChainEngine<'a> {
     fn new(problem: &'a LimitProblem) -> Option<Self> {
-        Some(ChainEngine { problem, chains: chains(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
+        Some(ChainEngine { problem, trees: trees(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
     }
 
     /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given.
     fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>) -> Equilibrium {
         let force = force_unit(self.problem, fixed);
         let columns: Vec<_> = varying.iter().map(|v| (*v, force / force_unit(self.problem, v))).collect();
-        let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &columns, force);
+        let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &columns, force);
         let program = Program::new(self.problem, &forms, force).with_margin();
         match self.run(&program) {
             Outcome::Optimal(solved) if solved.value >= -1e-12 => Equilibrium::Field(program.forces(&solved.point)),
             Outcome::Optimal(solved) => {
                 let (columns, _) = centre(&program, &solved.point, solved.columns);
-                Equilibrium::Motion(program.motion(self.problem, &self.chains, &columns))
+                Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns))
             }
             // Rows that pin T to zero have no margin: they alone may refute equilibrium.
-            Outcome::Infeasible(columns) => Equilibrium::Motion(program.motion(self.problem, &self.chains, &columns)),
+            Outcome::Infeasible(columns) => Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns)),
             Outcome::Unbounded(_) => Equilibrium::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Equilibrium::Failed(why),
         }
@@ -109,12 +109,12 @@ impl Engine for ChainEngine<'_> {
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
         let force = force_scale(self.problem, fixed, varying);
         let factor_unit = force / force_unit(self.problem, varying);
-        let forms = Forms::new(self.problem, &self.chains, (fixed, 1.0), &[(varying, factor_unit)], force);
+        let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &[(varying, factor_unit)], force);
         let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
         match self.run(&program) {
             Outcome::Optimal(Solved { value, point, columns, capped: false }) => {
                 let (columns, unique) = centre(&program, &point, columns);
-                let motion = program.motion(self.problem, &self.chains, &columns);
+                let motion = program.motion(self.problem, &self.trees, &columns);
                 Greatest::Collapse {
                     factor: value * factor_unit,
                     field: program.forces(&point),

@@ -7,7 +7,7 @@ use super::following::{Branch, Following, per_tangent};
 use super::limit_point::{not_followed, rising_branch};
 use super::measure::{increment_between, motion_size};
 use super::orientation::Orientation;
-use super::peak::{Located, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
+use super::peak::{Bracketed, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
 use super::plastic_plateau::note_plateau;
 use super::response::branch_changes;
 use super::softening::{dissipating_sense, softening_peak};
@@ -270,9 +270,9 @@ fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangen
 /// Over a peak: along another branch where one rises from it, else on. A settlement that goes no further by itself
 /// snaps, where it is to go to a factor.
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
-    let (state, beyond, kinked) = match locate_peak(tracer, following, following.direction) {
-        Located::Proven(state, beyond, kinked) => (state, beyond, kinked),
-        Located::Other => {
+    let Bracketed { state, beyond, kinked } = match locate_peak(tracer, following, following.direction) {
+        Some(bracketed) => bracketed,
+        None => {
             let why = StepFailure::new("two converged states of one branch do not bracket the peak");
             return match failed(tracer, following, &step.plan, &why) {
                 StepEnd::CutBack(length) => {

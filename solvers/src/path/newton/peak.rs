@@ -15,23 +15,25 @@ use voussoir_core::path::ProvenPeak;
 /// Share of a step up to which the states on both sides of a peak are apart where one branch leads through it.
 const CONTINUOUS: f64 = 1e-3;
 
-/// What a bisection has found.
-pub(super) enum Located {
-    /// The state at the peak, the rate just beyond it, and whether contact modes change there.
-    Proven(State, Tangent, bool),
-    /// States of different branches, or ones that were not found.
-    Other,
+/// A peak that two states of one branch bracket.
+pub(super) struct Bracketed {
+    pub state: State,
+    /// The rate just beyond it.
+    pub beyond: Tangent,
+    /// Whether contact modes change there.
+    pub kinked: bool,
 }
 
 /// Bisects the step from the present state for the peak of λ in the sense `direction`. With finite displacements the
-/// states on both sides must be close to each other and of one branch by their second-order work.
-pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> Located {
+/// states on both sides must be close to each other and of one branch by their second-order work; `None` where they are
+/// not, or were not found.
+pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> Option<Bracketed> {
     let (low, high, share) = bisect(tracer, following, direction);
     if !tracer.system.finite() {
         let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
-        return Located::Proven(low, beyond, true);
+        return Some(Bracketed { state: low, beyond, kinked: true });
     }
-    let Some((high, beyond)) = high else { return Located::Other };
+    let (high, beyond) = high?;
     let apart = increment_between(&tracer.system, &low, &high).motion;
     let step = increment_between(&tracer.system, &tracer.state, &high).motion;
     let oriented = [
@@ -45,11 +47,8 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
         _ => following.orientation.is_none(),
     };
     let kinked = low.mode != high.mode;
-    if one_branch && apart <= (CONTINUOUS + 2.0 * share) * step {
-        Located::Proven(low, beyond, kinked)
-    } else {
-        Located::Other
-    }
+    let continuous = apart <= (CONTINUOUS + 2.0 * share) * step;
+    (one_branch && continuous).then_some(Bracketed { state: low, beyond, kinked })
 }
 
 /// Bisects the step from the present state for the point where λ stops growing in the sense `direction`: the last

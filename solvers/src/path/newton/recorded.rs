@@ -45,9 +45,10 @@ pub(super) fn energy_after(
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
         let (kept, _) = law.irreversible(state.mode[contact], system.step_gap(start, state, contact));
-        // Where the point yielded before on the same facet, the trapezoidal rule; where it began
-        // to, its force when it began is not known: the force at the end.
-        let same = start.mode[contact] == state.mode[contact];
+        // Where the point yielded before on the same facet, or carried nothing and yields from nothing, the trapezoidal
+        // rule; where it began to, its force when it began is not known: the force at the end.
+        let from_nothing = start.force[contact] == [0.0; 2] && law.facets.iter().all(|f| f.bound == 0.0);
+        let same = from_nothing || start.mode[contact] == state.mode[contact];
         let (end, begun) = (state.force[contact], if same { start.force[contact] } else { state.force[contact] });
         energy.dissipated -= 0.5 * ((begun[0] + end[0]) * kept[0] + (begun[1] + end[1]) * kept[1]);
     }

@@ -1,6 +1,6 @@
 //! Places that are tried: even ones, those where axles enter the bridge, and those where edges of their patches meet joints.
 
-use super::{Request, Run, value_at};
+use super::request::{Request, Run, value_at};
 use crate::loads::dispersion::{Dispersion, Patch};
 use crate::loads::{LoadSite, LoadTables, VehicleAxles, fill_layers};
 use crate::study::Case;

@@ -1,9 +1,10 @@
 //! The search for the worst place of one run: a scan, then golden sections between its neighbours where it is least.
 
 use super::places::Places;
-use super::{Request, solve_all};
+use super::request::Request;
 use crate::kinds::search::golden_section;
 use crate::results::{CaseResult, load_rank};
+use rayon::prelude::*;
 
 /// Local minima of the scan above the least by more than this share are not searched further.
 const WORTHWHILE: f64 = 0.05;
@@ -49,6 +50,16 @@ fn valleys(values: &[(f64, f64)]) -> Vec<[f64; 2]> {
         (lowest && worthwhile).then_some([before.0, after.0])
     };
     (0..values.len()).filter_map(valley).collect()
+}
+
+/// Solves places side by side, in order; those that make no case are left out.
+fn solve_all(
+    first: usize,
+    places: &[f64],
+    solve: &(dyn Fn(usize, f64) -> Option<CaseResult> + Sync),
+) -> Vec<(f64, CaseResult)> {
+    let one = |(index, value): (usize, &f64)| Some((*value, solve(first + index, *value)?));
+    places.par_iter().enumerate().filter_map(one).collect()
 }
 
 #[cfg(test)]

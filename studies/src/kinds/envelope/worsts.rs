@@ -1,6 +1,6 @@
 //! What an envelope adds to the results: the worst place of each case of the study, and the factor at all places.
 
-use super::{Request, value_at};
+use super::request::{Request, value_at};
 use crate::kinds::search::intervals;
 use crate::results::{CaseResult, load_rank};
 use crate::study::Study;

@@ -1,0 +1,126 @@
+//! A case of any scene as a study of the scene `blocks`: every block by its vertices, every load by its forces.
+
+use super::model::Case;
+use serde_json::{Map, Value as Json, json};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Bond, Joint, PointForce, Stage, fill_weights};
+
+/// Depth of the ground behind a support without a shape, as a share of its face.
+const GROUND: f64 = 0.5;
+
+/// The study in TOML. An error says what has no counterpart there.
+pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
+    let assembly = &case.assembly;
+    let mut study = Map::new();
+    study.insert("name".into(), format!("{name}_blocks").into());
+    study.insert("scene".into(), scene(case)?);
+    for table in ["materials", "joints", "solver"] {
+        study.extend(case.resolved.get(table).map(|value| (table.to_string(), value.clone())));
+    }
+    let resolved = case.resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let mut gravity = Vec2::zeros();
+    let mut stages = Vec::new();
+    for (stage, table) in case.stages.iter().zip(resolved) {
+        let weights = fill_weights(assembly, stage.gravity.map_or(Vec2::zeros(), |now| now - gravity));
+        if let Some(now) = stage.gravity {
+            gravity = now;
+        }
+        stages.extend(stage_tables(assembly, stage, table, &weights));
+    }
+    study.insert("stages".into(), stages.into());
+    let text = toml::to_string(&without_nulls(Json::Object(study))).map_err(|error| error.to_string())?;
+    let resists = !assembly.fill_reactions().is_empty();
+    let remark = "# Without the horizontal forces of the fill, which the scene \"blocks\" does not have.\n";
+    Ok(format!("{}{text}", if resists { remark } else { "" }))
+}
+
+/// Numbers that are not there are no keys.
+fn without_nulls(value: Json) -> Json {
+    match value {
+        Json::Object(table) => table
+            .into_iter()
+            .filter(|(_, value)| !value.is_null())
+            .map(|(key, value)| (key, without_nulls(value)))
+            .collect(),
+        Json::Array(list) => list.into_iter().map(without_nulls).collect(),
+        value => value,
+    }
+}
+
+/// A stage; before it one with the weight of the fill, which its factor does not multiply.
+fn stage_tables(assembly: &Assembly, stage: &Stage, table: &Json, weights: &[PointForce]) -> Vec<Json> {
+    let point = |force: &PointForce| {
+        let (block, point, force): (_, [f64; 2], [f64; 2]) =
+            (&assembly.bodies[force.body].name, force.point.into(), force.force.into());
+        json!({ "kind": "point", "block": block, "point": point, "force": force })
+    };
+    let body = |a: &Vec2| json!({ "kind": "body", "acceleration": [a.x, a.y] });
+    let mut own = table.clone();
+    own["loads"] = stage.forces.iter().map(point).chain(stage.accelerations.iter().map(body)).collect();
+    if weights.is_empty() {
+        return vec![own];
+    }
+    let name = format!("{} (weight of the fill)", stage.name);
+    let before = json!({ "name": name, "gravity": own["gravity"].take(), "loads": weights.iter().map(point).collect::<Vec<_>>() });
+    vec![before, own]
+}
+
+/// `[scene]`.
+fn scene(case: &Case) -> Result<Json, String> {
+    let assembly = &case.assembly;
+    let catalogue = &assembly.catalogue;
+    let mut blocks = Vec::new();
+    for (index, body) in assembly.bodies.iter().enumerate() {
+        let joints = || assembly.joints.iter().filter(move |joint| joint.minus == index || joint.plus == index);
+        let vertices = if body.vertices.is_empty() { ground(index, joints()) } else { body.vertices.clone() };
+        if vertices.is_empty() {
+            continue;
+        }
+        let held = joints().any(|joint| {
+            let other = if joint.minus == index { joint.plus } else { joint.minus };
+            joint.bond == Bond::Bonded && assembly.bodies[other].fixed && assembly.is_rigid(index)
+        });
+        let outline: Vec<[f64; 2]> = vertices.into_iter().map(Into::into).collect();
+        let material = &catalogue.materials[body.material].0;
+        blocks
+            .push(json!({ "name": body.name, "vertices": outline, "fixed": body.fixed || held, "material": material }));
+    }
+    let mut pairs = Vec::new();
+    let mut first = None;
+    for joint in &assembly.joints {
+        let names = [joint.minus, joint.plus].map(|body| &assembly.bodies[body].name);
+        let fixed = [joint.minus, joint.plus].iter().any(|body| assembly.bodies[*body].fixed);
+        match joint.bond {
+            Bond::Law(law) => {
+                let name = &catalogue.laws[law].0;
+                first.get_or_insert(name.clone());
+                pairs.push(json!({ "between": names, "joint": name }));
+            }
+            Bond::Bonded if fixed => {}
+            Bond::Bonded => {
+                return Err(format!("\"{}\" and \"{}\" are bonded, which blocks cannot say", names[0], names[1]));
+            }
+        }
+    }
+    pairs.retain(|pair| pair["joint"].as_str() != first.as_deref());
+    pairs.dedup();
+    let resolved = &case.resolved["scene"];
+    Ok(json!({
+        "scene": "blocks", "width": assembly.width, "plane": resolved["plane"], "mesh": resolved["mesh"],
+        "joint": first, "blocks": blocks, "pairs": pairs,
+    }))
+}
+
+/// A block of ground behind the joints of a support without a shape.
+fn ground<'a>(body: usize, joints: impl Iterator<Item = &'a Joint>) -> Vec<Vec2> {
+    let joints: Vec<&Joint> = joints.collect();
+    let Some(first) = joints.first() else { return Vec::new() };
+    let (normal, along) = first.frame();
+    let into = if first.plus == body { normal } else { -normal };
+    let ends = || joints.iter().flat_map(|joint| joint.ends);
+    let place = |point: &Vec2| point.dot(&along);
+    let end = |sign: f64| ends().max_by(|a, b| (sign * place(a)).total_cmp(&(sign * place(b))));
+    let (Some(low), Some(high)) = (end(-1.0), end(1.0)) else { return Vec::new() };
+    let depth = into * (GROUND * (high - low).norm());
+    vec![low, high, high + depth, low + depth]
+}
