@@ -87,6 +87,14 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
             Some(Spot { at: at?, kind, marker: *marker, label })
         })
         .collect();
+    // Peaks before the one that is reported; that one has its own mark.
+    let earlier = result.path.limit_points.iter().filter(|peak| {
+        !peak.gravity && Some(peak.stage.as_str()) == last_stage && Some(peak.factor) != result.load_factor
+    });
+    spots.extend(earlier.map(|peak| {
+        let at = (peak.displacement * 1e3, peak.factor);
+        Spot { at, kind: "limit point", marker: Marker::Ring, label: String::new() }
+    }));
     spots.extend(end(result, line));
     // Labels of events near each other would cover each other: the last names them all.
     for late in 1..spots.len() {
