@@ -19,6 +19,7 @@ mod response_check;
 mod sliding;
 mod solver;
 mod state;
+mod work;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
 pub use self::fill::fill_gravity;

@@ -15,7 +15,7 @@ pub(super) struct EnergyBalance {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct StageBalance {
     stage: usize,
-    /// Σ|work| over its steps, and what it has dissipated \[J\].
+    /// Σ|work| of loads and supports over its steps, and what it has dissipated \[J\].
     work: f64,
     dissipated: f64,
     /// What work leaves of the energy stored and dissipated \[J\].
@@ -23,14 +23,15 @@ pub(super) struct StageBalance {
 }
 
 impl StageBalance {
-    /// After a step of a stage between two states, and what the step leaves over itself.
-    pub fn after(&self, stage: usize, from: &PathState, to: &PathState) -> (Self, f64) {
+    /// After a step between two states, and what the step leaves over itself.
+    pub fn after(&self, problem: &PathProblem, finite: bool, from: &PathState, to: &PathState) -> (Self, f64) {
+        let stage = problem.load_steps[to.load_step].stage;
         let before = if stage == self.stage { *self } else { StageBalance { stage, ..Self::default() } };
-        let (work, dissipated) = (to.work - from.work, to.dissipated - from.dissipated);
-        let left = work - (to.stored - from.stored) - dissipated;
+        let dissipated = to.dissipated - from.dissipated;
+        let left = to.work - from.work - (to.stored - from.stored) - dissipated;
         let after = StageBalance {
             stage,
-            work: before.work + work.abs(),
+            work: before.work + problem.gross_work(from, to, finite),
             dissipated: before.dissipated + dissipated.abs(),
             left: before.left + left,
         };

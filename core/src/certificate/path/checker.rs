@@ -130,7 +130,7 @@ impl PathChecker {
         let stored = displaced.stored().unwrap_or(state.stored);
         let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());
         let floor = 1e-12 * self.greatest * problem.length;
-        let share = self.energy.add(problem.load_steps[state.load_step].stage, state, stored, floor);
+        let share = self.energy.add(problem, self.finite, (state, stored), floor);
         self.worst.insert("path_energy", share);
         let before = self.last.map_or(0.0, |(_, dissipated)| dissipated);
         self.note("path_dissipation", (before - state.dissipated) / energy.max(1e-300));

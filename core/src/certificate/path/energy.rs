@@ -1,16 +1,16 @@
 //! The energy balance of a path, step by step and stage by stage.
 
-use crate::path::PathState;
+use crate::path::{PathProblem, PathState};
 
 /// What the work of loads and supports leaves of the energy stored and dissipated. Scale of a stage: the sum of |work|
-/// over its steps, what is stored at its end and what it has dissipated, and at least a `floor`.
+/// of loads and supports over its steps, what is stored at its end and what it has dissipated, and at least a `floor`.
 #[derive(Debug, Default, Clone)]
 pub(super) struct EnergyBalance {
     /// The worst of the stages before.
     worst: f64,
     stage: usize,
-    /// Work, energy stored and dissipated at the last state \[J\].
-    last: [f64; 3],
+    /// The last state, and the energy stored there \[J\].
+    last: Option<(PathState, f64)>,
     /// Σ|work|, dissipated, and what is left over in the stage: all of it, and in its worst step \[J\].
     work: f64,
     dissipated: f64,
@@ -19,20 +19,22 @@ pub(super) struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Adds a state; the worst of all stages so far.
-    pub fn add(&mut self, stage: usize, state: &PathState, stored: f64, floor: f64) -> f64 {
+    /// Adds a state of small or `finite` displacements; the worst of all stages so far. A path starts at rest.
+    pub fn add(&mut self, problem: &PathProblem, finite: bool, (state, stored): (&PathState, f64), floor: f64) -> f64 {
+        let stage = problem.load_steps[state.load_step].stage;
         if stage != self.stage {
-            self.worst = self.share(self.last[1], floor);
+            self.worst = self.share(self.last.as_ref().map_or(0.0, |(_, stored)| *stored), floor);
             (self.stage, self.work, self.dissipated, self.left, self.step) = (stage, 0.0, 0.0, 0.0, 0.0);
         }
-        let now = [state.work, stored, state.dissipated];
-        let [work, gained, dissipated] = [0, 1, 2].map(|i| now[i] - self.last[i]);
-        let left = work - gained - dissipated;
-        self.work += work.abs();
+        let rest = PathState { motion: vec![[0.0; 3]; problem.bodies.len()], ..PathState::default() };
+        let (last, stored_before) = self.last.take().unwrap_or((rest, 0.0));
+        let dissipated = state.dissipated - last.dissipated;
+        let left = state.work - last.work - (stored - stored_before) - dissipated;
+        self.work += problem.gross_work(&last, state, finite);
         self.dissipated += dissipated.abs();
         self.left += left;
         self.step = self.step.max(left.abs());
-        self.last = now;
+        self.last = Some((state.clone(), stored));
         self.share(stored, floor)
     }
 

@@ -400,11 +400,13 @@ fn out_of_steps(tracer: &mut Tracer, linear: bool) -> LoadStepEnding {
         let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
         return end_path(tracer, Status::LimitPoint, why);
     }
-    let found = tracer.system.finite() && tracer.limit.peak.is_some();
+    // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
     let factor = tracer.state.factor;
+    let lowest = tracer.post_peak.trough.as_ref().map_or(factor, |trough| trough.factor.min(factor));
+    let fallen = tracer.limit.peak.as_ref().is_some_and(|peak| lowest <= 0.5 * peak.factor && peak.factor > 0.0);
     end_path(
         tracer,
-        if found { Status::Collapse } else { Status::Stalled },
+        if tracer.system.finite() && fallen { Status::Collapse } else { Status::Stalled },
         format!(
             "{MOST_STEPS} steps were not enough; the last state is at factor {factor}: larger steps (continuation, first_step) or event_path may pass"
         ),

@@ -29,14 +29,13 @@ pub(super) fn step_energy(tracer: &mut Tracer, next: &State) -> StepEnergy {
     let gradient = tracer.system.gradient(next);
     let (energy, _) = foreseen(tracer, next, &gradient);
     let after = recorded(&energy, &tracer.system, tracer.load_step, next, &gradient);
-    let stage = tracer.system.problem.load_steps[tracer.load_step].stage;
-    let (balance, left) = tracer.record.balance.after(stage, &tracer.record.state, &after);
+    let (problem, finite, before) = (tracer.system.problem, tracer.system.finite(), &tracer.record.state);
+    let (balance, left) = tracer.record.balance.after(problem, finite, before, &after);
     let scale = balance.scale(after.stored).max(NOTHING * tracer.system.units().energy());
     let growth = (STEP * scale / left.abs().max(1e-300)).sqrt();
     // Bonds that soften are followed more closely step by step.
     let most = if tracer.system.laws.responses.is_empty() { STAGE } else { STEP };
-    let before = &tracer.record.state;
-    let moved = (after.work - before.work).abs() + (after.dissipated - before.dissipated).abs();
+    let moved = problem.gross_work(before, &after, finite) + (after.dissipated - before.dissipated).abs();
     let in_budget = left.abs() <= most * scale && balance.left().abs() <= STAGE * scale;
     StepEnergy { growth, holds: in_budget || left.abs() <= (most * moved).max(ROUNDING * scale) }
 }

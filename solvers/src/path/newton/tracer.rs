@@ -116,8 +116,8 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut next);
     let seen = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
-    let stage = tracer.system.problem.load_steps[tracer.load_step].stage;
-    tracer.record.balance = tracer.record.balance.after(stage, &tracer.record.state, &seen).0;
+    let (problem, finite) = (tracer.system.problem, tracer.system.finite());
+    tracer.record.balance = tracer.record.balance.after(problem, finite, &tracer.record.state, &seen).0;
     tracer.record.state = seen;
     tracer.state = next;
     tracer.record.work = work;
