@@ -22,10 +22,10 @@ const APART: f64 = 1e-6;
 fn scene(k: usize) -> SettledScene {
     let mut random = Random::new(5000 + k as u64);
     let shape = if k % 3 == 2 { Shape::Pier } else { Shape::Arch };
-    let deforming = if k % 2 == 0 { Deforming::Compliant } else { Deforming::Elastic };
+    let deforming = if k.is_multiple_of(2) { Deforming::Compliant } else { Deforming::Elastic };
     let settling = Settling::ALL[(k / 2) % 5];
     // Half of them without settlement.
-    let size = if (k / 2) % 2 == 0 { 0.0 } else { 10f64.powf(random.uniform(-4.0, -2.3)) };
+    let size = if (k / 2).is_multiple_of(2) { 0.0 } else { 10f64.powf(random.uniform(-4.0, -2.3)) };
     settled_scene(&mut random, Draw { shape, deforming, settling, size, stuck: k % 4 == 3 })
 }
 
