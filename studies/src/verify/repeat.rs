@@ -32,7 +32,7 @@ struct Comparison {
 }
 
 /// What is different in `stored` from `again`, in words; nothing where they are the same, or the same but for the
-/// rounding of another machine. Keys of [`COST`] at the top are not looked at.
+/// rounding of another machine. Keys of `COST` at the top are not looked at.
 pub fn differences(stored: &Json, again: &Json) -> Vec<String> {
     let mut comparison = Comparison::default();
     comparison.entry(&without_cost(stored), &without_cost(again), "", 0.0);

@@ -15,8 +15,7 @@
 //! - `unilateral` with `tangential = "stuck"`: s = 0, at open points too, because that law bounds r_n only. There the
 //!   comparison with the program's paths is exact, and states have no history.
 //! - `coulomb`: near the tip of a crack r_n → 0, so friction is reached there in every scene with shear, however large
-//!   μ is. With s = 0 the comparison is then approximate, by what those few points carry;
-//!   [`Friction`] follows the slip point by point instead.
+//!   μ is. With s = 0 the comparison is then approximate, by what those few points carry; slip is not followed.
 //!
 //! With the load point held (ℓ·q given) λ is the multiplier of that constraint, and minima are the states that are
 //! stable under control of the displacement. The pole P of a loaded block is its load point, so that ℓ·q is the
