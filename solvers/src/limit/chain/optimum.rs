@@ -41,6 +41,9 @@ fn same(a: Column, b: Column) -> bool {
 }
 
 fn rank(matrix: &DMatrix<f64>) -> usize {
+    if matrix.is_empty() {
+        return 0;
+    }
     let mut scaled = matrix.clone();
     for mut column in scaled.column_iter_mut() {
         let norm = column.norm();

@@ -112,6 +112,9 @@ impl Engine for ChainEngine<'_> {
         let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &[(varying, factor_unit)], force);
         let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
         match self.run(&program) {
+            Outcome::Optimal(Solved { columns, capped: false, .. }) if columns.is_empty() => {
+                Greatest::Failed("the optimum of the simplex has no mechanism".into())
+            }
             Outcome::Optimal(Solved { value, point, columns, capped: false }) => {
                 let (columns, unique) = centre(&program, &point, columns);
                 let motion = program.motion(self.problem, &self.trees, &columns);
