@@ -1,5 +1,6 @@
 //! Study kinds: what is done with the cases of a study. One file each; file = tag.
 
+mod by_case;
 mod case_study;
 pub mod compare;
 pub mod envelope;
@@ -11,8 +12,10 @@ pub mod point;
 mod read;
 pub mod run;
 mod search;
+mod streamed;
 
 pub use kind::{
-    KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
+    CasesOf, KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind,
+    kinds,
 };
 pub use read::read_study;

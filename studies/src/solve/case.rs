@@ -78,14 +78,16 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     result.certificate.failures.extend(wrong);
 }
 
+/// Solves one case while an observer looks on.
+pub fn solve_followed(case: &Case, observer: &dyn Observer) -> CaseResult {
+    let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
+    observer.answered(&result);
+    result
+}
+
 /// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`.
 pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-    let one = |id: &usize| {
-        let case = &study.cases[*id];
-        let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
-        observer.answered(&result);
-        result
-    };
+    let one = |id: &usize| solve_followed(&study.cases[*id], observer);
     if jobs > 1 {
         side_by_side(jobs, || wanted.par_iter().map(one).collect())
     } else {

@@ -12,6 +12,7 @@ mod page;
 mod register;
 pub mod report;
 pub mod results_json;
+pub mod stream;
 mod study_output;
 pub mod table;
 pub mod vtu;
