@@ -129,6 +129,7 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
     let dispersion: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
     let spread = dispersion.map_or_else(|| vec![patch], |law| law.spread(patch, &fill));
     let reach = spread.iter().map(|part| patch.from - part.from).fold(0.0, f64::max);
+    let parts = spread.len();
     let mut forces = Vec::new();
     for Patch { from, to, share } in spread {
         let force = Vec2::new(0.0, -share);
@@ -141,7 +142,24 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
         let movable = under.into_iter().filter(|chord| site.moves(chord.body));
         forces.extend(movable.map(|chord| PointForce { body: chord.body, point: chord.at(from), force: each }));
     }
+    let forces = if parts > 1 { merged(site, forces) } else { forces };
     Ok(Some(FromRoad { forces, reach }))
+}
+
+/// Downward forces with one resultant for each rigid block: on its straight chord, where they stand.
+fn merged(site: &LoadSite, forces: Vec<PointForce>) -> Vec<PointForce> {
+    let mut out: Vec<PointForce> = Vec::new();
+    for force in forces {
+        match out.iter_mut().find(|other| other.body == force.body && site.assembly.is_rigid(force.body)) {
+            Some(other) => {
+                let sum = other.force + force.force;
+                other.point += (force.point - other.point) * (force.force.y / sum.y);
+                other.force = sum;
+            }
+            None => out.push(force),
+        }
+    }
+    out
 }
 
 /// The layers between the road and a level at x, from the lowest.

@@ -1,15 +1,18 @@
 //! `bridge`: spans of one or several rings on abutments and piers, with fill.
 #![doc = include_str!("bridge.md")]
 
+mod damage;
 mod fill;
 mod keys;
 mod piers;
 mod rings;
 
+pub use self::damage::{Damage, Face};
 pub use self::fill::{Extent, Fill, Haunching, Layer};
 pub use self::piers::{Footing, Pier};
 pub use self::rings::{Counts, RadialJoints, Span};
 
+use self::damage::RingPlace;
 use self::piers::PierBlocks;
 use self::rings::SpanBlocks;
 use super::arch::Ends;
@@ -45,6 +48,9 @@ pub struct BridgeScene {
     pub piers: Vec<Pier>,
     /// Its fill.
     pub fill: Option<Fill>,
+    /// What time and water have taken.
+    #[serde(default)]
+    pub damage: Vec<Damage>,
     /// Mesh of deformable blocks.
     pub mesh: Option<Mesh>,
 }
@@ -123,6 +129,8 @@ struct Builder {
     radial: Vec<Joint>,
     other: Vec<Joint>,
     extrados: Vec<Chord>,
+    /// By span and ring.
+    rings: Vec<Vec<RingPlace>>,
 }
 
 impl Builder {
@@ -143,10 +151,11 @@ impl Builder {
         material: usize,
     ) {
         let [bond, ring_bond, springing] = bonds;
-        let mut first = Vec::new();
+        let (mut first, mut places) = (Vec::new(), Vec::new());
         for (r, ring) in blocks.rings.iter().enumerate() {
             first.push(self.bodies.len());
             let count = ring.voussoirs.len();
+            places.push(RingPlace { body: self.bodies.len(), joint: self.radial.len(), count });
             for (k, vertices) in ring.voussoirs.iter().enumerate() {
                 let name = if alone { k.to_string() } else { format!("s{index}r{r}v{k}") };
                 let body = self.body(name, vertices.clone(), material, false);
@@ -159,6 +168,7 @@ impl Builder {
             let end = Joint { minus, plus: usize::MAX, ends: ring.joints[count], bond: springing, gap: Gap::default() };
             self.radial.push(end);
         }
+        self.rings.push(places);
         for (r, interface) in blocks.interfaces.iter().enumerate() {
             for (below, above, ends) in interface {
                 let (minus, plus) = (first[r] + below, first[r + 1] + above);
@@ -268,14 +278,18 @@ impl Scene for BridgeScene {
         let indices = self.indices(catalogue).map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let shapes = self.shapes().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(indices), Some(shapes)) = (indices, shapes) else { return Err(from_root(diagnostics)) };
-        let Builder { bodies, radial, other, extrados } = self.put_together(&shapes, &indices);
+        let mut builder = self.put_together(&shapes, &indices);
+        builder.damage(&self.damage, catalogue).map_err(from_root)?;
+        let Builder { bodies, radial, other, extrados, rings: _ } = builder;
         if let Some(wrong) = overlap(&bodies) {
             return Err(from_root(vec![wrong]));
         }
         let ends = [shapes.spans[0].springing(0)[0], shapes.spans[shapes.spans.len() - 1].springing(1)[0]];
-        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1;
+        // A repointed joint is two: then joints are not numbered along the ring.
+        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1 && other.is_empty();
         let ring = || {
-            let crown = radial.iter().fold(f64::NEG_INFINITY, |top, joint| top.max(joint.ends[0].y));
+            let joints = &shapes.spans[0].rings[0].joints;
+            let crown = joints.iter().fold(f64::NEG_INFINITY, |top, ends| top.max(ends[0].y));
             let rise = crown - (ends[0].y + ends[1].y) / 2.0;
             ArchLayout { first: 1, voussoirs: radial.len() - 1, span: ends[1].x - ends[0].x, rise }
         };

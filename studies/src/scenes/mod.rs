@@ -10,6 +10,7 @@ pub mod mesh;
 pub mod profile;
 #[cfg(test)]
 pub(crate) mod test_catalogue;
+pub mod thickness;
 pub mod wall;
 
 pub(crate) use keys::POINT;

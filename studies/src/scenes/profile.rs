@@ -2,12 +2,13 @@
 //! voussoirs. x = 0 at midspan, y = 0 at the intrados springings.
 //!
 //! Joints are normal to the intrados at equal arc length (on a segmental arch at equal angles, the
-//! same thing), the thickness is measured along them. At the apex of a pointed arch, where the
+//! same thing), the thickness is measured along them; it may grow from the crown to the springings. At the apex of a pointed arch, where the
 //! intrados has no normal, the joint is upright. Sources: plane geometry; the catenary after
 //! Bernoulli, Huygens and Leibniz (1691).
 
 use super::curve::Curve;
 use super::lookup::out_of_range;
+use super::thickness::Thickness;
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::crosses_itself;
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, is_convex};
@@ -196,7 +197,7 @@ impl Profile {
     /// `points`, which hold them. Issues have paths from the scene's table.
     pub fn ring(
         &self,
-        thickness: Option<f64>,
+        thickness: Option<Thickness>,
         voussoirs: Option<usize>,
         springing: Option<Springing>,
     ) -> Result<Ring, Vec<Diagnostic>> {
@@ -206,7 +207,7 @@ impl Profile {
         let mut diagnostics = Vec::new();
         match thickness {
             None => diagnostics.push(Diagnostic::new("thickness", "is missing: the thickness of the ring [m]")),
-            Some(thickness) => diagnostics.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
+            Some(thickness) => diagnostics.extend(thickness.mistakes()),
         }
         match voussoirs {
             None => diagnostics.push(Diagnostic::new("voussoirs", "is missing: the number of voussoirs")),
@@ -227,6 +228,10 @@ impl Profile {
         }
         let mut ring = ring_on(&curve, thickness, voussoirs);
         if let Some(springing) = springing {
+            let Some(thickness) = thickness.even() else {
+                let wrong = Diagnostic::new("springing", "is given besides a thickness that varies");
+                return Err(vec![wrong.help("the end joints are normal to the intrados there; remove this key")]);
+            };
             move_springings(&mut ring, &curve, thickness, springing)?;
         }
         check_voussoirs(&ring, springing)?;
@@ -295,12 +300,12 @@ fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Diagnostic> 
 }
 
 /// Joints normal to the curve at equal arc length. Joint N − k is the exact mirror image of joint k.
-fn ring_on(curve: &Curve, thickness: f64, voussoirs: usize) -> Ring {
+fn ring_on(curve: &Curve, thickness: Thickness, voussoirs: usize) -> Ring {
     let (mut intrados, mut extrados) = (Vec::new(), Vec::new());
     for k in 0..=voussoirs {
         let from_crown = (2 * k).abs_diff(voussoirs);
         let (point, normal) = curve.at_share(from_crown, voussoirs);
-        let outer = point + normal * thickness;
+        let outer = point + normal * thickness.at(from_crown as f64 / voussoirs as f64);
         let left = 2 * k < voussoirs;
         intrados.push(if left { mirrored(point) } else { point });
         extrados.push(if left { mirrored(outer) } else { outer });
@@ -365,7 +370,7 @@ fn is_sound(vertices: &[Vec2]) -> bool {
 fn ring_of_points(
     intrados: &[[f64; 2]],
     extrados: &[[f64; 2]],
-    thickness: Option<f64>,
+    thickness: Option<Thickness>,
     voussoirs: Option<usize>,
     springing: Option<Springing>,
 ) -> Result<Ring, Vec<Diagnostic>> {

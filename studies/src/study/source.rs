@@ -1,5 +1,6 @@
 //! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
 
+use super::documented_vehicles;
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, parse, parse_value};
 use crate::config::origin::Origin;
@@ -26,6 +27,7 @@ impl StudySource {
             let origin = Origin::Set(path.as_str().into());
             diagnostics.extend(set(&mut root, path, value_of(value, &origin), &origin).err().map(|wrong| *wrong));
         }
+        documented_vehicles::add(&mut root);
         if let Some(node) = root.table().and_then(|table| table.get("name"))
             && let Some(wrong) = node.text().and_then(no_file_name)
         {
