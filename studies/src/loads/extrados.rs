@@ -8,7 +8,7 @@
 use super::dispersion::{Dispersion, Patch, Through};
 use super::site::LoadSite;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{CONTACT_TOLERANCE, Chord, PointForce, carried};
+use voussoir_core::model::{CONTACT_TOLERANCE, Chord, LoadSpread, PointForce, carried};
 use voussoir_core::plugin::Diagnostic;
 
 /// Share of the scene's size within which a load is at a vertex.
@@ -117,6 +117,8 @@ pub struct FromRoad {
     pub forces: Vec<PointForce>,
     /// How far the patch reaches beyond its own ends after its way through the fill \[m\].
     pub reach: f64,
+    /// The same for drawings.
+    pub spread: LoadSpread,
 }
 
 /// A load of 1 N, even over a patch of the road, spread in the fill; `None` where its centre is off the bridge.
@@ -143,7 +145,11 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
         forces.extend(movable.map(|chord| PointForce { body: chord.body, point: chord.at(from), force: each }));
     }
     let forces = if parts > 1 { merged(site, forces) } else { forces };
-    Ok(Some(FromRoad { forces, reach }))
+    let ends = |y: f64, reach: f64| [Vec2::new(patch.from - reach, y), Vec2::new(patch.to + reach, y)];
+    let level = chord.at(centre).y;
+    let road = site.assembly.bridge.as_ref().and_then(|bridge| bridge.road_at(centre)).unwrap_or(level);
+    let spread = LoadSpread { on_road: ends(road, 0.0), below: ends(level, reach) };
+    Ok(Some(FromRoad { forces, reach, spread }))
 }
 
 /// Downward forces with one resultant for each rigid block: on its straight chord, where they stand.

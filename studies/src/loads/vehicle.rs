@@ -92,6 +92,7 @@ impl LoadKind for VehicleLoad {
                     continue;
                 };
                 let force = share * axle.force * axle.lift_off * width / self.carrying(axle, width, spread.reach);
+                placed.spreads.push(spread.spread);
                 placed.forces.extend(spread.forces.into_iter().map(|mut part| {
                     part.force *= force;
                     part
