@@ -2,7 +2,7 @@
 
 use super::codes::{NO_ACCESS, WRONG_INPUT};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::kinds::{LoadedStudy, read_study};
+use crate::kinds::{LoadedStudy, read_study_with};
 use std::path::Path;
 
 /// Reads a file, or says why not.
@@ -40,7 +40,9 @@ pub fn overrides(sets: &[String]) -> Result<Vec<(String, String)>, u8> {
 /// Reads a study of any kind, printing every mistake in it.
 pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStudy>, u8> {
     let text = read(path)?;
-    read_study(&text, &path.display().to_string(), sets).map_err(|diagnostics| report(path, &diagnostics))
+    let beside = path.parent().unwrap_or(Path::new(""));
+    let named = |file: &str| std::fs::read_to_string(beside.join(file)).map_err(|error| error.to_string());
+    read_study_with(&text, &path.display().to_string(), sets, &named).map_err(|diagnostics| report(path, &diagnostics))
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {

@@ -111,8 +111,10 @@ pub fn mark_lost_mortar(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
     for (index, joint) in assembly.joints.iter().take(bridge.radial).enumerate() {
         let along = joint.frame().1;
         for (end, outwards) in [(joint.ends[0], -along), (joint.ends[1], along)] {
-            let vertices = [joint.minus, joint.plus].map(|body| &assembly.bodies[body].vertices);
-            let beyond = vertices.into_iter().flatten().filter(|vertex| {
+            // The cap of a pier reaches over all rings that stand on it.
+            let voussoirs = [joint.minus, joint.plus].map(|body| &assembly.bodies[body]);
+            let voussoirs = voussoirs.into_iter().filter(|body| !body.name.starts_with('p'));
+            let beyond = voussoirs.flat_map(|body| &body.vertices).filter(|vertex| {
                 let way = **vertex - end;
                 way.norm() > 1e-9 * size && (way.normalize() - outwards).norm() < 1e-6
             });

@@ -15,4 +15,4 @@ mod search;
 pub use kind::{
     KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
 };
-pub use read::read_study;
+pub use read::{read_study, read_study_with};

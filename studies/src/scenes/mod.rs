@@ -8,6 +8,7 @@ mod keys;
 mod lookup;
 pub mod mesh;
 pub mod profile;
+mod surveyed;
 #[cfg(test)]
 pub(crate) mod test_catalogue;
 pub mod thickness;

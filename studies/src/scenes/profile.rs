@@ -8,6 +8,7 @@
 
 use super::curve::Curve;
 use super::lookup::out_of_range;
+use super::surveyed::cut;
 use super::thickness::Thickness;
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::crosses_itself;
@@ -65,8 +66,19 @@ pub enum Profile {
     /// Vertices joint by joint, from left to right.
     Points {
         /// Intrados end of each joint \[m\].
+        #[serde(default)]
         intrados: Vec<[f64; 2]>,
         /// Extrados end of each joint \[m\].
+        #[serde(default)]
+        extrados: Vec<[f64; 2]>,
+    },
+    /// Points along the faces of the ring, cut into voussoirs of equal length.
+    Surveyed {
+        /// Points of the intrados from springing to springing \[m\].
+        #[serde(default)]
+        intrados: Vec<[f64; 2]>,
+        /// Points of the extrados \[m\].
+        #[serde(default)]
         extrados: Vec<[f64; 2]>,
     },
 }
@@ -76,6 +88,17 @@ const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSIT
 const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
 
 const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
+const SURVEY: Parameter = Parameter {
+    name: "file",
+    doc: "a table of them beside the study: a line a point, columns curve, x, y, or a line a joint, columns intrados_x, \
+          intrados_y, extrados_x, extrados_y; a unit may follow a name: x [mm]",
+    shape: Shape::Text,
+    need: Need::Optional("intrados and extrados are given"),
+};
+
+const fn vertices(name: &'static str, doc: &'static str) -> Parameter {
+    Parameter { name, doc, shape: VERTICES, need: Need::Optional("file is given") }
+}
 
 /// What a profile may hold.
 pub const PROFILE: Shape = Shape::Tagged {
@@ -112,18 +135,18 @@ pub const PROFILE: Shape = Shape::Tagged {
             tag: "points",
             doc: "vertices joint by joint, from left to right",
             parameters: &[
-                Parameter {
-                    name: "intrados",
-                    doc: "intrados end of each joint",
-                    shape: VERTICES,
-                    need: Need::Required,
-                },
-                Parameter {
-                    name: "extrados",
-                    doc: "extrados end of each joint",
-                    shape: VERTICES,
-                    need: Need::Required,
-                },
+                vertices("intrados", "intrados end of each joint"),
+                vertices("extrados", "extrados end of each joint"),
+                SURVEY,
+            ],
+        },
+        Variant {
+            tag: "surveyed",
+            doc: "points along both faces, cut into `voussoirs` of equal length along the intrados",
+            parameters: &[
+                vertices("intrados", "points of the intrados from springing to springing"),
+                vertices("extrados", "points of the extrados, beginning and ending at the springing faces"),
+                SURVEY,
             ],
         },
     ],
@@ -204,6 +227,13 @@ impl Profile {
         if let Profile::Points { intrados, extrados } = self {
             return ring_of_points(intrados, extrados, thickness, voussoirs, springing);
         }
+        if let Profile::Surveyed { intrados, extrados } = self {
+            let Some(voussoirs) = voussoirs else {
+                return Err(vec![Diagnostic::new("voussoirs", "is missing: the number of voussoirs")]);
+            };
+            let [intrados, extrados] = cut(intrados, extrados, voussoirs)?;
+            return ring_of_points(&intrados, &extrados, thickness, None, springing);
+        }
         let mut diagnostics = Vec::new();
         match thickness {
             None => diagnostics.push(Diagnostic::new("thickness", "is missing: the thickness of the ring [m]")),
@@ -247,7 +277,7 @@ impl Profile {
             | Profile::Catenary { span, rise }
             | Profile::Pointed { span, rise }
             | Profile::ThreeCentred { span, rise, .. } => (span, rise),
-            Profile::Points { .. } => unreachable!("a list of points is no curve"),
+            Profile::Points { .. } | Profile::Surveyed { .. } => unreachable!("a list of points is no curve"),
         };
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("profile.span", span, Range::POSITIVE));
@@ -273,7 +303,7 @@ impl Profile {
             ]),
             Profile::Pointed { .. } => Ok(Curve::pointed(span, rise)),
             Profile::ThreeCentred { crown_radius, .. } => three_centred(span, rise, crown_radius).map_err(|i| vec![i]),
-            Profile::Points { .. } => unreachable!("returned above"),
+            Profile::Points { .. } | Profile::Surveyed { .. } => unreachable!("returned above"),
         }
     }
 }

@@ -17,6 +17,7 @@ mod plausibility;
 mod solver;
 mod source;
 mod stages;
+mod survey;
 
 pub(crate) use assemble::read_plugin;
 pub use diagnostics::DiagnosticList;
@@ -27,3 +28,4 @@ pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study};
 pub use outline::Outline;
 pub use partial_factors::design;
 pub use source::{StudySource, kind_of};
+pub use survey::{ReadFile, no_files};

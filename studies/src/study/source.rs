@@ -1,6 +1,7 @@
 //! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
 
 use super::documented_vehicles;
+use super::survey::{ReadFile, import, no_files};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, parse, parse_value};
 use crate::config::origin::Origin;
@@ -21,6 +22,16 @@ impl StudySource {
     /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
     /// a value that is no TOML is taken as text. Errors are those of syntax.
     pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+        Self::parse_with(text, file, sets, &no_files)
+    }
+
+    /// As [`StudySource::parse`]; the files that the study names are read by `read`.
+    pub fn parse_with(
+        text: &str,
+        file: &str,
+        sets: &[(String, String)],
+        read: ReadFile,
+    ) -> Result<Self, Vec<LocatedDiagnostic>> {
         let mut root = parse(text, file)?;
         let mut diagnostics = Vec::new();
         for (path, value) in sets {
@@ -28,6 +39,12 @@ impl StudySource {
             diagnostics.extend(set(&mut root, path, value_of(value, &origin), &origin).err().map(|wrong| *wrong));
         }
         documented_vehicles::add(&mut root);
+        let before = diagnostics.len();
+        import(&mut root, read, &mut diagnostics);
+        // What a survey lacks would be missing in the study too.
+        if diagnostics.len() > before {
+            return Err(diagnostics);
+        }
         if let Some(node) = root.table().and_then(|table| table.get("name"))
             && let Some(wrong) = node.text().and_then(no_file_name)
         {

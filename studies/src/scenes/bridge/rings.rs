@@ -165,6 +165,7 @@ impl Span {
     fn crown(&self, ring: &Ring) -> f64 {
         let highest = ring.extrados.iter().fold(f64::NEG_INFINITY, |top, point| top.max(point.y));
         match (&self.profile, self.thickness) {
+            (Profile::Surveyed { extrados, .. }, _) => extrados.iter().fold(highest, |top, point| top.max(point[1])),
             (Profile::Points { .. }, _) | (_, None) => highest,
             (_, Some(thickness)) => highest.max(ring.rise + thickness.at(0.0)),
         }
