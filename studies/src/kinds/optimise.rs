@@ -9,7 +9,7 @@ use self::request::{Request, STRIDE};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudySource};
 use serde_json::Value as Json;
 use std::borrow::Cow;
@@ -122,7 +122,7 @@ impl StudyKind for Optimise {
                 let first = study.cases.len() + base * STRIDE;
                 let solve = |index: usize, value: f64| {
                     let case = request.case(study, base, first + index, value)?;
-                    let result = solve_case(&case);
+                    let result = solve_unless_cancelled(&case, observer)?;
                     Some((request.merit(&case, &result), result))
                 };
                 search::best_value(&request, &solve)

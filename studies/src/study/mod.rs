@@ -4,8 +4,10 @@
 //! the whole file is reported at once. Solving the cases is not done here.
 
 mod assemble;
+mod builder;
 mod case;
 mod diagnostics;
+mod error;
 mod export;
 mod keys;
 mod load;
@@ -17,7 +19,9 @@ mod source;
 mod stages;
 
 pub(crate) use assemble::read_plugin;
+pub use builder::StudyBuilder;
 pub use diagnostics::DiagnosticList;
+pub use error::StudyError;
 pub use export::as_blocks;
 pub use keys::{OUTPUT, VARIANT, study_keys};
 pub use load::load;

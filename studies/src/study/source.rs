@@ -1,9 +1,10 @@
 //! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
 
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::config::document::{Node, Value, parse, parse_value};
+use crate::config::document::{Node, Value, from_json, parse, parse_value};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
+use serde_json::Value as Json;
 
 /// A study file as a tree of keys, and what was found wrong with it so far.
 #[derive(Debug, Clone)]
@@ -20,18 +21,36 @@ impl StudySource {
     /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
     /// a value that is no TOML is taken as text. Errors are those of syntax.
     pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
-        let mut root = parse(text, file)?;
-        let mut diagnostics = Vec::new();
+        let mut source = StudySource { root: parse(text, file)?, sets: sets.to_vec(), diagnostics: Vec::new() };
         for (path, value) in sets {
             let origin = Origin::Set(path.as_str().into());
-            diagnostics.extend(set(&mut root, path, value_of(value, &origin), &origin).err().map(|wrong| *wrong));
+            source.set(path, value_of(value, &origin), &origin);
         }
-        if let Some(node) = root.table().and_then(|table| table.get("name"))
+        Ok(source.named())
+    }
+
+    /// A study from a value that a program has made, with the tables and keys of a study file; then `sets`, keys
+    /// and values in order. Errors are values that no study can hold.
+    pub fn of_value(value: &Json, sets: &[(String, Json)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let mut source = StudySource { root: from_json(value)?, sets: Vec::new(), diagnostics: Vec::new() };
+        for (path, value) in sets {
+            source.set(path, from_json(value)?, &Origin::Value);
+        }
+        Ok(source.named())
+    }
+
+    fn set(&mut self, path: &str, value: Node, origin: &Origin) {
+        self.diagnostics.extend(set(&mut self.root, path, value, origin).err().map(|wrong| *wrong));
+    }
+
+    /// The same with what is wrong with its name.
+    fn named(mut self) -> Self {
+        if let Some(node) = self.root.table().and_then(|table| table.get("name"))
             && let Some(wrong) = node.text().and_then(no_file_name)
         {
-            diagnostics.push(LocatedDiagnostic::new(&node.origin, "name", wrong).help(FILE_NAME));
+            self.diagnostics.push(LocatedDiagnostic::new(&node.origin, "name", wrong).help(FILE_NAME));
         }
-        Ok(StudySource { root, sets: sets.to_vec(), diagnostics })
+        self
     }
 
     /// The tag of the study's kind.
