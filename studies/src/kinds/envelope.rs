@@ -11,7 +11,7 @@ use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use super::search::{case_at, range_mistakes};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudySource};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -76,14 +76,14 @@ voussoir_core::inventory::submit! {
 
 impl Envelope {
     /// All places of all runs of one case of the study, in order of id.
-    fn of_case(&self, study: &Study, base: usize, request: &Request) -> Vec<CaseResult> {
+    fn of_case(&self, study: &Study, base: usize, request: &Request, observer: &dyn Observer) -> Vec<CaseResult> {
         let case = &study.cases[base];
         let runs = request.runs(case);
         let run = |(number, run): (usize, &Run)| {
             let first = study.cases.len() + (base * runs.len() + number) * STRIDE;
             let solve = |index: usize, value: f64| {
                 let case = case_at(study, base, first + index, &request.values(run, value))?;
-                Some(solve_case(&case))
+                solve_unless_cancelled(&case, observer)
             };
             let places = places::places(case, request, run);
             search::worst_place(&places, request, &solve)
@@ -119,7 +119,7 @@ impl StudyKind for Envelope {
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = Request::of(&study.outline) else { return results };
-        let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request)).collect::<Vec<_>>();
+        let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request, observer)).collect::<Vec<_>>();
         results.extend(side_by_side(jobs, all));
         results
     }

@@ -10,9 +10,11 @@ pub mod optimise;
 pub mod point;
 mod read;
 pub mod run;
+mod run_study;
 mod search;
 
 pub use kind::{
     KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
 };
-pub use read::{read_study, read_study_with};
+pub use read::{read_source, read_study};
+pub use run_study::RunOptions;

@@ -10,7 +10,7 @@ use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use super::search::{case_at, range_mistakes};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudySource};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -111,7 +111,7 @@ impl StudyKind for Optimise {
                 let first = study.cases.len() + base * STRIDE;
                 let solve = |index: usize, value: f64| {
                     let case = case_at(study, base, first + index, &request.values(value))?;
-                    let result = solve_case(&case);
+                    let result = solve_unless_cancelled(&case, observer)?;
                     Some((request.merit(&case, &result), result))
                 };
                 search::best_value(&request, &solve)

@@ -2,7 +2,7 @@
 
 use super::kind::{LoadedStudy, kind, kinds};
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
-use crate::study::{ReadFile, StudySource, no_files};
+use crate::study::StudySource;
 
 /// Reads a study of any kind; every mistake at once. Arguments as of [`crate::study::load`].
 pub fn read_study(
@@ -10,17 +10,11 @@ pub fn read_study(
     file: &str,
     sets: &[(String, String)],
 ) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-    read_study_with(text, file, sets, &no_files)
+    read_source(StudySource::parse(text, file, sets)?)
 }
 
-/// As [`read_study`]; the files that the study names are read by `read`.
-pub fn read_study_with(
-    text: &str,
-    file: &str,
-    sets: &[(String, String)],
-    read: ReadFile,
-) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-    let source = StudySource::parse_with(text, file, sets, read)?;
+/// Reads a study of any kind from its source.
+pub fn read_source(source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
     // A kind that does not exist is one mistake among others of a file with a scene.
     let kind = kind(source.kind()).or_else(|| kind("run"));
     match kind {

@@ -1,6 +1,7 @@
 //! `bridge`: spans of one or several rings on abutments and piers, with fill.
 #![doc = include_str!("bridge.md")]
 
+mod builder;
 mod damage;
 mod fill;
 mod keys;
@@ -12,7 +13,7 @@ pub use self::fill::{Extent, Fill, Haunching, Layer};
 pub use self::piers::{Footing, Pier};
 pub use self::rings::{Counts, RadialJoints, Span};
 
-use self::damage::RingPlace;
+use self::builder::Builder;
 use self::piers::PierBlocks;
 use self::rings::SpanBlocks;
 use super::arch::Ends;
@@ -20,10 +21,8 @@ use super::keys::PlaneState;
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use serde::{Deserialize, Serialize};
-use voussoir_core::model::geometry::{Vec2, bounding_box};
-use voussoir_core::model::{
-    ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Chord, Gap, Joint, Scene, find_joints,
-};
+use voussoir_core::model::geometry::bounding_box;
+use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Scene, find_joints};
 use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Range, check_as};
 
 /// Spans on abutments and piers, with fill.
@@ -119,99 +118,6 @@ struct Indices {
     material: usize,
     joint: usize,
     ring_joint: usize,
-}
-
-/// Bodies and joints as they are put together.
-#[derive(Default)]
-struct Builder {
-    bodies: Vec<Body>,
-    /// Across rings; they come first.
-    radial: Vec<Joint>,
-    other: Vec<Joint>,
-    extrados: Vec<Chord>,
-    /// By span and ring.
-    rings: Vec<Vec<RingPlace>>,
-}
-
-impl Builder {
-    fn body(&mut self, name: String, vertices: Vec<Vec2>, material: usize, fixed: bool) -> usize {
-        self.bodies.push(Body { name, vertices, material, fixed });
-        self.bodies.len() - 1
-    }
-
-    /// The rings of a span on what stands `before` it; `bonds` of joints across rings, between rings, at springings.
-    /// The joints at its end are left without the body that comes after.
-    fn span(
-        &mut self,
-        index: usize,
-        blocks: &SpanBlocks,
-        before: usize,
-        bonds: [Bond; 3],
-        alone: bool,
-        material: usize,
-    ) {
-        let [bond, ring_bond, springing] = bonds;
-        let (mut first, mut places) = (Vec::new(), Vec::new());
-        for (r, ring) in blocks.rings.iter().enumerate() {
-            first.push(self.bodies.len());
-            let count = ring.voussoirs.len();
-            places.push(RingPlace { body: self.bodies.len(), joint: self.radial.len(), count });
-            for (k, vertices) in ring.voussoirs.iter().enumerate() {
-                let name = if alone { k.to_string() } else { format!("s{index}r{r}v{k}") };
-                let body = self.body(name, vertices.clone(), material, false);
-                let minus = if k == 0 { before } else { body - 1 };
-                let bond = if k == 0 { springing } else { bond };
-                self.radial.push(Joint { minus, plus: body, ends: ring.joints[k], bond, gap: Gap::default() });
-            }
-            let minus = self.bodies.len() - 1;
-            // The next body is not yet known: `usize::MAX` stands for it.
-            let end = Joint { minus, plus: usize::MAX, ends: ring.joints[count], bond: springing, gap: Gap::default() };
-            self.radial.push(end);
-        }
-        self.rings.push(places);
-        for (r, interface) in blocks.interfaces.iter().enumerate() {
-            for (below, above, ends) in interface {
-                let (minus, plus) = (first[r] + below, first[r + 1] + above);
-                self.other.push(Joint { minus, plus, ends: *ends, bond: ring_bond, gap: Gap::default() });
-            }
-        }
-        if let (Some(outermost), Some(first)) = (blocks.rings.last(), first.last()) {
-            let count = outermost.voussoirs.len();
-            self.extrados.extend((0..count).map(|k| Chord {
-                body: first + k,
-                ends: [outermost.joints[k][1], outermost.joints[k + 1][1]],
-                from_middle: (2 * k + 1).abs_diff(count),
-            }));
-        }
-    }
-
-    /// Joins the rings that end here to a body.
-    fn join_ends(&mut self, body: usize) {
-        self.radial.iter_mut().filter(|joint| joint.plus == usize::MAX).for_each(|joint| joint.plus = body);
-    }
-
-    /// A pier, on which the rings before it end; returns the body on which the next span begins.
-    fn pier(&mut self, index: usize, pier: &Pier, blocks: &PierBlocks, bond: Bond, material: usize) -> usize {
-        let cap = blocks.cap.as_ref().map(|cap| self.body(format!("p{index}cap"), cap.clone(), material, false));
-        let courses: Vec<usize> = (blocks.courses.iter().enumerate())
-            .map(|(i, course)| self.body(format!("p{index}c{i}"), course.clone(), material, false))
-            .collect();
-        let ground = self.body(format!("footing{index}"), Vec::new(), material, true);
-        let top = cap.unwrap_or(courses[0]);
-        self.join_ends(top);
-        if let Some(ends) = blocks.top {
-            self.extrados.push(Chord { body: top, ends, from_middle: Chord::NO_RING });
-        }
-        let below = courses.iter().copied().chain([ground]);
-        let above = cap.into_iter().chain(courses.iter().copied());
-        let levels = if cap.is_some() { &blocks.levels[..] } else { &blocks.levels[1..] };
-        let below = below.skip(usize::from(cap.is_none()));
-        for ((minus, plus), [left, right]) in below.zip(above).zip(levels) {
-            let bond = if minus == ground && pier.footing == Footing::Bonded { Bond::Bonded } else { bond };
-            self.other.push(Joint { minus, plus, ends: [*right, *left], bond, gap: Gap::default() });
-        }
-        top
-    }
 }
 
 impl BridgeScene {

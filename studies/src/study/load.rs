@@ -27,11 +27,6 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
 }
 
 impl Study {
-    /// Reads a study from TOML.
-    pub fn from_toml(text: &str) -> Result<Study, Vec<LocatedDiagnostic>> {
-        load(text, "study", &[])
-    }
-
     /// The study that a source describes.
     pub fn from_source(source: StudySource) -> Result<Study, Vec<LocatedDiagnostic>> {
         let StudySource { root, sets, mut diagnostics } = source;

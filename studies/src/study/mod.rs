@@ -4,9 +4,11 @@
 //! the whole file is reported at once. Solving the cases is not done here.
 
 mod assemble;
+mod builder;
 mod case;
 mod diagnostics;
 mod documented_vehicles;
+mod error;
 mod export;
 mod keys;
 mod load;
@@ -20,7 +22,9 @@ mod stages;
 mod survey;
 
 pub(crate) use assemble::read_plugin;
+pub use builder::StudyBuilder;
 pub use diagnostics::DiagnosticList;
+pub use error::StudyError;
 pub use export::as_blocks;
 pub use keys::{OUTPUT, VARIANT, study_keys};
 pub use load::load;
@@ -28,4 +32,4 @@ pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study};
 pub use outline::Outline;
 pub use partial_factors::design;
 pub use source::{StudySource, kind_of};
-pub use survey::{ReadFile, no_files};
+pub use survey::{ReadFile, beside, no_files};

@@ -4,6 +4,7 @@
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Value};
 use crate::config::origin::Origin;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Reads a file that a study names; the error says why not.
@@ -12,6 +13,12 @@ pub type ReadFile<'a> = &'a dyn Fn(&str) -> Result<String, String>;
 /// For studies that come from no place where files could be.
 pub fn no_files(_: &str) -> Result<String, String> {
     Err("files are read where a study is read from a file; give the points themselves".into())
+}
+
+/// Reads files that stand beside a study file.
+pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
+    let folder = study.parent().unwrap_or(Path::new("")).to_path_buf();
+    move |file| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string())
 }
 
 /// Shapes of profiles whose points may stand in a file.

@@ -1,6 +1,6 @@
 //! Profiles from a file beside the study: the points of the file are those of the resolved study.
 
-use voussoir::kinds::read_study_with;
+use voussoir::kinds::read_source;
 use voussoir::study::{StudySource, load};
 use voussoir_tests::{assert_close, changed, collapse_factor};
 
@@ -51,12 +51,13 @@ fn a_survey_is_its_points() {
 fn mistakes_of_a_survey() {
     let said = |text: &str, survey: Option<&str>| {
         let read = |_: &str| survey.map(str::to_string).ok_or("there is none".to_string());
-        read_study_with(text, "a.toml", &[], &read).err().expect("a mistake")[0].to_string()
+        StudySource::parse_with(text, "a.toml", &[], &read).and_then(read_source).err().expect("a mistake")[0]
+            .to_string()
     };
     let broken = changed(SURVEY, "-450,980,-500,1370", "-450,980,-500,1e");
     assert_eq!(said(STUDY, Some(&broken)), "survey.csv:4:15: \"1e\" is not a number");
-    assert_eq!(said(STUDY, None), "a.toml:8:37: profile.file: \"survey.csv\" cannot be read: there is none");
-    let twice = changed(STUDY, "file = ", "intrados = [[0.0, 0.0], [1.0, 0.0]], file = ");
+    assert_eq!(said(STUDY, None), "a.toml:8:38: profile.file: \"survey.csv\" cannot be read: there is none");
+    let twice = changed(STUDY, ", file = ", ", intrados = [[0.0, 0.0], [1.0, 0.0]], file = ");
     assert!(said(&twice, Some(SURVEY)).contains("is given besides intrados"));
     assert!(load(STUDY, "a.toml", &[]).is_err());
 }

@@ -1,6 +1,6 @@
 //! Damage of a bridge: joints that have lost mortar, joints that are repointed, voussoirs that are gone.
 
-use super::Builder;
+use super::builder::{Builder, RingPlace};
 use crate::scenes::lookup::{law, take};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -134,17 +134,6 @@ pub(super) const DAMAGE: Shape = Shape::Tagged {
         },
     ],
 };
-
-/// Where a ring stands among the bodies and joints of a bridge.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RingPlace {
-    /// Index of its first voussoir.
-    pub body: usize,
-    /// Index of its first joint among the radial ones.
-    pub joint: usize,
-    /// Number of its voussoirs.
-    pub count: usize,
-}
 
 /// Joints of a ring that are damaged in the same way.
 struct Section<'a> {
