@@ -4,6 +4,7 @@ mod by_case;
 mod case_lines;
 pub mod check;
 mod codes;
+pub mod conform;
 pub mod explain;
 pub mod files;
 mod folder;

@@ -153,7 +153,7 @@ fn open(path: &Path) {
 }
 
 fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) -> Result<u8, u8> {
-    let resolved = toml::to_string(study.resolved()).map_err(|error| {
+    let resolved = study.resolved_text().map_err(|error| {
         eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name());
         NO_ACCESS
     })?;

@@ -63,7 +63,7 @@ impl<'a> CasesOf<'a> {
             }
             CasesOf::Streamed(sweep) => side_by_side(jobs, || {
                 for chunk in ids.chunks(AT_ONCE * jobs.max(1)) {
-                    let one = |id: &usize| Some(solve_followed(&sweep.case(*id).ok()?, observer));
+                    let one = |id: &usize| solve_followed(&sweep.case(*id).ok()?, observer);
                     let solved: Vec<_> =
                         if jobs > 1 { chunk.par_iter().map(one).collect() } else { chunk.iter().map(one).collect() };
                     solved.into_iter().flatten().for_each(&mut *take);

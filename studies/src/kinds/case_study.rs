@@ -43,7 +43,7 @@ impl Study {
             table += &comparison_table(comparison);
         }
         table += &found(&results.own);
-        let certified = results.cases.iter().all(|case| case.certificate.passed);
+        let certified = results.certified();
         RunOutput { files, table, remarks: Vec::new(), certified }
     }
 
@@ -107,13 +107,17 @@ impl LoadedStudy for Study {
         }
         observer.phase("writing and drawing");
         let output = self.output_of(&request.version, done.into_values().collect(), request.jobs);
-        RunOutput { remarks: remarks(request, others, self.count()), ..output }
+        let certified = output.certified && !observer.cancelled();
+        RunOutput { remarks: remarks(request, others, self.count()), certified, ..output }
     }
 
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
         let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
         let results: StudyResults = serde_json::from_value(json.clone()).map_err(|error| error.to_string())?;
         let again = solve_again(self, &results, stored.jobs, observer);
+        if observer.cancelled() {
+            return Err("the check was cancelled".into());
+        }
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let files = if cases.len() == results.cases.len() {
             let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));

@@ -72,6 +72,11 @@ pub trait LoadedStudy: Send + Sync {
     /// The file with `--set` applied.
     fn resolved(&self) -> &toml::Value;
 
+    /// The same as text; an error where TOML cannot hold it.
+    fn resolved_text(&self) -> Result<String, String> {
+        toml::to_string(self.resolved()).map_err(|error| error.to_string())
+    }
+
     /// What a user should know before it is run: each note of its cases once.
     fn notes(&self) -> Vec<String> {
         Vec::new()

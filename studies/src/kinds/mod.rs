@@ -11,6 +11,7 @@ pub mod optimise;
 pub mod point;
 mod read;
 pub mod run;
+mod run_study;
 mod search;
 mod streamed;
 
@@ -18,4 +19,5 @@ pub use kind::{
     CasesOf, KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind,
     kinds,
 };
-pub use read::read_study;
+pub use read::{read_source, read_study};
+pub use run_study::RunOptions;

@@ -10,7 +10,11 @@ pub fn read_study(
     file: &str,
     sets: &[(String, String)],
 ) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-    let source = StudySource::parse(text, file, sets)?;
+    read_source(StudySource::parse(text, file, sets)?)
+}
+
+/// Reads a study of any kind from its source.
+pub fn read_source(source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
     // A kind that does not exist is one mistake among others of a file with a scene.
     let kind = kind(source.kind()).or_else(|| kind("run"));
     match kind {

@@ -86,7 +86,8 @@ impl Sweep {
     /// What is wrong with a stored case, by itself and against solving again.
     fn differs(&self, entry: &Json, result: &CaseResult, observer: &dyn Observer) -> Vec<String> {
         let Ok(case) = self.case(result.label.id) else { return vec!["the study has no such case".into()] };
-        match serde_json::to_value(solve_followed(&case, observer)) {
+        let Some(again) = solve_followed(&case, observer) else { return vec!["the check was cancelled".into()] };
+        match serde_json::to_value(again) {
             Ok(again) => verify_case(&case, result).into_iter().chain(differences(entry, &again)).collect(),
             Err(why) => vec![why.to_string()],
         }
