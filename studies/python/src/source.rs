@@ -5,7 +5,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use voussoir::config::diagnostic::LocatedDiagnostic;
 use voussoir::config::origin::Origin;
-use voussoir::study::StudySource;
+use std::path::Path;
+use voussoir::study::{StudySource, beside, no_files};
 
 pyo3::create_exception!(
     voussoir,
@@ -49,7 +50,11 @@ impl Source {
     /// The keys of the study.
     pub fn read(&self) -> PyResult<StudySource> {
         match self {
-            Source::Toml { text, file, sets } => StudySource::parse(text, file, sets).map_err(|wrong| study_error(&wrong)),
+            Source::Toml { text, file, sets } => {
+                let path = Path::new(file);
+                let read = |name: &str| if path.is_file() { beside(path)(name) } else { no_files(name) };
+                StudySource::parse_with(text, file, sets, &read).map_err(|wrong| study_error(&wrong))
+            }
             Source::Json { text, sets } => {
                 let json = |text: &str| {
                     serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("not a study: {error}")))
