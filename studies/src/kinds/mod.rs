@@ -9,10 +9,12 @@ pub mod map;
 pub mod optimise;
 pub mod point;
 mod read;
+pub mod report;
 pub mod run;
 mod search;
 
 pub use kind::{
-    KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
+    KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind, Verification,
+    kind, kinds,
 };
-pub use read::read_study;
+pub use read::{read_study, read_study_beside};

@@ -10,11 +10,21 @@ pub fn read_study(
     file: &str,
     sets: &[(String, String)],
 ) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    read_study_beside(text, file, sets, &|_| Err("no other file can be read here".into()))
+}
+
+/// The same where the study may name other files; `neighbour` as of [`super::StudyKind::read_beside`].
+pub fn read_study_beside(
+    text: &str,
+    file: &str,
+    sets: &[(String, String)],
+    neighbour: &dyn Fn(&str) -> Result<(String, String), String>,
+) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
     let source = StudySource::parse(text, file, sets)?;
     // A kind that does not exist is one mistake among others of a file with a scene.
     let kind = kind(source.kind()).or_else(|| kind("run"));
     match kind {
-        Some(kind) => kind.read(source),
+        Some(kind) => kind.read_beside(source, neighbour),
         None => {
             let names: Vec<_> = kinds().iter().map(|entry| entry.tag).collect();
             let help = suggest(source.kind(), &names, "kinds available");

@@ -1,7 +1,7 @@
 //! `report.html`: one self-contained page for reading and printing.
 
 use super::comparison::{comparison_rows, figure};
-use super::page::{self, STYLE};
+use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
@@ -69,11 +69,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
          results.json and results.csv beside this page.</footer>\n",
         escape(&study.results.version)
     );
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
-        escape(study.name)
-    )
+    page::whole(study.name, &body)
 }
 
 /// Variants beside each other, where the study compares them.
