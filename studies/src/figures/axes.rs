@@ -113,11 +113,18 @@ impl Canvas {
         let _ = writeln!(self.body, "<g {attributes}>");
     }
 
-    /// Begins the group of a line of a chart: its name, and the cases that its points belong to.
-    pub fn open_series(&mut self, name: &str, cases: &[usize]) {
+    /// Begins the group of a line of a chart: its name, the cases that its points belong to, and the values of those
+    /// points for scripts.
+    pub fn open_series(&mut self, name: &str, cases: &[usize], points: &[(f64, f64)]) {
         let cases: Vec<String> = cases.iter().map(usize::to_string).collect();
         let cases = if cases.is_empty() { String::new() } else { format!(" data-cases=\"{}\"", cases.join(" ")) };
-        self.open(&format!("class=\"series\" data-name=\"{}\"{cases}", escape(name)));
+        let values: Vec<String> =
+            points.iter().map(|(x, y)| format!("{},{}", format_short(*x, 6), format_short(*y, 6))).collect();
+        self.open(&format!(
+            "class=\"series\" data-name=\"{}\"{cases} data-points=\"{}\"",
+            escape(name),
+            values.join(" ")
+        ));
     }
 
     /// Ends the innermost group.

@@ -137,7 +137,8 @@ impl Frame {
 
     fn curves(&self, canvas: &mut Canvas, series: &[Series]) {
         for (i, own) in series.iter().enumerate() {
-            canvas.open_series(&own.name, &own.cases);
+            let finite = own.points.iter().filter(|point| self.place(**point).is_some());
+            canvas.open_series(&own.name, &own.cases, &finite.copied().collect::<Vec<_>>());
             for part in unbroken(own).into_iter().filter(|_| !own.unjoined) {
                 let spots: Vec<Place> = part.into_iter().filter_map(|point| self.place(point)).collect();
                 if spots.len() > 1 {

@@ -32,13 +32,17 @@ pub fn words_of_key(key: &str) -> String {
     let end = summary.find([',', ':', ';', '(']).unwrap_or(summary.len());
     let words = summary[..end].trim();
     let name = key.rsplit('.').find(|name| name.parse::<usize>().is_err()).unwrap_or(key).replace('_', " ");
-    match words {
-        "" => name,
-        // "of the fill" says of what, not what.
-        words if words.starts_with("of ") => format!("{name} {words}"),
-        words if words.len() > 60 => name,
-        words => words.into(),
+    // "bonded: the faces move …" explains the choices, not the key.
+    if words.is_empty() || words.len() > 60 || summary[end..].starts_with(':') {
+        return name;
     }
+    // "of the fill" says of what, not what.
+    if words.starts_with("of ") {
+        return format!("{name} {words}");
+    }
+    let said = words.to_lowercase();
+    let named = name.split(' ').any(|word| said.contains(&word.to_lowercase()[..word.len().min(5)]));
+    if named { words.into() } else { format!("{name}, {words}") }
 }
 
 /// The title of an axis or a column: `rise of the intrados [m]`.

@@ -8,6 +8,7 @@ pub mod csv;
 pub mod csv_table;
 pub mod curve_csv;
 pub mod figures;
+pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;
 pub mod record;

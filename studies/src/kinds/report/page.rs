@@ -46,7 +46,7 @@ pub fn results_page(
          figures.</footer>\n",
         escape(version)
     );
-    page::whole(title, &body)
+    page::whole(title, &body, &[])
 }
 
 /// What the numbers say of the claims, the verdict first, the tests behind it to open.
