@@ -128,7 +128,7 @@ impl LoadedStudy for Study {
             table += &comparison_table(comparison);
         }
         table += &found(&results.own);
-        let certified = results.cases.iter().all(|case| case.certificate.passed);
+        let certified = results.certified() && !observer.cancelled();
         RunOutput { files, table, remarks: remarks(request, others, self.count()), certified }
     }
 
@@ -136,6 +136,9 @@ impl LoadedStudy for Study {
         let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
         let results: StudyResults = serde_json::from_value(json.clone()).map_err(|error| error.to_string())?;
         let again = solve_again(self, &results, stored.jobs, observer);
+        if observer.cancelled() {
+            return Err("the check was cancelled".into());
+        }
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let files = if cases.len() == results.cases.len() {
             let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));

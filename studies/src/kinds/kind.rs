@@ -3,7 +3,7 @@
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, Unobserved, solve_cases};
-use crate::study::{Case, Outline, Study, StudySource};
+use crate::study::{Case, Outline, ReadFile, Study, StudySource};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Diagnostic, Parameter};
@@ -15,14 +15,9 @@ pub trait StudyKind: Sync {
     /// Reads a study file of this kind.
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>>;
 
-    /// The same where files that the study names can be read: `neighbour` gives the name (for messages) and the text
-    /// of a file that is named relative to the study's own, or says why there is none.
-    fn read_beside(
-        &self,
-        source: StudySource,
-        neighbour: &dyn Fn(&str) -> Result<(String, String), String>,
-    ) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-        let _ = neighbour;
+    /// The same where files that the study names can be read: relative to its own, by `read`.
+    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        let _ = read;
         self.read(source)
     }
 

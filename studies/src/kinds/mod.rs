@@ -11,10 +11,12 @@ pub mod point;
 mod read;
 pub mod report;
 pub mod run;
+mod run_study;
 mod search;
 
 pub use kind::{
     KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind, Verification,
     kind, kinds,
 };
-pub use read::{read_study, read_study_beside};
+pub use read::{read_source, read_source_beside, read_study};
+pub use run_study::RunOptions;

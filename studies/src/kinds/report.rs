@@ -15,7 +15,7 @@ mod value;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::study::StudySource;
+use crate::study::{ReadFile, StudySource, no_files};
 use voussoir_core::plugin::{Card, Parameter, PluginKind};
 
 struct Report;
@@ -36,15 +36,11 @@ voussoir_core::inventory::submit! {
 
 impl StudyKind for Report {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-        self.read_beside(source, &|name| Err(format!("{name} cannot be read here: only the command line reads files")))
+        self.read_beside(source, &no_files)
     }
 
-    fn read_beside(
-        &self,
-        source: StudySource,
-        neighbour: &dyn Fn(&str) -> Result<(String, String), String>,
-    ) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-        Ok(Box::new(study::ReportStudy::read(source, neighbour)?))
+    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        Ok(Box::new(study::ReportStudy::read(source, read)?))
     }
 
     fn file_keys(&self) -> Option<&'static [Parameter]> {

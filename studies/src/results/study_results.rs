@@ -27,3 +27,15 @@ pub struct StudyResults {
     #[serde(flatten)]
     pub own: Map<String, Json>,
 }
+
+impl StudyResults {
+    /// The result of a case by its id; `None` where it was not asked for, or not answered before the run was cancelled.
+    pub fn case(&self, id: usize) -> Option<&CaseResult> {
+        self.cases.iter().find(|case| case.label.id == id)
+    }
+
+    /// Whether every case that is here is answered and its certificate passed.
+    pub fn certified(&self) -> bool {
+        self.cases.iter().all(|case| case.certificate.passed)
+    }
+}

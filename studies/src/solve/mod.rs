@@ -8,6 +8,7 @@ mod case;
 mod case_input;
 mod coarse_joints;
 pub mod explain;
+mod explain_bridge;
 mod limit;
 mod limit_result;
 mod observer;
@@ -20,7 +21,7 @@ mod side_by_side;
 mod statics;
 mod symmetric;
 
-pub use case::{solve_case, solve_cases, solve_input};
+pub use case::{solve_case, solve_cases, solve_input, solve_unless_cancelled};
 pub use case_input::CaseInput;
-pub use observer::{Observer, PathProgress, Unobserved};
+pub use observer::{Observer, PathProgress, RunEvent, Unobserved, Watch};
 pub use side_by_side::side_by_side;

@@ -41,7 +41,7 @@ impl LoadedStudy for PointStudy {
         (piece == Piece::Chart).then(|| figure(self, &self.cases.iter().map(drive_point).collect::<Vec<_>>()))
     }
 
-    fn run(&self, request: &RunRequest, _observer: &dyn Observer) -> RunOutput {
+    fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
         let stored = match &request.stored {
             Some([results, _]) if request.keep => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
             _ => Vec::new(),
@@ -49,6 +49,7 @@ impl LoadedStudy for PointStudy {
         let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
         // Driving a point costs little: those that stay are driven again, so that they are of this study.
         let chosen = self.cases.iter().filter(|case| request.wanted.contains(&case.id) || others.contains(&case.id));
+        let chosen = chosen.take_while(|_| !observer.cancelled());
         let results: Vec<PointResult> = chosen.map(drive_point).collect();
         let others = results.iter().filter(|result| !request.wanted.contains(&result.id)).count();
         RunOutput {
@@ -58,7 +59,7 @@ impl LoadedStudy for PointStudy {
                 .collect(),
             table: table(self, &results),
             remarks: remarks(request, others, self.cases.len()),
-            certified: results.iter().all(|result| result.status == PathStatus::Reached),
+            certified: results.iter().all(|result| result.status == PathStatus::Reached) && !observer.cancelled(),
         }
     }
 

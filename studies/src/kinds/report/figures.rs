@@ -116,7 +116,9 @@ impl Chart {
             open_points.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         let mut spots = Vec::new();
+        // Where loads are unbounded there is no greatest.
         if self.peaks
+            && open_points.is_empty()
             && let Some(&top) = points.iter().max_by(|a, b| a.1.total_cmp(&b.1))
         {
             spots.push(Spot { at: top, kind: "greatest", marker: Marker::Ring, label: format_short(top.1, 4) });

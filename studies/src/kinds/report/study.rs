@@ -9,14 +9,17 @@ use super::parts::Parts;
 use super::value::Value;
 use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
+use crate::config::document::Node;
+use crate::config::origin::Origin;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, StoredResults, Verification};
-use crate::kinds::read::read_study;
+use crate::kinds::read::read_source;
 use crate::solve::Observer;
-use crate::study::{DiagnosticList, Drawn, StudySource};
+use crate::study::{DiagnosticList, Drawn, ReadFile, StudySource};
 use crate::verify::repeat::differences;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use voussoir_core::plugin::Shape;
 
 /// A study of studies.
@@ -31,10 +34,7 @@ pub struct ReportStudy {
 
 impl ReportStudy {
     /// Reads a study of studies and its parts; every mistake at once.
-    pub fn read(
-        source: StudySource,
-        neighbour: &dyn Fn(&str) -> Result<(String, String), String>,
-    ) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn read(source: StudySource, read: ReadFile) -> Result<Self, Vec<LocatedDiagnostic>> {
         let StudySource { root, diagnostics, .. } = source;
         let mut checker = Checker::new(&root);
         let checked = checker.check(&root, &Shape::Table(STUDY), "");
@@ -42,7 +42,7 @@ impl ReportStudy {
         let contents = checked.as_ref().and_then(|table| Contents::deserialize(&table["report"]).ok());
         let (Some(table), Some(mut contents), true) = (checked, contents, found.is_empty()) else { return Err(found) };
         let mut diagnostics = DiagnosticList::new(&root, found);
-        let parts = read_parts(&mut diagnostics, &contents, neighbour);
+        let parts = read_parts(&mut diagnostics, &contents, &root, read);
         contents.check(&mut diagnostics, &parts);
         if !diagnostics.found.is_empty() {
             sort(&mut diagnostics.found);
@@ -95,22 +95,25 @@ impl ReportStudy {
 }
 
 /// The studies that a report names, each of another name.
-fn read_parts(
-    diagnostics: &mut DiagnosticList<'_>,
-    contents: &Contents,
-    neighbour: &dyn Fn(&str) -> Result<(String, String), String>,
-) -> Vec<Part> {
+fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &Node, read: ReadFile) -> Vec<Part> {
+    let own = match &root.origin {
+        Origin::File { file, .. } => Path::new(&**file).with_file_name(""),
+        _ => PathBuf::new(),
+    };
     let mut parts: Vec<Part> = Vec::new();
     for (index, name) in contents.studies.iter().enumerate() {
         let key = format!("report.studies.{index}");
-        let (file, text) = match neighbour(name) {
-            Ok(found) => found,
+        let text = match read(name) {
+            Ok(text) => text,
             Err(why) => {
                 diagnostics.wrong(&key, format!("{name} cannot be read: {why}"), "paths are relative to this file");
                 continue;
             }
         };
-        match read_study(&text, &file, &[]) {
+        let file = own.join(name).display().to_string();
+        // What a part names stands beside the part.
+        let beside = |inner: &str| read(&Path::new(name).with_file_name(inner).display().to_string());
+        match StudySource::parse_with(&text, &file, &[], &beside).and_then(read_source) {
             Ok(study) if !study.parts().is_empty() => {
                 diagnostics.wrong(&key, "is a report itself", "name the studies that it reports on");
             }
