@@ -9,14 +9,19 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use std::sync::{Arc, LazyLock, Mutex};
 use voussoir::core::law::{
-    BatchFailure, Effect, Facet, FacetMode, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch,
-    UpdateFailure,
+    BatchFailure, Effect, Facet, FacetMode, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint,
+    UpdateBranch, UpdateFailure,
 };
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
 
 /// What both tables hold.
 const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "class", doc: "name under which the class is registered: @voussoir.law(\"NAME\")", shape: Shape::Text, need: Need::Required },
+    Parameter {
+        name: "class",
+        doc: "name under which the class is registered: @voussoir.law(\"NAME\")",
+        shape: Shape::Text,
+        need: Need::Required,
+    },
     Parameter { name: "parameters", doc: "what the class is made with", shape: Shape::Free, need: Need::Default("{}") },
 ];
 
@@ -62,7 +67,9 @@ fn checked(table: &Json, form: &str) -> Vec<(String, String)> {
     Python::attach(|py| {
         let complaint = py
             .import("voussoir._laws")
-            .and_then(|laws| laws.call_method1("check", (class, serde_json::to_string(parameters).unwrap_or_default(), form)))
+            .and_then(|laws| {
+                laws.call_method1("check", (class, serde_json::to_string(parameters).unwrap_or_default(), form))
+            })
             .and_then(|found| found.extract::<Option<(String, String)>>());
         match complaint {
             Ok(found) => found.into_iter().collect(),
@@ -101,7 +108,10 @@ impl InterfaceLaw for PythonFacets {
             let law = made(py, &self.class, &self.parameters)?;
             let rows: Vec<(String, [f64; 2], f64, [f64; 2])> =
                 py.import("voussoir._laws")?.call_method1("facets", (law,))?.extract()?;
-            Ok(rows.into_iter().map(|(mode, normal, bound, flow)| Facet { mode: mode_of(&mode), normal, bound, flow }).collect())
+            Ok(rows
+                .into_iter()
+                .map(|(mode, normal, bound, flow)| Facet { mode: mode_of(&mode), normal, bound, flow })
+                .collect())
         };
         Python::attach(read).ok()
     }

@@ -3,9 +3,10 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::path::Path;
 use voussoir::config::diagnostic::LocatedDiagnostic;
 use voussoir::config::origin::Origin;
-use std::path::Path;
+use voussoir::kinds::{LoadedStudy, read_source_beside};
 use voussoir::study::{StudySource, beside, no_files};
 
 pyo3::create_exception!(
@@ -50,18 +51,31 @@ impl Source {
     /// The keys of the study.
     pub fn read(&self) -> PyResult<StudySource> {
         match self {
-            Source::Toml { text, file, sets } => {
-                let path = Path::new(file);
-                let read = |name: &str| if path.is_file() { beside(path)(name) } else { no_files(name) };
-                StudySource::parse_with(text, file, sets, &read).map_err(|wrong| study_error(&wrong))
-            }
+            Source::Toml { text, file, sets } => StudySource::parse_with(text, file, sets, &|name| self.beside(name))
+                .map_err(|wrong| study_error(&wrong)),
             Source::Json { text, sets } => {
                 let json = |text: &str| {
                     serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("not a study: {error}")))
                 };
-                let sets = sets.iter().map(|(key, value)| Ok((key.clone(), json(value)?))).collect::<PyResult<Vec<_>>>()?;
+                let sets =
+                    sets.iter().map(|(key, value)| Ok((key.clone(), json(value)?))).collect::<PyResult<Vec<_>>>()?;
                 StudySource::of_value(&json(text)?, &sets).map_err(|wrong| study_error(&wrong))
             }
+        }
+    }
+}
+
+impl Source {
+    /// The study, of any kind.
+    pub fn load(&self) -> PyResult<Box<dyn LoadedStudy>> {
+        read_source_beside(self.read()?, &|name| self.beside(name)).map_err(|wrong| study_error(&wrong))
+    }
+
+    /// The text of a file beside the study's.
+    fn beside(&self, name: &str) -> Result<String, String> {
+        match self {
+            Source::Toml { file, .. } if Path::new(file).is_file() => beside(Path::new(file))(name),
+            _ => no_files(name),
         }
     }
 }

@@ -36,7 +36,8 @@ impl Sweep {
             if checked { file.sweep() } else { file.sweep_unchecked() }.map_err(|wrong| study_error(&wrong))
         })?;
         if sweep.kind != "run" {
-            let message = format!("a sweep answers studies of the kind \"run\", not \"{}\": use voussoir.run", sweep.kind);
+            let message =
+                format!("a sweep answers studies of the kind \"run\", not \"{}\": use voussoir.run", sweep.kind);
             return Err(PyValueError::new_err(message));
         }
         Ok(Sweep { sweep })

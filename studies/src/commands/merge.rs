@@ -8,6 +8,7 @@ use super::folder::{JOURNAL, ResultFolder};
 use super::options::useful_jobs;
 use super::shard::{PART, PartEnd, PartHead, study_hash};
 use super::stream;
+use super::today::today;
 use crate::kinds::CasesOf;
 use crate::results::CaseResult;
 use crate::solve::side_by_side;
@@ -94,7 +95,7 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
         CasesOf::Held(study) => study,
     };
     let results = lines.cases().collect::<Result<Vec<_>, _>>().map_err(|error| no_access(&out, error))?;
-    let output = study.output_of(env!("CARGO_PKG_VERSION"), results, jobs);
+    let output = study.output_of(env!("CARGO_PKG_VERSION"), Some(today()), results, jobs);
     for (name, bytes) in &output.files {
         folder.write(name, bytes)?;
     }

@@ -17,6 +17,7 @@ mod progress;
 pub mod run;
 pub mod shard;
 mod stream;
+mod today;
 mod topics;
 pub mod verify;
 

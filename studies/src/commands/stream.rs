@@ -5,6 +5,7 @@ use super::case_lines::CaseLines;
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::Options;
+use super::today::today;
 use crate::figures::format::{format_number, format_value, status_word};
 use crate::kinds::CasesOf;
 use crate::results::CaseResult;
@@ -82,7 +83,7 @@ pub fn finish(
         csv = Some(new?);
     }
     let version = env!("CARGO_PKG_VERSION").to_string();
-    let head = StreamedResults { study: sweep.name.clone(), version, only_cases };
+    let head = StreamedResults { study: sweep.name.clone(), version, date: Some(today()), only_cases };
     let mut rows = lines.cases().map(|case| {
         let case = case?;
         tally.add(&case);

@@ -1,14 +1,18 @@
 //! Studies with a scene as commands see them: their cases are solved as their kind says, certified, and written by
 //! all writers.
 
-use super::kind::{CasesOf, LoadedStudy, RunOutput, RunRequest, StoredResults, Verification, kind};
+use super::kind::{CasesOf, LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
+use crate::figures::envelope::envelope_chart;
 use crate::figures::format::format_number;
+use crate::figures::sweep::study_chart;
+use crate::figures::{curve_svg, mechanism_svg, scene_svg};
 use crate::results::{CaseLabel, CaseResult, StudyResults};
 use crate::solve::explain::explain;
 use crate::solve::{Observer, side_by_side};
 use crate::study::{Case, Study, as_blocks};
 use crate::verify::{solve_again, verify_against};
 use crate::writers::comparison::comparison_table;
+use crate::writers::record::record;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
 use serde_json::{Map, Value as Json};
@@ -28,12 +32,12 @@ impl Study {
         let (study, version) = (self.name.clone(), version.to_string());
         let ids: Vec<usize> = cases.iter().map(|case| case.label.id).filter(|id| *id < self.cases.len()).collect();
         let only_cases = (ids.len() < self.cases.len()).then_some(ids);
-        StudyResults { study, version, only_cases, cases, comparison: own.comparison, own: own.other }
+        StudyResults { study, version, date: None, only_cases, cases, comparison: own.comparison, own: own.other }
     }
 
-    /// What a run with these results, in order of id, writes and says.
-    pub fn output_of(&self, version: &str, cases: Vec<CaseResult>, jobs: usize) -> RunOutput {
-        let results = self.results(version, cases);
+    /// What a run with these results, in order of id, writes and says; `date` is its day.
+    pub fn output_of(&self, version: &str, date: Option<String>, cases: Vec<CaseResult>, jobs: usize) -> RunOutput {
+        let results = StudyResults { date, ..self.results(version, cases) };
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
         let files = side_by_side(jobs, || written(&output));
@@ -84,6 +88,36 @@ impl LoadedStudy for Study {
         Some(CasesOf::Held(self))
     }
 
+    fn piece(&self, results: &str, piece: Piece) -> Option<String> {
+        if piece == Piece::Record {
+            return Some(record(self));
+        }
+        let results: StudyResults = serde_json::from_str(results).ok()?;
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        if cases.len() != results.cases.len() {
+            return None;
+        }
+        let output = StudyOutput::new(self, &results, &cases);
+        let of_case = |id: usize| {
+            let place = results.cases.iter().position(|case| case.label.id == id)?;
+            let (assembly, stages) = output.scene(place)?;
+            Some((&results.cases[place], assembly, stages))
+        };
+        match piece {
+            Piece::Record => None,
+            Piece::Chart => study_chart(&output).or_else(|| envelope_chart(&self.name, &results)),
+            Piece::Scene(id) => {
+                of_case(id).map(|(case, assembly, stages)| scene_svg(&self.name, assembly, stages, case))
+            }
+            Piece::Mechanism(id) => {
+                of_case(id).and_then(|(case, assembly, _)| mechanism_svg(&self.name, assembly, case))
+            }
+            Piece::Curve(id) => {
+                of_case(id).and_then(|(case, assembly, stages)| curve_svg(&self.name, assembly, stages, case))
+            }
+        }
+    }
+
     fn as_blocks(&self) -> Result<String, String> {
         as_blocks(self.cases.first().ok_or("the study has no case")?, &self.name)
     }
@@ -106,7 +140,7 @@ impl LoadedStudy for Study {
             done.extend(solved.into_iter().map(|case| (case.label.id, case)));
         }
         observer.phase("writing and drawing");
-        let output = self.output_of(&request.version, done.into_values().collect(), request.jobs);
+        let output = self.output_of(&request.version, request.date.clone(), done.into_values().collect(), request.jobs);
         let certified = output.certified && !observer.cancelled();
         RunOutput { remarks: remarks(request, others, self.count()), certified, ..output }
     }

@@ -10,14 +10,15 @@ pub mod map;
 pub mod optimise;
 pub mod point;
 mod read;
+pub mod report;
 pub mod run;
 mod run_study;
 mod search;
 mod streamed;
 
 pub use kind::{
-    CasesOf, KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind,
-    kinds,
+    CasesOf, KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind,
+    Verification, kind, kinds,
 };
-pub use read::{read_source, read_study};
+pub use read::{read_source, read_source_beside, read_study};
 pub use run_study::RunOptions;

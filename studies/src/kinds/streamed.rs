@@ -48,7 +48,12 @@ impl LoadedStudy for Sweep {
         CasesOf::Streamed(self).solve(&request.wanted, request.jobs, observer, &mut |case| cases.push(case));
         let certified = cases.iter().all(|case| case.certificate.passed);
         let only = (cases.len() < self.count()).then(|| cases.iter().map(|case| case.label.id).collect());
-        let head = StreamedResults { study: self.name.clone(), version: request.version.clone(), only_cases: only };
+        let head = StreamedResults {
+            study: self.name.clone(),
+            version: request.version.clone(),
+            date: request.date.clone(),
+            only_cases: only,
+        };
         let mut json = Vec::new();
         let written = write_json(&mut json, &head, &mut cases.iter().cloned().map(Ok)).and_then(|()| csv(self, &cases));
         let (files, remarks) = match written {

@@ -19,6 +19,8 @@ pub struct StreamedResults {
     pub study: String,
     /// Version of the program.
     pub version: String,
+    /// The day of the run.
+    pub date: Option<String>,
     /// Ids of the cases, where the run was asked for some of them only.
     pub only_cases: Option<Vec<usize>>,
 }
@@ -45,6 +47,9 @@ impl Serialize for Whole<'_, '_> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("study", &head.study)?;
         map.serialize_entry("version", &head.version)?;
+        if let Some(date) = &head.date {
+            map.serialize_entry("date", date)?;
+        }
         if let Some(only) = &head.only_cases {
             map.serialize_entry("only_cases", only)?;
         }
