@@ -154,6 +154,9 @@ pub struct CaseResult {
     /// What a path leaves.
     #[serde(flatten)]
     pub path: PathRecord,
+    /// The partial factors that its values were multiplied or divided by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub partial_factors: Option<Json>,
     /// On bridges, what stands on which block.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadEntry>,
@@ -189,6 +192,7 @@ impl CaseResult {
             seconds: 0.0,
             stages: Vec::new(),
             path: PathRecord::default(),
+            partial_factors: None,
             loads: Vec::new(),
         }
     }

@@ -50,6 +50,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         parameters: case.parameters.clone(),
     };
     result.loads = load_entries(case);
+    result.partial_factors = case.resolved.get("factors").cloned();
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
         let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
         let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);

@@ -8,6 +8,7 @@ mod case;
 mod case_input;
 mod coarse_joints;
 pub mod explain;
+mod explain_bridge;
 mod limit;
 mod limit_result;
 mod observer;

@@ -4,6 +4,7 @@ use super::error::StudyError;
 use super::load::load;
 use super::model::Study;
 use super::source::StudySource;
+use super::survey::beside;
 use serde_json::{Map, Value as Json, json};
 use std::path::Path;
 
@@ -18,7 +19,8 @@ impl Study {
         let path = path.as_ref();
         let read = std::fs::read_to_string(path);
         let text = read.map_err(|error| StudyError::File { path: path.into(), error })?;
-        Ok(load(&text, &path.display().to_string(), &[])?)
+        let source = StudySource::parse_with(&text, &path.display().to_string(), &[], &beside(path))?;
+        Ok(Study::from_source(source)?)
     }
 
     /// The study of a value with the tables and keys of a study file.

@@ -1,5 +1,6 @@
 //! The keys of a study file.
 
+use super::partial_factors::FACTORS;
 use crate::config::common_keys::STOP;
 use crate::kinds::kinds;
 use crate::loads::{VEHICLE, load_shape};
@@ -178,6 +179,12 @@ static COMMON: &[Parameter] = &[
         Shape::Map(&VEHICLE),
         Need::Optional("no vehicles"),
         "vehicles by name, for loads of kind \"vehicle\"",
+    ),
+    key(
+        "factors",
+        FACTORS,
+        Need::Optional("all are 1"),
+        "partial factors on weights, loads and strengths; the values given elsewhere are characteristic ones",
     ),
     key(
         "sweep",

@@ -6,4 +6,5 @@ mod labels;
 mod lower_bound;
 mod pages;
 mod round_trip;
+mod survey;
 mod tampering;
