@@ -2,7 +2,7 @@
 
 use super::codes::{NO_ACCESS, WRONG_INPUT};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::kinds::{LoadedStudy, read_source};
+use crate::kinds::{LoadedStudy, read_source_beside};
 use crate::study::{StudySource, beside};
 use std::path::Path;
 
@@ -42,7 +42,8 @@ pub fn overrides(sets: &[String]) -> Result<Vec<(String, String)>, u8> {
 pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStudy>, u8> {
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
-    source.and_then(read_source).map_err(|diagnostics| report(path, &diagnostics))
+    let study = source.and_then(|source| read_source_beside(source, &beside(path)));
+    study.map_err(|diagnostics| report(path, &diagnostics))
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {

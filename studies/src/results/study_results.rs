@@ -12,6 +12,9 @@ pub struct StudyResults {
     pub study: String,
     /// Version of the program.
     pub version: String,
+    /// The day of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
     /// Ids of the cases, where the run was asked for some of them only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only_cases: Option<Vec<usize>>,

@@ -14,6 +14,7 @@ mod limit_result;
 mod observer;
 mod path;
 mod path_result;
+mod recorded;
 mod safe_theorem;
 mod settlement;
 mod side_by_side;

@@ -39,11 +39,26 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
+            let states = resolved.get("output").and_then(|output| output["states"].as_u64());
+            let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let resolved = Json::Object(resolved);
             let brief = false;
-            Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, brief, resolved })
+            Ok(Case {
+                id,
+                variant,
+                scene,
+                parameters,
+                assembly,
+                stages,
+                solver,
+                output_curve,
+                output_states,
+                notes,
+                brief,
+                resolved,
+            })
         }
         _ => Err(diagnostics.found),
     }

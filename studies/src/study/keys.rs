@@ -96,6 +96,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         Need::Default("true"),
         "figures: of all cases, of the worst of each variant, of none; true: of all up to 50 cases, else of the worst",
     ),
+    key(
+        "states",
+        Shape::Integer { min: 2, max: 500 },
+        Need::Optional("no states are kept"),
+        "of each path so many states are kept, for the drawing that moves in the report",
+    ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ];
 
