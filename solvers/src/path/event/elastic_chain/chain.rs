@@ -1,6 +1,7 @@
 //! What all joints of the chain do for the redundants and the load, while points change their modes.
 
-use super::factors::{Factor, Factors, add_product};
+use super::dense::add_product;
+use super::factors::{Factor, Factors};
 use super::joint::joints;
 use super::redundants::{MOST_WEAK, Open, closing};
 use crate::contact::mode::ContactMode;
@@ -129,9 +130,34 @@ impl ElasticChain {
             }
             right.push(own);
         }
-        self.responses = self.factors.solve(right);
+        self.responses = self.factors.solve(right.clone());
+        self.refine_responses(right);
         self.ready = true;
         Some(())
+    }
+
+    /// One step of refinement of all responses.
+    fn refine_responses(&mut self, mut right: Vec<DMatrix<f64>>) {
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let m = 2 * factor.joint.contacts.len();
+            for j in 0..right[e].ncols() {
+                let column = |e: usize| column(&self.responses[e], j);
+                let (own, gap) = (column(e), factor.joint.gaps(e, &column));
+                for (p, rows) in factor.rows.iter().enumerate() {
+                    for (i, row) in rows.iter().enumerate() {
+                        let (force, gap) = (&own[2 * p..2 * p + 2], &gap[2 * p..2 * p + 2]);
+                        right[e][(2 * p + i, j)] -=
+                            row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1];
+                    }
+                }
+                for i in 0..3 {
+                    let twist = if factor.weak { factor.joint.spring[i] * own[m + i] } else { 0.0 };
+                    right[e][(m + i, j)] -= factor.joint.resultant(i, own) - twist;
+                }
+            }
+        }
+        let added = self.factors.solve(right);
+        self.responses.iter_mut().zip(&added).for_each(|(response, added)| *response += added);
     }
 
     fn set_mode(&mut self, system: &System, load: &Load, c: usize, mode: ContactMode) -> Option<()> {
@@ -146,11 +172,7 @@ impl ElasticChain {
         let columns = self.responses[e].ncols();
         let mut left = DMatrix::zeros(2, columns);
         for j in 0..columns {
-            let column = |e: usize| {
-                let n = self.responses[e].nrows();
-                &self.responses[e].as_slice()[n * j..n * (j + 1)]
-            };
-            let mut gap = self.gap(e, p, &column);
+            let mut gap = self.factors.all[e].joint.gap(e, p, &|e: usize| column(&self.responses[e], j));
             if j == 3 * self.sections.cycles {
                 (0..2).for_each(|i| gap[i] += load.gap[c][i]);
             }
@@ -198,20 +220,6 @@ impl ElasticChain {
         Some(())
     }
 
-    /// Gap of a point of a joint by what the joints do.
-    fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
-        let joint = &self.factors.all[e].joint;
-        let row = |block: &DMatrix<f64>, i: usize, x: &[f64]| -> f64 {
-            (0..block.ncols()).map(|j| block[(2 * p + i, j)] * x[j]).sum()
-        };
-        let m = 2 * joint.contacts.len();
-        [0, 1].map(|i| {
-            let mut sum = row(&joint.own, i, of(e)) + row(&joint.by_twist, i, &of(e)[m..]);
-            sum += joint.before.as_ref().map_or(0.0, |block| row(block, i, of(e - 1)));
-            sum + joint.after.as_ref().map_or(0.0, |block| row(block, i, of(e + 1)))
-        })
-    }
-
     /// What the joints do in the present modes with λ̇ = 1. `None` near a mechanism.
     pub fn rates(&self) -> Option<ChainRates> {
         let share = self.closing(&Open::Load)?;
@@ -236,14 +244,8 @@ impl ElasticChain {
         for (e, factor) in self.factors.all.iter().enumerate() {
             let (joint, own) = (&factor.joint, &rates.own[e]);
             let m = 2 * joint.contacts.len();
-            let mut gap: Vec<f64> = joint.contacts.iter().flat_map(|c| load.gap[*c]).collect();
-            add_product(&mut gap, &joint.own, &own[..m]);
-            add_product(&mut gap, &joint.by_twist, &own[m..]);
-            for (block, other) in [(&joint.before, e.wrapping_sub(1)), (&joint.after, e + 1)] {
-                if let Some(block) = block {
-                    add_product(&mut gap, block, &rates.own[other]);
-                }
-            }
+            let mut gap = joint.gaps(e, &|e: usize| rates.own[e].as_slice());
+            gap.iter_mut().zip(joint.contacts.iter().flat_map(|c| load.gap[*c])).for_each(|(g, load)| *g += load);
             let statics = self.statics[e].ncols();
             let mut all = vec![0.0; m + 3];
             for (p, (c, rows)) in joint.contacts.iter().zip(&factor.rows).enumerate() {
@@ -258,9 +260,8 @@ impl ElasticChain {
                 }
             }
             for i in 0..3 {
-                let by_force: f64 = joint.by_twist.column(i).iter().zip(own).map(|(h, r)| h * r).sum();
                 let given: f64 = (0..statics).map(|j| self.statics[e][(i, j)] * rates.share[j]).sum();
-                all[m + i] = given - by_force;
+                all[m + i] = given - joint.resultant(i, own);
                 worst = worst.max(all[m + i].abs() / forces);
             }
             left.push(DMatrix::from_vec(m + 3, 1, all));
@@ -297,6 +298,11 @@ impl ElasticChain {
         }
         x
     }
+}
+
+/// One column.
+fn column(columns: &DMatrix<f64>, j: usize) -> &[f64] {
+    &columns.as_slice()[columns.nrows() * j..columns.nrows() * (j + 1)]
 }
 
 /// Columns times factors.

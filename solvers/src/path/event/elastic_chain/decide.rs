@@ -11,7 +11,9 @@ use nalgebra::DMatrix;
 const ROUNDS: [usize; 2] = [40, 12];
 /// Residuals: up to which rates need no refinement, up to which they are believed, and from which on everything is
 /// factorised anew.
-const RESIDUAL: [f64; 3] = [4e-15, 1e-12, 1e-11];
+const RESIDUAL: [f64; 3] = [2e-15, 1e-12, 1e-11];
+/// Residual of gaps beside the rates of forces up to which rates need no refinement either: the error of the forces.
+const ERROR: f64 = 2e-13;
 /// Steps of refinement.
 const REFINEMENTS: usize = 3;
 
@@ -81,7 +83,10 @@ fn refined(
         (rates, left) = chain.examined(system, load, &own);
     }
     let mut refinements = 0;
-    while refinements < REFINEMENTS as u64 && rates.worst > RESIDUAL[0] {
+    let size = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (forces, motions) = rates.x.split_at(2 * system.contacts);
+    let enough = RESIDUAL[0].max(ERROR * size(forces) / size(motions).max(size(forces)).max(f64::MIN_POSITIVE));
+    while refinements < REFINEMENTS as u64 && rates.worst > enough {
         refinements += 1;
         let better = chain.refined(&own, left)?;
         let (now, still) = chain.examined(system, load, &better);

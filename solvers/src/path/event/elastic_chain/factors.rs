@@ -9,11 +9,12 @@
 //! M and A: what the modes of the points ask of gaps and forces. A change of a few rows of one joint is a change of the
 //! same rank of what the next one sees of it, and so on (Sherman, Morrison & Woodbury in every joint).
 
+use super::dense::{add_outer, dot, product, row_product};
 use super::joint::{Joint, ModeRows};
 use nalgebra::DMatrix;
 
 /// Share of what it began with at which an update or a response has died away.
-const DIES: f64 = 1e-15;
+const DIES: f64 = 1e-14;
 /// Greatest entry of the inverse of a small matrix of an update, relative to 1: more loses too many digits.
 const UPDATABLE: f64 = 1e6;
 /// Greatest error of an inverse.
@@ -29,63 +30,6 @@ pub struct Factor {
     pub weak: bool,
     /// P.
     inverse: DMatrix<f64>,
-}
-
-/// out += A x over the first rows and columns of A; zeros of x cost nothing.
-pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
-    let height = a.nrows();
-    for (column, x) in a.as_slice().chunks_exact(height).zip(x) {
-        if *x != 0.0 {
-            out.iter_mut().zip(column).for_each(|(out, a)| *out += a * x);
-        }
-    }
-}
-
-/// Dot product in four sums.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(a, b)| a * b).sum();
-    for (a, b) in a4.zip(b4) {
-        for k in 0..4 {
-            sums[k] += a[k] * b[k];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
-}
-
-/// A times columns, of which the first entries count.
-fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(a.nrows(), columns.ncols());
-    for (out, x) in out.as_mut_slice().chunks_exact_mut(a.nrows()).zip(columns.as_slice().chunks_exact(columns.nrows()))
-    {
-        add_product(out, a, x);
-    }
-    out
-}
-
-/// Rows, given as columns, times A, again as columns: of A's rows as many count as they have entries.
-fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(a.ncols(), rows.ncols());
-    for (out, row) in out.as_mut_slice().chunks_exact_mut(a.ncols()).zip(rows.as_slice().chunks_exact(rows.nrows())) {
-        for (out, column) in out.iter_mut().zip(a.as_slice().chunks_exact(a.nrows())) {
-            *out = dot(row, &column[..row.len()]);
-        }
-    }
-    out
-}
-
-/// A += a bᵀ.
-fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
-    let height = target.nrows();
-    for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
-        for i in 0..a.ncols() {
-            let factor = b[(j, i)];
-            if factor != 0.0 {
-                column.iter_mut().zip(a.column(i).as_slice()).for_each(|(t, a)| *t += a * factor);
-            }
-        }
-    }
 }
 
 /// M times columns, in place: what the modes ask of gaps.

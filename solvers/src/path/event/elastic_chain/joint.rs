@@ -1,5 +1,6 @@
 //! A joint of the chain: which points it has, what they feel of each other and of the joints beside them.
 
+use super::dense::add_product;
 use crate::contact::mode::ContactMode;
 use crate::path::event::force_method::{Section, Sections};
 use crate::path::event::system::System;
@@ -123,5 +124,37 @@ impl Joint {
     /// Whether it may have no room for a resultant.
     pub fn is_weak(&self, modes: &[ContactMode]) -> bool {
         self.contacts.iter().filter(|c| modes[**c] == ContactMode::Stick).count() < 2
+    }
+
+    /// Gaps of its points, it being joint `e`, by what the joints do.
+    pub fn gaps<'a>(&self, e: usize, of: &dyn Fn(usize) -> &'a [f64]) -> Vec<f64> {
+        let m = 2 * self.contacts.len();
+        let mut gaps = vec![0.0; m];
+        add_product(&mut gaps, &self.own, &of(e)[..m]);
+        add_product(&mut gaps, &self.by_twist, &of(e)[m..]);
+        for (block, other) in [(&self.before, e.wrapping_sub(1)), (&self.after, e + 1)] {
+            if let Some(block) = block {
+                add_product(&mut gaps, block, &of(other)[..block.ncols()]);
+            }
+        }
+        gaps
+    }
+
+    /// Gap of one of its points.
+    pub fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
+        let row = |block: &DMatrix<f64>, i: usize, x: &[f64]| -> f64 {
+            (0..block.ncols()).map(|j| block[(2 * p + i, j)] * x[j]).sum()
+        };
+        let m = 2 * self.contacts.len();
+        [0, 1].map(|i| {
+            let mut sum = row(&self.own, i, of(e)) + row(&self.by_twist, i, &of(e)[m..]);
+            sum += self.before.as_ref().map_or(0.0, |block| row(block, i, of(e - 1)));
+            sum + self.after.as_ref().map_or(0.0, |block| row(block, i, of(e + 1)))
+        })
+    }
+
+    /// A component of the resultant of its forces.
+    pub fn resultant(&self, i: usize, forces: &[f64]) -> f64 {
+        self.by_twist.column(i).iter().zip(forces).map(|(h, r)| h * r).sum()
     }
 }

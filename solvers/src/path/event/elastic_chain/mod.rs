@@ -22,6 +22,7 @@
 
 mod chain;
 mod decide;
+mod dense;
 mod factors;
 mod joint;
 mod redundants;
