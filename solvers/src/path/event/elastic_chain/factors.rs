@@ -73,12 +73,13 @@ impl Factor {
 
     /// Ĉ.
     fn flexibility(&self, before: Option<&Factor>) -> DMatrix<f64> {
-        let (Some(before), Some(block)) = (before, &self.joint.before) else { return self.joint.own.clone() };
-        let Some(back) = &before.joint.after else { return self.joint.own.clone() };
+        let own: &DMatrix<f64> = &self.joint.own;
+        let beside = before.and_then(|b| Some((b, self.joint.before.as_deref()?, b.joint.after.as_deref()?)));
+        let Some((before, block, back)) = beside else { return own.clone() };
         let mut asked = back.clone();
         ask_gaps(&before.rows, &mut asked);
         let m = before.forces();
-        &self.joint.own - block * (before.inverse.view((0, 0), (m, m)) * asked)
+        own - block * (before.inverse.view((0, 0), (m, m)) * asked)
     }
 
     /// Two rows of Ĉ and H, as columns.

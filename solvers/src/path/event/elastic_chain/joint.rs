@@ -5,9 +5,15 @@ use crate::contact::mode::ContactMode;
 use crate::path::event::force_method::{Section, Sections};
 use crate::path::event::system::System;
 use nalgebra::{DMatrix, Vector3};
+use std::rc::Rc;
 
 /// Stiffness of the spring of a weak joint, relative to that of the joint with all points stuck.
 const SPRING: f64 = 0.1;
+
+/// Share of the greatest entry by which matrices of congruent voussoirs differ by rounding.
+const ROUNDING: f64 = 1e-14;
+/// Kinds of matrices that are looked through.
+const KINDS: usize = 16;
 
 /// A joint.
 pub struct Joint {
@@ -18,11 +24,11 @@ pub struct Joint {
     /// H of all of them.
     pub by_twist: DMatrix<f64>,
     /// Gaps from the joint's own forces.
-    pub own: DMatrix<f64>,
+    pub own: Rc<DMatrix<f64>>,
     /// Gaps from the forces of the joint before, where a voussoir lies between them.
-    pub before: Option<DMatrix<f64>>,
+    pub before: Option<Rc<DMatrix<f64>>>,
     /// The same of the joint after.
-    pub after: Option<DMatrix<f64>>,
+    pub after: Option<Rc<DMatrix<f64>>>,
     /// κ.
     pub spring: Vector3<f64>,
 }
@@ -72,6 +78,27 @@ fn felt(system: &System, at: &Section, from: &Section, place: &[usize]) -> DMatr
     block
 }
 
+/// Matrices that differ by rounding only are one: those of congruent voussoirs then stay in the cache.
+#[derive(Default)]
+struct Shared(Vec<Rc<DMatrix<f64>>>);
+
+impl Shared {
+    fn of(&mut self, matrix: DMatrix<f64>) -> Rc<DMatrix<f64>> {
+        let size = matrix.amax();
+        let same = |other: &&Rc<DMatrix<f64>>| {
+            other.shape() == matrix.shape() && other.iter().zip(&matrix).all(|(a, b)| (a - b).abs() <= ROUNDING * size)
+        };
+        if let Some(known) = self.0.iter().find(same) {
+            return known.clone();
+        }
+        let new = Rc::new(matrix);
+        if self.0.len() < KINDS {
+            self.0.push(new.clone());
+        }
+        new
+    }
+}
+
 /// The joints in their order, and the place (joint, position in it) of every contact point. `None` where sections do
 /// not form chains, or where nothing gives way in one.
 pub fn joints(system: &System, sections: &Sections) -> Option<(Vec<Joint>, Vec<(usize, usize)>)> {
@@ -81,7 +108,7 @@ pub fn joints(system: &System, sections: &Sections) -> Option<(Vec<Joint>, Vec<(
         section.places.iter().enumerate().for_each(|(k, p)| within[p.contact] = k);
     }
     let mut places = vec![(0, 0); system.contacts];
-    let mut all = Vec::with_capacity(order.len());
+    let (mut all, mut kinds) = (Vec::with_capacity(order.len()), Shared::default());
     for (position, &(e, begins)) in order.iter().enumerate() {
         let section = &sections.all[e];
         let n = section.places.len();
@@ -98,9 +125,9 @@ pub fn joints(system: &System, sections: &Sections) -> Option<(Vec<Joint>, Vec<(
             section: e,
             contacts: section.places.iter().map(|p| p.contact).collect(),
             by_twist,
-            own,
-            before: (!begins).then(|| beside(position - 1)),
-            after: (!last).then(|| beside(position + 1)),
+            own: kinds.of(own),
+            before: (!begins).then(|| kinds.of(beside(position - 1))),
+            after: (!last).then(|| kinds.of(beside(position + 1))),
             spring: Vector3::from_fn(|i, _| SPRING * stiffness[(i, i)]),
         });
     }
