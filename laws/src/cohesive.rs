@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
 use voussoir_core::plugin::{
-    Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
+    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
 };
 
 /// A mortared joint with fracture energies.
@@ -217,6 +217,20 @@ impl InterfaceResponse for CohesiveResponse {
 
 const STRENGTH: Range = Range::POSITIVE;
 
+/// Opened on the bilinear law, f_t (g_u − g) / (g_u − g_0) with g_u = 2 G_I / f_t, back on the secant, and closed.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "friction = 0.6\ntensile_strength = 3e5\ncohesion = 5e5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9\ntensile_fracture_energy = 20.0\nshear_fracture_energy = 150.0",
+    source: "by hand: bilinear softening in mode I, secant unloading",
+    steps: &[
+        (&[3e-5, 0.0], &[-3e5, 0.0]),
+        (&[8e-5, 0.0], &[-154_838.709_677_419_36, 0.0]),
+        (&[4e-5, 0.0], &[-77_419.354_838_709_68, 0.0]),
+        (&[-1e-5, 0.0], &[1e5, 0.0]),
+        (&[2e-4, 0.0], &[0.0, 0.0]),
+    ],
+    tolerance: 1e-12,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
@@ -237,6 +251,7 @@ voussoir_core::inventory::submit! {
         samples: &[
             Sample::new("friction = 0.6\ntensile_strength = 3e5\ncohesion = 5e5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9\ntensile_fracture_energy = 20.0\nshear_fracture_energy = 150.0", 1.5e-4, &["elastic", "softening", "sliding", "softening_sliding"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &[
             "Alfano & Crisfield 2001, Int. J. Numer. Meth. Engng 50 (bilinear mixed-mode damage)",
             "Alfano & Sacco 2006, Int. J. Numer. Meth. Engng 68 (friction on the damaged share)",

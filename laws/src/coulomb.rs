@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Sample, check_as};
+use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Sample, check_as};
 
 /// Dry friction, non-associated by default.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -39,6 +39,20 @@ impl InterfaceLaw for Coulomb {
 const PARAMETERS: &[Parameter] =
     &[FRICTION, FRICTION_ANGLE, DILATANCY_ANGLE.default("0.0"), NORMAL_STIFFNESS, SHEAR_STIFFNESS];
 
+/// Closed, slipped, back within stick, slipped the other way, opened.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
+    source: "by hand: stick with k_t, slip at μ t_n at constant volume",
+    steps: &[
+        (&[-1e-4, 0.0], &[1e6, 0.0]),
+        (&[-1e-4, 4e-4], &[1e6, -6e5]),
+        (&[-1e-4, 3e-4], &[1e6, -1e5]),
+        (&[-1e-4, 0.0], &[1e6, 6e5]),
+        (&[1e-4, 0.0], &[0.0, 0.0]),
+    ],
+    tolerance: 1e-12,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
@@ -51,6 +65,7 @@ voussoir_core::inventory::submit! {
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
             Sample::new("friction_angle = 30.0\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &["Coulomb 1776", "Drucker 1954, J. Appl. Mech. 21"],
         file: file!(),
         page: include_str!("coulomb.md"),

@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, PluginKind, Property, Sample, check_as};
+use voussoir_core::plugin::{Capability, Card, KnownPath, PluginKind, Property, Sample, check_as};
 
 /// Dry friction with associated flow.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -33,6 +33,17 @@ impl InterfaceLaw for CoulombAssociated {
     }
 }
 
+/// Slip opens the joint against its stiffness: γ = 1.4 MPa / (μ² k_n + k_t); then back within stick.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
+    source: "by hand: one facet reached, γ = 1.4e6 / (0.36e10 + 5e9)",
+    steps: &[
+        (&[-1e-4, 4e-4], &[1_976_744.186_046_512, -1_186_046.511_627_907]),
+        (&[-1e-4, 3e-4], &[1_976_744.186_046_512, -686_046.511_627_907]),
+    ],
+    tolerance: 1e-12,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
@@ -44,6 +55,7 @@ voussoir_core::inventory::submit! {
         samples: &[
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Drucker 1954, J. Appl. Mech. 21"],
         file: file!(),
         page: include_str!("coulomb_associated.md"),

@@ -12,7 +12,7 @@ use surface::Surface;
 use update::{CapUpdate, Strength};
 use voussoir_core::law::{BulkMaterial, Elasticity, Isotropic, StressUpdate};
 use voussoir_core::plugin::{
-    Capability, Card, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape, check_as,
+    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape, check_as,
 };
 
 /// The modified Drucker–Prager model with a cap.
@@ -271,6 +271,18 @@ static NUMBER: Shape = Shape::Number(Quantity::Ratio, Range::ANY);
 static STRENGTH: Shape = Shape::Number(Quantity::Stress, Range::POSITIVE);
 static ENTRY: Shape = Shape::Tuple(&[&NUMBER, &STRENGTH]);
 
+/// Squeezed from all sides beyond a constant p_b, then back with K.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7]]",
+    source: "by hand: p = min(K ε_v, p_b), unloading with K = E / (3 (1 − 2ν))",
+    steps: &[
+        (&[-1e-3, -1e-3, -1e-3, 0.0, 0.0, 0.0], &[-2.5e7 / 3.0, -2.5e7 / 3.0, -2.5e7 / 3.0, 0.0, 0.0, 0.0]),
+        (&[-2e-3, -2e-3, -2e-3, 0.0, 0.0, 0.0], &[-1e7, -1e7, -1e7, 0.0, 0.0, 0.0]),
+        (&[-1.5e-3, -1.5e-3, -1.5e-3, 0.0, 0.0, 0.0], &[-1.75e7 / 3.0, -1.75e7 / 3.0, -1.75e7 / 3.0, 0.0, 0.0, 0.0]),
+    ],
+    tolerance: 1e-9,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::BulkMaterial,
@@ -301,6 +313,7 @@ voussoir_core::inventory::submit! {
             Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7], [0.005, 2e7], [0.02, 3e7]]\ninitial_compaction = 0.001", 4e-3, &["elastic", "cap", "shear"]),
             Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nuniaxial_strength = 8e6\ncrushing_fracture_energy = 5000.0", 4e-3, &["elastic", "cap", "shear"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",
             "Abaqus Theory Guide, Drucker-Prager/Cap model for geological materials (K = 1)",

@@ -9,7 +9,9 @@ use std::sync::Arc;
 use voussoir_core::law::{
     BulkMaterial, Elasticity, Isotropic, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt,
 };
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
+use voussoir_core::plugin::{
+    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
+};
 
 /// Associated Drucker–Prager with linear softening.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -202,6 +204,23 @@ impl StressUpdate for SofteningUpdate {
     }
 }
 
+/// Sheared at constant volume, Δκ = (√3 G γ − σ_Y) / (3 G + 9 K A² + dR/dκ), which presses by 3 K A Δκ; then back.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\npressure_coefficient = 0.3\nyield_stress = 1e7\nresidual_stress = 1e6\nultimate_plastic_strain = 0.01",
+    source: "by hand: radial return on the cone in pure shear",
+    steps: &[
+        (
+            &[0.0, 0.0, 0.0, 8e-3, 0.0, 0.0],
+            &[-6_206_418.901_145_161, -6_206_418.901_145_161, -6_206_418.901_145_161, 7_708_472.608_467_317, 0.0, 0.0],
+        ),
+        (
+            &[0.0, 0.0, 0.0, 6e-3, 0.0, 0.0],
+            &[-6_206_418.901_145_161, -6_206_418.901_145_161, -6_206_418.901_145_161, 3_541_805.941_800_650, 0.0, 0.0],
+        ),
+    ],
+    tolerance: 1e-12,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::BulkMaterial,
@@ -223,6 +242,7 @@ voussoir_core::inventory::submit! {
             Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\npressure_coefficient = 0.3\nyield_stress = 1e7\nresidual_stress = 1e6\ncrushing_fracture_energy = 5000.0", 2e-3, &["elastic", "shear", "apex"]),
             Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\npressure_coefficient = 0.3\nyield_stress = 1e7\nresidual_stress = 1e6\nultimate_plastic_strain = 0.01", 2e-3, &["elastic", "shear", "apex"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &[
             "Drucker & Prager 1952, Q. Appl. Math. 10",
             "code_aster R7.01.16, Intégration des comportements de Drucker-Prager",

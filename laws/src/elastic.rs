@@ -7,7 +7,7 @@
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{BulkMaterial, Elasticity};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
 
 /// A linear elastic material.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -40,6 +40,17 @@ pub(crate) const YOUNG_MODULUS: Parameter =
 pub(crate) const POISSON_RATIO: Parameter =
     Parameter::number("poisson_ratio", Quantity::Ratio, Range::new(-1.0, true, 0.5, true), "Poisson's ratio ν");
 
+/// Stretched along x, and sheared.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0",
+    source: "by hand: λ = E ν / ((1 + ν)(1 − 2ν)) = 25/18 GPa, G = E / (2 (1 + ν)) = 25/12 GPa",
+    steps: &[
+        (&[1e-3, 0.0, 0.0, 0.0, 0.0, 0.0], &[5e8 / 90.0, 1.25e8 / 90.0, 1.25e8 / 90.0, 0.0, 0.0, 0.0]),
+        (&[0.0, 0.0, 0.0, 1e-3, 0.0, 0.0], &[0.0, 0.0, 0.0, 2.5e7 / 12.0, 0.0, 0.0]),
+    ],
+    tolerance: 1e-12,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::BulkMaterial,
@@ -55,6 +66,7 @@ voussoir_core::inventory::submit! {
         samples: &[
             Sample::new("young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0", 1e-3, &["elastic"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
         file: file!(),
         page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them: limit analysis reads such blocks as rigid.\n",

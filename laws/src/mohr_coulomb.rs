@@ -4,7 +4,9 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
+use voussoir_core::plugin::{
+    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
+};
 
 /// A joint with strengths.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -48,6 +50,32 @@ impl InterfaceLaw for MohrCoulomb {
 
 const STRENGTH: Range = Range::NON_NEGATIVE;
 
+const TABLE: &str = "friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9";
+
+/// Torn, closed on what was torn, crushed; and sheared with dilatancy, then back.
+const KNOWN_PATHS: &[KnownPath] = &[
+    KnownPath {
+        table: TABLE,
+        source: "by hand: t_n = −k_n (g_n − g_p) between −f_t and f_c",
+        steps: &[
+            (&[1e-4, 0.0], &[-2e5, 0.0]),
+            (&[0.0, 0.0], &[8e5, 0.0]),
+            (&[-6e-4, 0.0], &[5e6, 0.0]),
+            (&[-5e-4, 0.0], &[4e6, 0.0]),
+        ],
+        tolerance: 1e-12,
+    },
+    KnownPath {
+        table: TABLE,
+        source: "by hand: one facet reached, γ = 1e6 / (μ tan ψ k_n + k_t)",
+        steps: &[
+            (&[-1e-4, 4e-4], &[1_291_066.507_313_081, -1_174_639.904_387_849]),
+            (&[-1e-4, 3.5e-4], &[1_291_066.507_313_081, -924_639.904_387_849]),
+        ],
+        tolerance: 1e-12,
+    },
+];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
@@ -70,6 +98,7 @@ voussoir_core::inventory::submit! {
         samples: &[
             Sample::new("friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 2e-4, &["elastic", "sliding"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12 (rectangular stress block)"],
         file: file!(),
         page: include_str!("mohr_coulomb.md"),

@@ -4,7 +4,9 @@
 use crate::rigid::DENSITY;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{BulkMaterial, Elasticity};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as};
+use voussoir_core::plugin::{
+    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
+};
 
 /// A linear elastic material with axes.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -91,6 +93,18 @@ impl BulkMaterial for OrthotropicElastic {
 
 const RATIO: Range = Range::ANY;
 
+/// The strains of 10 MPa along axis 1 alone, of 10 MPa across the plane alone, and of shear in the plane.
+const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
+    table: "young_modulus_1 = 2e10\nyoung_modulus_2 = 8e9\nyoung_modulus_3 = 1.2e10\nshear_modulus_12 = 5e9\npoisson_ratio_12 = 0.25\npoisson_ratio_13 = 0.2\npoisson_ratio_23 = 0.15\ndensity = 2200.0",
+    source: "by hand: ε = S σ with S_11 = 1/E_1, S_12 = −ν_12/E_1, S_13 = −ν_13/E_1, S_23 = −ν_23/E_2, S_33 = 1/E_3",
+    steps: &[
+        (&[5e-4, -1.25e-4, -1e-4, 0.0, 0.0, 0.0], &[1e7, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        (&[-1e-4, -1.875e-4, 1e7 / 1.2e10, 0.0, 0.0, 0.0], &[0.0, 0.0, 1e7, 0.0, 0.0, 0.0]),
+        (&[0.0, 0.0, 0.0, 1e-3, 0.0, 0.0], &[0.0, 0.0, 0.0, 5e6, 0.0, 0.0]),
+    ],
+    tolerance: 1e-12,
+}];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::BulkMaterial,
@@ -112,6 +126,7 @@ voussoir_core::inventory::submit! {
         samples: &[
             Sample::new("young_modulus_1 = 2e10\nyoung_modulus_2 = 8e9\nyoung_modulus_3 = 1.2e10\nshear_modulus_12 = 5e9\npoisson_ratio_12 = 0.25\npoisson_ratio_13 = 0.2\npoisson_ratio_23 = 0.15\naxis_angle = 25.0\ndensity = 2200.0", 1e-3, &["elastic"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &["Lekhnitskii 1963, Theory of Elasticity of an Anisotropic Elastic Body", "Jones 1999, Mechanics of Composite Materials, sections 2.4 and 2.8"],
         file: file!(),
         page: include_str!("orthotropic_elastic.md"),

@@ -4,7 +4,7 @@
 use crate::parameters::*;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Property, Sample, Shape};
+use voussoir_core::plugin::{Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Sample, Shape};
 
 /// What a closed joint does along itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,6 +43,22 @@ impl InterfaceLaw for Unilateral {
     }
 }
 
+/// Slips freely and closes further; stuck it carries shear even where it is open.
+const KNOWN_PATHS: &[KnownPath] = &[
+    KnownPath {
+        table: "tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
+        source: "by hand: no shear, k_n in compression",
+        steps: &[(&[-1e-4, 2e-4], &[1e6, 0.0]), (&[-2e-4, 2e-4], &[2e6, 0.0]), (&[1e-4, 2e-4], &[0.0, 0.0])],
+        tolerance: 1e-12,
+    },
+    KnownPath {
+        table: "tangential = \"stuck\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
+        source: "by hand: shear is elastic whatever the normal gap",
+        steps: &[(&[-1e-4, 2e-4], &[1e6, -1e6]), (&[1e-4, 2e-4], &[0.0, -1e6])],
+        tolerance: 1e-12,
+    },
+];
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
@@ -64,6 +80,7 @@ voussoir_core::inventory::submit! {
             Sample::new("tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["sliding"]),
             Sample::new("tangential = \"stuck\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic"]),
         ],
+        known_paths: KNOWN_PATHS,
         sources: &["Signorini 1933", "Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),
         page: include_str!("unilateral.md"),

@@ -72,6 +72,14 @@ enum Command {
         #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
         export: Option<String>,
     },
+    /// Check whether a law keeps what its card and its trait promise
+    Conform {
+        /// Tags of laws of joints or materials; all where they are left out
+        tags: Vec<String>,
+        /// Folder for studies that show what was found
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// List plug-ins
     List {
         /// laws, materials, scenes, solvers, kinds, writers …; all where it is left out
@@ -109,6 +117,7 @@ pub fn main() -> ExitCode {
         }
         Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
         Command::Explain { what, export: None } => commands::explain::explain(&what),
+        Command::Conform { tags, out } => commands::conform::conform_tags(&tags, out.as_deref()),
         Command::List { kind } => commands::explain::list(kind.as_deref()),
         Command::Schema => commands::explain::schema(),
         Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),

@@ -1,49 +1,51 @@
 //! Voussoir: how masonry made of blocks stands and collapses.
 //!
-//! The facade: it names every crate that holds plug-ins (a crate that no source names registers
-//! nothing) and reads study files, expands them into cases, solves them and writes results.
+//! A study is text, a file, a value with the same keys, or is built piece by piece; its answers are typed and carry
+//! what proves them:
 //!
 //! ```
-//! let study = voussoir::Study::from_toml(r#"
-//!     name = "two blocks"
-//!     [scene]
-//!     scene = "wall"
-//!     width = 1.0
-//!     brick = [0.4, 0.2]
-//!     courses = 2
-//!     bricks = 1
-//!     material = "stone"
-//!     joint = "dry"
-//!     [materials.stone]
-//!     law = "rigid"
-//!     density = 2000.0
-//!     [joints.dry]
-//!     law = "coulomb"
-//!     friction = 0.6
-//!     [[stages]]
-//!     name = "dead"
-//!     gravity = 9.81
-//!     [[stages]]
-//!     name = "tilt"
-//!     until = "collapse"
-//!     loads = [{ kind = "body", acceleration = [9.81, 0.0] }]
-//! "#).map_err(|wrong| wrong[0].to_string())?;
-//! let result = voussoir::solve_case(&study.cases[0]);
-//! assert_eq!(result.status, voussoir::core::limit::Status::Collapse);
-//! assert!(result.certificate.passed);
-//! let results = study.results("by hand", vec![result]);
-//! assert!(voussoir::verify(&study, &results).is_empty());
-//! # Ok::<(), String>(())
+//! use voussoir::prelude::*;
+//!
+//! let study = Study::builder("strathmashie")
+//!     .scene("arch", json!({
+//!         "profile": { "shape": "segmental", "span": 9.42, "rise": 2.99 },
+//!         "thickness": 0.60, "width": 5.81, "voussoirs": 15, "ends": "bonded",
+//!         "material": "stone", "joint": "dry",
+//!     }))
+//!     .material("stone", "rigid", json!({ "density": 2200.0 }))
+//!     .joint("dry", "coulomb_associated", json!({ "friction": 0.6 }))
+//!     .gravity(9.81)
+//!     .until_collapse("live", json!([{ "kind": "point", "span_fraction": 0.25, "force": ["0 N", "-1 kN"] }]))
+//!     .build()?;
+//! let results = study.run();
+//! let case = &results.cases[0];
+//! assert_eq!(case.status, Status::Collapse);
+//! assert!((case.load_factor.unwrap() - 698.0227).abs() < 1e-4); // [kN]
+//! assert!(case.certificate.passed && verify(&study, &results).is_empty());
+//! # Ok::<(), StudyError>(())
 //! ```
+//!
+//! | | |
+//! |---|---|
+//! | [`Study::from_toml`], [`Study::from_file`], [`Study::from_value`], [`Study::builder`] | a study, or a [`StudyError`] with every mistake in it |
+//! | [`Study::run`], [`Study::run_with`] | all its cases, or some, side by side, watched and cancelled by an [`Observer`](solve::Observer) such as [`Watch`](solve::Watch) |
+//! | [`StudyResults`], [`CaseResult`] | what `results.json` holds, typed; [`verify`] checks it |
+//! | [`kinds::read_study`], [`kinds::read_source`] with [`study::StudySource`] | a study of any kind, also one without a scene: [`LoadedStudy::run`](kinds::LoadedStudy::run) gives the files that `voussoir run` writes, as bytes |
+//! | [`conformance::conform`] | whether a law of one's own keeps what it promises |
+//! | [`cli::main`] | the command line, for a program that links plug-ins of its own |
+//!
+//! The crate names every crate that holds plug-ins, because one that no source names registers nothing.
 #![forbid(unsafe_code)]
 
 pub mod cli;
 mod commands;
 pub mod config;
+pub mod conformance;
 pub mod figures;
 pub mod kinds;
 pub mod loads;
 pub mod postprocess;
+pub mod prelude;
 pub mod results;
 pub mod scenes;
 pub mod solve;
@@ -51,11 +53,17 @@ pub mod study;
 pub mod verify;
 pub mod writers;
 
+pub use kinds::RunOptions;
 pub use results::{CaseResult, StudyResults};
 pub use solve::solve_case;
-pub use study::{Case, Study};
+pub use study::{Case, Study, StudyBuilder, StudyError};
 pub use verify::verify;
 
 pub use voussoir_core as core;
 pub use voussoir_laws as laws;
 pub use voussoir_solvers as solvers;
+
+/// The README's Rust compiles, and says what it says.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

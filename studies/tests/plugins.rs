@@ -218,13 +218,13 @@ fn defaults_of_cards_are_those_of_the_types() {
 fn a_study_makes_cases_at_other_values() {
     let study =
         Study::from_toml(&format!("{ARCH}[sweep]\n\"scene.thickness\" = {{ list = [0.4, 0.5] }}\n")).expect("a study");
-    let case = study.at(1, &[("scene.profile.rise", 1.2.into())]).expect("a case");
+    let case = study.at(1, &[("scene.profile.rise".into(), 1.2.into())]).expect("a case");
     assert_eq!(case.assembly.arch.as_ref().map(|arch| arch.rise), Some(1.2));
     assert_eq!(case.parameters["scene.thickness"], 0.5);
     assert_eq!(case.parameters["scene.profile.rise"], 1.2);
     let same = study.at(1, &[]).expect("a case");
     assert_eq!(same.resolved, study.cases[1].resolved);
-    let wrong = study.at(0, &[("scene.profile.rise", (-1.0).into())]).expect_err("no arch");
+    let wrong = study.at(0, &[("scene.profile.rise".into(), (-1.0).into())]).expect_err("no arch");
     assert_eq!(wrong[0].key, "scene.profile.rise");
 }
 
@@ -234,7 +234,7 @@ struct Try;
 impl Try {
     fn other<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
         let (key, value) = (study.outline.table["key"].as_str()?, study.outline.table["value"].as_f64()?);
-        let mut case = study.at(label.id % study.cases.len(), &[(key, value.into())]).ok()?;
+        let mut case = study.at(label.id % study.cases.len(), &[(key.to_string(), value.into())]).ok()?;
         case.id = label.id;
         Some(Cow::Owned(case))
     }

@@ -10,7 +10,6 @@ pub mod by_hand;
 pub mod energy;
 pub mod known;
 pub mod random;
-pub mod samples;
 pub mod seen;
 pub mod settled;
 mod wall;

@@ -15,6 +15,15 @@ pub struct PointForce {
     pub force: Vec2,
 }
 
+/// How a load on the road of a bridge reaches the extrados; for drawings, no force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadSpread {
+    /// Ends of the patch on the road \[m\].
+    pub on_road: [Vec2; 2],
+    /// Ends of what it loads, on the level at which the spread is taken \[m\].
+    pub below: [Vec2; 2],
+}
+
 /// A movement imposed on a support.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settlement {
@@ -39,6 +48,8 @@ pub struct Stage {
     pub forces: Vec<PointForce>,
     /// Accelerations (× mass) on every free body, multiplied by the stage's factor \[m/s²\].
     pub accelerations: Vec<Vec2>,
+    /// How those of the forces that come from a road have spread.
+    pub spreads: Vec<LoadSpread>,
     /// Movements of supports, multiplied by the stage's factor.
     pub settlements: Vec<Settlement>,
     /// How far it goes.

@@ -14,7 +14,9 @@ pub use self::assembly::{ArchLayout, Assembly, Body, Catalogue, Inertia, root};
 pub use self::bridge::{Bridge, Chord, FillMass, FillPart, FillReaction, carried};
 pub use self::contact::{CONTACT_TOLERANCE, Interpenetration, find_joints};
 pub use self::joints::{Bond, Gap, Joint};
-pub use self::loads::{PointForce, Settlement, Stage, StageLoads, Target, fill_bounds, fill_weights, stage_loads};
+pub use self::loads::{
+    LoadSpread, PointForce, Settlement, Stage, StageLoads, Target, fill_bounds, fill_weights, stage_loads,
+};
 pub use self::scene::Scene;
 pub use self::self_crossing::crosses_itself;
 pub use self::wrench::{Wrenches, add_force};

@@ -83,6 +83,21 @@ impl Sample {
     }
 }
 
+/// A path of one point whose answer is known from elsewhere than the law's own code: derived by hand, or published.
+/// Generic checks cannot see a memory that is missing in a consistent way; such a path does.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownPath {
+    /// The law's keys in TOML, without the tag.
+    pub table: &'static str,
+    /// Whose numbers they are, or how they follow.
+    pub source: &'static str,
+    /// Steps in order: gaps (n, t) \[m\] or strains (xx, yy, zz, xy, yz, zx) at the end of each, with the tractions or
+    /// stresses there \[Pa\].
+    pub steps: &'static [(&'static [f64], &'static [f64])],
+    /// Greatest difference, as a share of the greatest number of the path.
+    pub tolerance: f64,
+}
+
 /// What a plug-in says of itself. A card states what it has; the rest is that of [`Card::BLANK`].
 #[derive(Debug)]
 pub struct Card {
@@ -103,6 +118,8 @@ pub struct Card {
     pub claims: &'static [Property],
     /// Laws: numbers for the conformance tests.
     pub samples: &'static [Sample],
+    /// Laws: paths whose answers are known; a law with state needs one that goes back after something irreversible.
+    pub known_paths: &'static [KnownPath],
     /// Solvers: `auto` takes the cheapest that fits; `None` is for those taken by name only.
     pub cost: Option<u32>,
     /// Where its equations come from.
@@ -127,6 +144,7 @@ impl Card {
         requires: &[],
         claims: &[],
         samples: &[],
+        known_paths: &[],
         cost: None,
         sources: &[],
         file: "",

@@ -1,6 +1,8 @@
 //! What is wrong with an input, and where: a key path that the reader of the file turns into
 //! file, line and column.
 
+use std::fmt;
+
 /// One mistake in a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -24,3 +26,12 @@ impl Diagnostic {
         self
     }
 }
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}: {}", self.path, self.message)?;
+        self.help.iter().try_for_each(|help| write!(out, "\n  help: {help}"))
+    }
+}
+
+impl std::error::Error for Diagnostic {}

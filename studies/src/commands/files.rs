@@ -2,7 +2,8 @@
 
 use super::codes::{NO_ACCESS, WRONG_INPUT};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::kinds::{LoadedStudy, read_study};
+use crate::kinds::{LoadedStudy, read_source_beside};
+use crate::study::{StudySource, beside};
 use std::path::Path;
 
 /// Reads a file, or says why not.
@@ -40,7 +41,9 @@ pub fn overrides(sets: &[String]) -> Result<Vec<(String, String)>, u8> {
 /// Reads a study of any kind, printing every mistake in it.
 pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStudy>, u8> {
     let text = read(path)?;
-    read_study(&text, &path.display().to_string(), sets).map_err(|diagnostics| report(path, &diagnostics))
+    let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
+    let study = source.and_then(|source| read_source_beside(source, &beside(path)));
+    study.map_err(|diagnostics| report(path, &diagnostics))
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {

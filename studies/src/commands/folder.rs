@@ -177,6 +177,7 @@ fn of_a_writer(name: &str) -> bool {
             ["sweep", "curve", "map", "comparison", "envelope", "path"].contains(&stem)
                 || numbered("case-")
                 || numbered("curve-")
+                || stem.starts_with("chart-")
         }),
         _ => stem.starts_with("case-") && stem.ends_with(".vtu") || ["cases.pvd", "README.txt"].contains(&stem),
     }

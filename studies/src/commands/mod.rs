@@ -2,6 +2,7 @@
 
 pub mod check;
 mod codes;
+pub mod conform;
 pub mod explain;
 pub mod files;
 mod folder;

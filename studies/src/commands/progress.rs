@@ -73,7 +73,7 @@ impl Observer for Progress {
         if self.bar.is_hidden() || now < LONG || self.shown.swap(now, Ordering::Relaxed) == now {
             return;
         }
-        let PathProgress { case, stage, gravity, factor, states } = at;
+        let PathProgress { case, stage, gravity, factor, states, .. } = at;
         let what = if *gravity { " (gravity)" } else { "" };
         self.bar.set_message(format!("{}: case {case}, {stage}{what}, factor {factor:.6}, {states} states", self.name));
         self.bar.tick();

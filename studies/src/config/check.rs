@@ -224,6 +224,11 @@ impl<'a> Checker<'a> {
                 self.diagnostics.extend(wrong);
                 None
             }
+            // A text may be meant as a number with a unit: then that is what is wrong with it.
+            None if node.text().is_some() && shapes.iter().any(|shape| matches!(shape, Shape::Number(..))) => {
+                let number = shapes.iter().find(|shape| matches!(shape, Shape::Number(..)))?;
+                self.check(node, number, key)
+            }
             None => {
                 let message = format!("must be {}, but is {}", any_shape(shapes), node.describe());
                 self.wrong(&node.origin, key, message)

@@ -9,10 +9,13 @@ use voussoir_core::plugin::{Card, Need};
 pub fn default_table(card: &Card) -> Json {
     let tag = [(card.kind.tag_key().to_string(), Json::from(card.tag))];
     let defaults = card.parameters.iter().filter_map(|parameter| match parameter.need {
-        Need::Default(value) => {
-            Some((parameter.name.to_string(), parse_value(value, &Origin::Set("".into()))?.to_json()))
-        }
+        Need::Default(value) => Some((parameter.name.to_string(), default_of(value)?)),
         _ => None,
     });
     Json::Object(tag.into_iter().chain(defaults).collect::<Map<_, _>>())
+}
+
+/// A default of a card as a value; `None` where it is no TOML.
+pub fn default_of(default: &str) -> Option<Json> {
+    Some(parse_value(default, &Origin::Set("".into()))?.to_json())
 }

@@ -49,11 +49,14 @@ impl fmt::Display for LocatedDiagnostic {
     }
 }
 
+impl std::error::Error for LocatedDiagnostic {}
+
 /// All mistakes, one below the other, in the order of the file; command line last.
 pub fn sort(mistakes: &mut [LocatedDiagnostic]) {
     mistakes.sort_by_key(|mistake| match &mistake.origin {
         Origin::File { line, column, .. } => (*line, *column),
         Origin::Set(_) => (usize::MAX, 0),
+        Origin::Value => (0, 0),
     });
 }
 

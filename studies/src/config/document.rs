@@ -3,7 +3,7 @@
 //! Only the form is read here; what keys mean is checked in [`super::check`].
 
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
-use crate::config::dotted_key::segments;
+use crate::config::dotted_key::{join, segments};
 use crate::config::origin::Origin;
 use std::sync::Arc;
 use toml::Spanned;
@@ -230,6 +230,42 @@ pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
     Some(node)
 }
 
+/// A document from a value that a program has made; every part of it gets the origin [`Origin::Value`]. Errors are
+/// all values that no study can hold, by key.
+pub fn from_json(value: &serde_json::Value) -> Result<Node, Vec<LocatedDiagnostic>> {
+    let mut mistakes = Vec::new();
+    let node = json_node(value, "", &mut mistakes);
+    if mistakes.is_empty() { Ok(node) } else { Err(mistakes) }
+}
+
+fn json_node(value: &serde_json::Value, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
+    use serde_json::Value as Json;
+    let value = match value {
+        Json::Null => {
+            let mistake = LocatedDiagnostic::new(&Origin::Value, path, "is null");
+            mistakes.push(mistake.help("leave the key out, or give it a value"));
+            Value::Boolean(false)
+        }
+        Json::Bool(value) => Value::Boolean(*value),
+        Json::Number(number) => {
+            number.as_i64().map_or(Value::Float(number.as_f64().unwrap_or(f64::NAN)), Value::Integer)
+        }
+        Json::String(text) => Value::String(text.clone()),
+        Json::Array(values) => {
+            let entry = |(index, value)| json_node(value, &join(path, &format!("{index}")), mistakes);
+            Value::Array(values.iter().enumerate().map(entry).collect())
+        }
+        Json::Object(entries) => {
+            let entry = |(key, value): (&String, &Json)| {
+                let node = json_node(value, &join(path, key), mistakes);
+                Entry { key: key.clone(), origin: Origin::Value, node }
+            };
+            Value::Table(Table { entries: entries.iter().map(entry).collect() })
+        }
+    };
+    Node { value, origin: Origin::Value }
+}
+
 struct Reader {
     file: Arc<str>,
     /// Byte where each line starts.
@@ -315,7 +351,7 @@ mod tests {
     fn at(origin: &Origin) -> (usize, usize) {
         match origin {
             Origin::File { line, column, .. } => (*line, *column),
-            Origin::Set(_) => (0, 0),
+            Origin::Set(_) | Origin::Value => (0, 0),
         }
     }
 

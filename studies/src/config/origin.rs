@@ -1,4 +1,4 @@
-//! Where a key or value was written: a place in a file, or the command line.
+//! Where a key or value was written: a place in a file, the command line, or a value of a program.
 
 use std::fmt;
 use std::sync::Arc;
@@ -17,6 +17,8 @@ pub enum Origin {
     },
     /// On the command line, as `--set KEY=…`.
     Set(Arc<str>),
+    /// In a value that a program has made; its key says where.
+    Value,
 }
 
 impl fmt::Display for Origin {
@@ -24,6 +26,7 @@ impl fmt::Display for Origin {
         match self {
             Origin::File { file, line, column } => write!(out, "{file}:{line}:{column}"),
             Origin::Set(key) => write!(out, "--set {key}"),
+            Origin::Value => write!(out, "study"),
         }
     }
 }

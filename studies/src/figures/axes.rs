@@ -81,6 +81,57 @@ impl Canvas {
         );
     }
 
+    /// A dashed line through spots; no dashes where `dash` is empty.
+    pub fn dashed(&mut self, spots: &[Spot], colour: &str, width: f64, dash: &str) {
+        let points: Vec<String> = spots.iter().map(|s| format!("{:.2},{:.2}", s[0], s[1])).collect();
+        let dash = if dash.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dash}\"") };
+        let _ = writeln!(
+            self.body,
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+             stroke-linejoin=\"round\"{dash}/>",
+            points.join(" ")
+        );
+    }
+
+    /// A filled polygon.
+    pub fn filled(&mut self, spots: &[Spot], colour: &str) {
+        let points: Vec<String> = spots.iter().map(|s| format!("{:.2},{:.2}", s[0], s[1])).collect();
+        let _ = writeln!(self.body, "<polygon points=\"{}\" fill=\"{colour}\"/>", points.join(" "));
+    }
+
+    /// A circle around a spot.
+    pub fn ring(&mut self, at: Spot, radius: f64, colour: &str) {
+        let _ = writeln!(
+            self.body,
+            "<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
+            at[0], at[1]
+        );
+    }
+
+    /// Begins a group with these attributes; what is in them must be escaped.
+    pub fn open(&mut self, attributes: &str) {
+        let _ = writeln!(self.body, "<g {attributes}>");
+    }
+
+    /// Begins the group of a line of a chart: its name, the cases that its points belong to, and the values of those
+    /// points for scripts.
+    pub fn open_series(&mut self, name: &str, cases: &[usize], points: &[(f64, f64)]) {
+        let cases: Vec<String> = cases.iter().map(usize::to_string).collect();
+        let cases = if cases.is_empty() { String::new() } else { format!(" data-cases=\"{}\"", cases.join(" ")) };
+        let values: Vec<String> =
+            points.iter().map(|(x, y)| format!("{},{}", format_short(*x, 6), format_short(*y, 6))).collect();
+        self.open(&format!(
+            "class=\"series\" data-name=\"{}\"{cases} data-points=\"{}\"",
+            escape(name),
+            values.join(" ")
+        ));
+    }
+
+    /// Ends the innermost group.
+    pub fn close(&mut self) {
+        self.body.push_str("</g>\n");
+    }
+
     /// The mark of series `index`.
     pub fn mark(&mut self, index: usize, at: Spot) {
         let colour = COLOURS[index % COLOURS.len()];
@@ -115,8 +166,13 @@ impl Canvas {
 
     /// Text on a white edge, readable on any ground.
     pub fn label(&mut self, at: Spot, words: &str, size: f64) {
+        self.edged(at, words, size, "middle");
+    }
+
+    /// The same with another anchor.
+    pub fn edged(&mut self, at: Spot, words: &str, size: f64, anchor: &str) {
         let style = " paint-order=\"stroke\" stroke=\"white\" stroke-width=\"4\" stroke-linejoin=\"round\"";
-        self.styled(at, words, size, "middle", style);
+        self.styled(at, words, size, anchor, style);
     }
 
     /// Text that reads upwards.

@@ -1,121 +1,68 @@
 //! Line charts, as SVG: markers and lines, legend below the axes so that it never covers data.
 
-use super::text_layout::{text_width, wrapped};
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::error::Error;
+use super::axes::{COLOURS, Canvas};
+use super::scale::{Scale, range};
+use super::series::{ChartStyle, Marker, Series};
+use super::text_layout::{Spot as Place, text_width, wrapped};
 
-/// One line of a chart.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Series {
-    /// For the legend.
-    pub name: String,
-    /// By growing abscissa.
-    pub points: Vec<(f64, f64)>,
-    /// Points without an ordinate (unbounded), shown at the top edge; only abscissas count.
-    pub open_points: Vec<(f64, f64)>,
-    /// What is marked instead of every point: the line is then drawn in the order of its points.
-    pub spots: Option<Vec<Spot>>,
-}
-
-/// How a place is marked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
-    /// A filled octagon.
-    Dot,
-    /// A filled square.
-    Square,
-    /// A circle around what else is there.
-    Ring,
-}
-
-/// A marked place of a line.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Spot {
-    /// Where.
-    pub at: (f64, f64),
-    /// What, for the legend: a kind has one marker.
-    pub kind: &'static str,
-    /// How it is drawn.
-    pub marker: Marker,
-    /// Written beside it.
-    pub label: String,
-}
-
-const WIDTH: u32 = 900;
-const PLOT: u32 = 480;
-const ROW: u32 = 24;
-const INK: RGBColor = RGBColor(34, 34, 34);
-const GRID: RGBColor = RGBColor(225, 225, 225);
-/// Okabe and Ito (2008), told apart by colour-blind readers.
-const PALETTE: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-    RGBColor(0, 0, 0),
-];
-
-type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+const WIDTH: f64 = 900.0;
+const PLOT: f64 = 480.0;
+const ROW: f64 = 24.0;
+const GRID: &str = "#e1e1e1";
+const INK: &str = "#222222";
+/// Dashes of lines, so that they are told apart in grey.
+const DASHES: [&str; 5] = ["", "9 4", "2.5 3", "12 4 2.5 4", "6 3"];
 
 /// The chart, as SVG. Points that are not finite are left out.
 pub fn chart_svg(title: &str, x_label: &str, y_label: &str, series: &[Series], notes: &[String]) -> String {
-    let mut text = String::new();
-    match draw(&mut text, title, x_label, y_label, series, notes) {
-        Ok(()) => text,
-        Err(error) => format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"60\"><text x=\"10\" y=\"35\">{}</text></svg>",
-            super::format::escape(&format!("no chart: {error}"))
-        ),
+    chart(title, x_label, y_label, series, notes, &ChartStyle::default())
+}
+
+/// The chart with axes as `style` says.
+pub fn chart(
+    title: &str,
+    x_label: &str,
+    y_label: &str,
+    series: &[Series],
+    notes: &[String],
+    style: &ChartStyle,
+) -> String {
+    let abscissas = series.iter().flat_map(|s| s.points.iter().chain(&s.open_points).map(|p| p.0));
+    let Some(horizontal) = range(abscissas, style.log[0]) else {
+        let mut canvas = Canvas::default();
+        canvas.text([10.0, 35.0], "no chart: no finite point", 14.0, "start");
+        return canvas.finish(WIDTH, 60.0);
+    };
+    let (vertical, broken) = vertical_range(series, style.log[1]);
+    let mut lines: Vec<String> = notes.to_vec();
+    lines.extend(broken.then(|| "The vertical axis does not begin at zero.".to_string()));
+    let lines: Vec<String> = lines.iter().flat_map(|note| wrapped(note, 13.0, WIDTH - 100.0)).collect();
+    let titles = wrapped(title, 18.0, WIDTH - 40.0);
+    let head = 16.0 + ROW * titles.len() as f64;
+    let frame = Frame {
+        x: Scale::new(horizontal, [92.0, WIDTH - 28.0], style.log[0]),
+        y: Scale::new(vertical, [head + PLOT - 54.0, head + 8.0], style.log[1]),
+        left: 92.0,
+        right: WIDTH - 28.0,
+        top: head + 8.0,
+        bottom: head + PLOT - 54.0,
+    };
+    let legend = Legend::new(series);
+    let mut canvas = Canvas::default();
+    for (i, line) in titles.iter().enumerate() {
+        canvas.text([WIDTH / 2.0, 26.0 + ROW * i as f64], line, 18.0, "middle");
     }
-}
-
-/// Offsets of a marker's corners \[px\].
-fn corners(kind: usize) -> Vec<(i32, i32)> {
-    match kind % 5 {
-        0 => vec![(-2, -5), (2, -5), (5, -2), (5, 2), (2, 5), (-2, 5), (-5, 2), (-5, -2)],
-        1 => vec![(-4, -4), (4, -4), (4, 4), (-4, 4)],
-        2 => vec![(0, -6), (5, 4), (-5, 4)],
-        3 => vec![(0, -6), (6, 0), (0, 6), (-6, 0)],
-        _ => vec![(0, 6), (5, -4), (-5, -4)],
+    canvas.open(&format!("class=\"plot\" data-x=\"{}\" data-y=\"{}\"", frame.x.describe(), frame.y.describe()));
+    frame.draw(&mut canvas, x_label, y_label);
+    frame.curves(&mut canvas, series);
+    frame.marks(&mut canvas, series);
+    canvas.close();
+    let base = head + PLOT + 14.0;
+    legend.draw(&mut canvas, series, base);
+    for (i, line) in lines.iter().enumerate() {
+        canvas.text([70.0, base + 5.0 + ROW * (legend.row + 1.0) + 20.0 * i as f64], line, 13.0, "start");
     }
-}
-
-/// Corners of the mark for an unbounded case, from its tip \[px\].
-const ARROW: [(i32, i32); 7] = [(0, 0), (7, 9), (3, 9), (3, 19), (-3, 19), (-3, 9), (-7, 9)];
-
-fn mark(area: &Canvas, at: (i32, i32), corners: &[(i32, i32)], colour: RGBColor) -> Result<(), Box<dyn Error>> {
-    let spots: Vec<(i32, i32)> = corners.iter().map(|(x, y)| (at.0 + x, at.1 + y)).collect();
-    area.draw(&Polygon::new(spots, colour.filled()))?;
-    Ok(())
-}
-
-fn symbol(area: &Canvas, at: (i32, i32), marker: Marker, colour: RGBColor) -> Result<(), Box<dyn Error>> {
-    match marker {
-        Marker::Dot => mark(area, at, &corners(0), colour),
-        Marker::Square => mark(area, at, &corners(1), colour),
-        Marker::Ring => Ok(area.draw(&Circle::new(at, 9, colour.stroke_width(2)))?),
-    }
-}
-
-fn write(area: &Canvas, at: (i32, i32), words: &str, size: u32, centred: bool) -> Result<(), Box<dyn Error>> {
-    let place = Pos::new(if centred { HPos::Center } else { HPos::Left }, VPos::Center);
-    area.draw(&Text::new(words.to_string(), at, ("sans-serif", size).into_font().color(&INK).pos(place)))?;
-    Ok(())
-}
-
-/// Least and greatest value with a margin of 4 %; a single value gets one of 10 %.
-fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let (low, high) =
-        values.filter(|x| x.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    if low > high {
-        return None;
-    }
-    let margin = if high > low { 0.04 * (high - low) } else { 0.1 * high.abs().max(1e-9) };
-    Some((low - margin, high + margin))
+    canvas.finish(WIDTH, head + PLOT + ROW * (legend.row + 1.0) + 20.0 * lines.len() as f64 + 22.0)
 }
 
 /// The parts of a line between open points.
@@ -134,33 +81,142 @@ fn unbroken(series: &Series) -> Vec<Vec<(f64, f64)>> {
 }
 
 /// Least and greatest ordinate of the axis, and whether it does not begin at zero.
-fn vertical_range(series: &[Series]) -> (f64, f64, bool) {
+fn vertical_range(series: &[Series], log: bool) -> ([f64; 2], bool) {
     let ordinates = series.iter().flat_map(|s| s.points.iter().map(|p| p.1));
-    let (low, high) = range(ordinates).unwrap_or((0.0, 1.0));
+    let [low, high] = range(ordinates, log).unwrap_or([if log { 1.0 } else { 0.0 }, if log { 10.0 } else { 1.0 }]);
     let open = series.iter().any(|s| !s.open_points.is_empty());
+    if log {
+        return ([low, if open { high * (high / low).powf(0.12) } else { high }], false);
+    }
     // Values that lie close together would be one line on an axis from zero.
     if !open && low > 0.8 * high && high > low {
-        return (low - 0.2 * (high - low), high + 0.05 * (high - low), true);
+        return ([low - 0.2 * (high - low), high + 0.05 * (high - low)], true);
     }
     let bottom = if low > -0.05 * high { 0.0 } else { low };
-    (bottom, high + if open { 0.12 * (high - low.min(0.0)) } else { 0.0 }, false)
+    ([bottom, high + if open { 0.12 * (high - low.min(0.0)) } else { 0.0 }], false)
 }
 
-/// The legend: lines, marks of unbounded cases, then kinds of spots, each with its place and row.
-struct Legend<'a> {
-    kinds: Vec<(&'a str, Marker)>,
-    /// Index of the series or kind, whether it is a mark of unbounded cases, words.
-    entries: Vec<(usize, bool, String)>,
-    /// How many entries are series.
-    lines_end: usize,
-    /// x and row of each entry.
-    places: Vec<(i32, i32)>,
+/// Axes with the box that they span \[px\].
+struct Frame {
+    x: Scale,
+    y: Scale,
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Frame {
+    fn place(&self, (x, y): (f64, f64)) -> Option<Place> {
+        let place = [self.x.at(x), self.y.at(y)];
+        place.iter().all(|c| c.is_finite()).then_some(place)
+    }
+
+    fn draw(&self, canvas: &mut Canvas, x_label: &str, y_label: &str) {
+        let mut last = f64::NEG_INFINITY;
+        for tick in self.x.ticks(10) {
+            let x = self.x.at(tick);
+            canvas.line([x, self.top], [x, self.bottom], GRID, 1.0);
+            let words = Canvas::number(tick);
+            let half = text_width(&words, 14.0) / 2.0;
+            if x - half > last + 4.0 {
+                canvas.text([x, self.bottom + 19.0], &words, 14.0, "middle");
+                last = x + half;
+            }
+        }
+        for tick in self.y.ticks(8) {
+            let y = self.y.at(tick);
+            canvas.line([self.left, y], [self.right, y], GRID, 1.0);
+            canvas.text([self.left - 8.0, y + 5.0], &Canvas::number(tick), 14.0, "end");
+        }
+        canvas.line([self.left, self.top], [self.left, self.bottom], INK, 1.2);
+        canvas.line([self.left, self.bottom], [self.right, self.bottom], INK, 1.2);
+        canvas.text([(self.left + self.right) / 2.0, self.bottom + 44.0], x_label, 15.0, "middle");
+        canvas.upright([22.0, (self.top + self.bottom) / 2.0], y_label, 15.0);
+    }
+
+    fn curves(&self, canvas: &mut Canvas, series: &[Series]) {
+        for (i, own) in series.iter().enumerate() {
+            let finite = own.points.iter().filter(|point| self.place(**point).is_some());
+            canvas.open_series(&own.name, &own.cases, &finite.copied().collect::<Vec<_>>());
+            for part in unbroken(own).into_iter().filter(|_| !own.unjoined) {
+                let spots: Vec<Place> = part.into_iter().filter_map(|point| self.place(point)).collect();
+                if spots.len() > 1 {
+                    canvas.dashed(&spots, COLOURS[i % COLOURS.len()], 2.0, DASHES[i % DASHES.len()]);
+                }
+            }
+            if own.spots.is_none() || own.dots || own.unjoined {
+                for spot in own.points.iter().filter_map(|point| self.place(*point)) {
+                    canvas.mark(i, spot);
+                }
+            }
+            canvas.close();
+        }
+    }
+
+    /// What stands on the lines: spots with their labels, and arrows at the upper edge for unbounded cases.
+    fn marks(&self, canvas: &mut Canvas, series: &[Series]) {
+        // Arrows of several series at one abscissa stand side by side.
+        let with_open: Vec<usize> = (0..series.len()).filter(|&i| !series[i].open_points.is_empty()).collect();
+        for (i, own) in series.iter().enumerate() {
+            let beside = with_open.iter().position(|&j| j == i).unwrap_or(0) as f64;
+            let beside = 15.0 * beside - 7.5 * (with_open.len() as f64 - 1.0);
+            for &(x, _) in own.open_points.iter().filter(|(x, _)| self.x.at(*x).is_finite()) {
+                arrow(canvas, i, [self.x.at(x) + beside, self.top + 2.0]);
+            }
+            for spot in own.spots.iter().flatten() {
+                let Some([x, y]) = self.place(spot.at) else { continue };
+                symbol(canvas, [x, y], spot.marker, COLOURS[i % COLOURS.len()]);
+                let width = text_width(&spot.label, 13.0);
+                let fits = x + 10.0 + width < WIDTH - 6.0;
+                let at = [if fits { x + 10.0 } else { x - 4.0 - width }, y + if fits { 13.0 } else { 20.0 }];
+                if !spot.label.is_empty() {
+                    canvas.edged(at, &spot.label, 13.0, "start");
+                }
+            }
+        }
+    }
+}
+
+/// The mark of an unbounded case, from its tip.
+fn arrow(canvas: &mut Canvas, index: usize, [x, y]: Place) {
+    let corners = [[0.0, 0.0], [7.0, 9.0], [3.0, 9.0], [3.0, 19.0], [-3.0, 19.0], [-3.0, 9.0], [-7.0, 9.0]];
+    let spots: Vec<Place> = corners.iter().map(|c| [x + c[0], y + c[1]]).collect();
+    canvas.filled(&spots, COLOURS[index % COLOURS.len()]);
+}
+
+fn symbol(canvas: &mut Canvas, [x, y]: Place, marker: Marker, colour: &str) {
+    match marker {
+        Marker::Ring => canvas.ring([x, y], 9.0, colour),
+        Marker::Dot => {
+            let on = |i: u32| {
+                let angle = f64::from(i) * std::f64::consts::FRAC_PI_4 + std::f64::consts::FRAC_PI_8;
+                [x + 5.4 * angle.cos(), y + 5.4 * angle.sin()]
+            };
+            canvas.filled(&(0..8).map(on).collect::<Vec<_>>(), colour);
+        }
+        Marker::Square => {
+            canvas.filled(&[[x - 4.5, y - 4.5], [x + 4.5, y - 4.5], [x + 4.5, y + 4.5], [x - 4.5, y + 4.5]], colour);
+        }
+    }
+}
+
+/// What an entry of the legend explains.
+enum Entry {
+    Line(usize),
+    Open(usize),
+    Kind(Marker),
+}
+
+/// The legend: lines, marks of unbounded cases, then kinds of spots, each with its words, place and row.
+struct Legend {
+    entries: Vec<(Entry, String, Place)>,
     /// The last row.
-    row: i32,
+    row: f64,
 }
 
-impl<'a> Legend<'a> {
-    fn new(series: &'a [Series]) -> Self {
+impl Legend {
+    fn new(series: &[Series]) -> Self {
         let mut kinds: Vec<(&str, Marker)> = Vec::new();
         for spot in series.iter().flat_map(|s| s.spots.iter().flatten()) {
             if !kinds.contains(&(spot.kind, spot.marker)) {
@@ -168,140 +224,42 @@ impl<'a> Legend<'a> {
             }
         }
         kinds.sort_unstable_by_key(|(kind, _)| *kind);
+        let lines = series.iter().enumerate().map(|(i, s)| (Entry::Line(i), s.name.clone()));
         let open = series.iter().enumerate().filter(|(_, s)| !s.open_points.is_empty()).map(|(i, s)| {
-            (i, true, if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
+            (Entry::Open(i), if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
         });
-        let mut entries: Vec<(usize, bool, String)> =
-            series.iter().enumerate().map(|(i, s)| (i, false, s.name.clone())).chain(open).collect();
-        let lines_end = entries.len();
-        entries.extend(kinds.iter().enumerate().map(|(kind, (words, _))| (kind, false, words.to_string())));
-        let (mut places, mut x, mut row) = (Vec::new(), 70, 0);
-        for (_, _, words) in &entries {
-            let width = 46 + text_width(words, 14.0) as i32 + 24;
-            if x > 70 && x + width > WIDTH as i32 - 20 {
-                (x, row) = (70, row + 1);
+        let spots = kinds.into_iter().map(|(words, marker)| (Entry::Kind(marker), words.to_string()));
+        let (mut x, mut row) = (70.0, 0.0);
+        let mut entries = Vec::new();
+        for (entry, words) in lines.chain(open).chain(spots) {
+            let width = 46.0 + text_width(&words, 14.0) + 24.0;
+            if x > 70.0 && x + width > WIDTH - 20.0 {
+                (x, row) = (70.0, row + 1.0);
             }
-            places.push((x, row));
+            entries.push((entry, words, [x, row]));
             x += width;
         }
-        Legend { kinds, entries, lines_end, places, row }
+        Legend { entries, row }
     }
 
-    fn draw(&self, root: &Canvas, series: &[Series], base: i32) -> Result<(), Box<dyn Error>> {
-        for (entry, ((i, is_open, words), (x, row))) in self.entries.iter().zip(&self.places).enumerate() {
-            let (y, colour) = (base + *row * ROW as i32, PALETTE[i % PALETTE.len()]);
-            let line = || PathElement::new(vec![(*x, y), (x + 32, y)], colour.stroke_width(2));
-            if entry >= self.lines_end {
-                symbol(root, (x + 26, y), self.kinds[*i].1, INK)?;
-            } else if series[*i].spots.is_some() {
-                root.draw(&line())?;
-            } else if *is_open {
-                mark(root, (x + 16, y - 10), &ARROW, colour)?;
-            } else {
-                root.draw(&line())?;
-                mark(root, (x + 16, y), &corners(*i), colour)?;
+    fn draw(&self, canvas: &mut Canvas, series: &[Series], base: f64) {
+        for (entry, words, [x, row]) in &self.entries {
+            let y = base + row * ROW;
+            match entry {
+                Entry::Kind(marker) => symbol(canvas, [x + 26.0, y], *marker, INK),
+                Entry::Open(i) => arrow(canvas, *i, [x + 16.0, y - 10.0]),
+                Entry::Line(i) => {
+                    let own = &series[*i];
+                    if !own.unjoined {
+                        let ends = [[*x, y], [x + 34.0, y]];
+                        canvas.dashed(&ends, COLOURS[i % COLOURS.len()], 2.0, DASHES[i % DASHES.len()]);
+                    }
+                    if own.spots.is_none() || own.dots || own.unjoined {
+                        canvas.mark(*i, [x + 17.0, y]);
+                    }
+                }
             }
-            write(root, (x + 42, y), words, 14, false)?;
-        }
-        Ok(())
-    }
-}
-
-fn draw(
-    text: &mut String,
-    title: &str,
-    x_label: &str,
-    y_label: &str,
-    series: &[Series],
-    notes: &[String],
-) -> Result<(), Box<dyn Error>> {
-    let abscissas = series.iter().flat_map(|s| s.points.iter().chain(&s.open_points).map(|p| p.0));
-    let (x_low, x_high) = range(abscissas).ok_or("no finite point")?;
-    let (bottom, top, broken) = vertical_range(series);
-    let broken = broken.then(|| "The vertical axis does not begin at zero.".to_string());
-    let legend = Legend::new(series);
-    let titles = wrapped(title, 18.0, f64::from(WIDTH) - 40.0);
-    let lines: Vec<String> =
-        notes.iter().chain(&broken).flat_map(|note| wrapped(note, 13.0, f64::from(WIDTH) - 100.0)).collect();
-    let head = 16 + ROW * titles.len() as u32;
-    let height = head + PLOT + ROW * (legend.row as u32 + 1) + 20 * lines.len() as u32 + 22;
-
-    let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
-    root.fill(&WHITE)?;
-    for (i, line) in titles.iter().enumerate() {
-        write(&root, (WIDTH as i32 / 2, 20 + (ROW as usize * i) as i32), line, 18, true)?;
-    }
-    let (_, below) = root.split_vertically(head);
-    let (plot, _) = below.split_vertically(PLOT);
-    let mut chart = ChartBuilder::on(&plot)
-        .margin_left(14)
-        .margin_right(28)
-        .margin_top(8)
-        .x_label_area_size(54)
-        .y_label_area_size(78)
-        .build_cartesian_2d(x_low..x_high, bottom..top)?;
-    let number = |x: &f64| super::format::format_short(if x.abs() < 1e-12 * top { 0.0 } else { *x }, 6);
-    chart
-        .configure_mesh()
-        .x_labels(10)
-        .y_labels(8)
-        .max_light_lines(0)
-        .bold_line_style(GRID)
-        .axis_style(INK)
-        .x_label_formatter(&number)
-        .y_label_formatter(&number)
-        .label_style(("sans-serif", 14).into_font().color(&INK))
-        .axis_desc_style(("sans-serif", 15).into_font().color(&INK))
-        .x_desc(x_label)
-        .y_desc(y_label)
-        .draw()?;
-    for (i, s) in series.iter().enumerate() {
-        let colour = PALETTE[i % PALETTE.len()];
-        for part in unbroken(s) {
-            chart.draw_series(LineSeries::new(part.iter().copied(), colour.stroke_width(2)))?;
+            canvas.text([x + 42.0, y + 5.0], words, 14.0, "start");
         }
     }
-    draw_marks(&root, series, top, &|point| chart.backend_coord(&point))?;
-    let base = (head + PLOT) as i32 + 14;
-    legend.draw(&root, series, base)?;
-    for (i, line) in lines.iter().enumerate() {
-        write(&root, (70, base + ROW as i32 * (legend.row + 1) + 20 * i as i32), line, 13, false)?;
-    }
-    root.present()?;
-    Ok(())
-}
-
-/// What stands on the lines: spots with their labels, points, and arrows at the upper edge for unbounded cases.
-fn draw_marks(
-    root: &Canvas,
-    series: &[Series],
-    top: f64,
-    place: &dyn Fn((f64, f64)) -> (i32, i32),
-) -> Result<(), Box<dyn Error>> {
-    // Arrows of several series at one abscissa stand side by side.
-    let with_open: Vec<usize> = (0..series.len()).filter(|&i| !series[i].open_points.is_empty()).collect();
-    let mut beside = vec![0; series.len()];
-    for (place, &i) in with_open.iter().enumerate() {
-        beside[i] = 15 * place as i32 - 15 * (with_open.len() as i32 - 1) / 2;
-    }
-    for (i, s) in series.iter().enumerate() {
-        let colour = PALETTE[i % PALETTE.len()];
-        for spot in s.spots.iter().flatten().filter(|spot| spot.at.0.is_finite() && spot.at.1.is_finite()) {
-            let (x, y) = place(spot.at);
-            symbol(root, (x, y), spot.marker, colour)?;
-            let width = text_width(&spot.label, 13.0) as i32;
-            let fits = x + 10 + width < WIDTH as i32 - 6;
-            let at = (if fits { x + 10 } else { x - 4 - width }, y + if fits { 9 } else { 16 });
-            write(root, at, &spot.label, 13, false)?;
-        }
-        let every = s.spots.is_none();
-        for &point in s.points.iter().filter(|(x, y)| every && x.is_finite() && y.is_finite()) {
-            mark(root, place(point), &corners(i), colour)?;
-        }
-        for &(x, _) in s.open_points.iter().filter(|(x, _)| x.is_finite()) {
-            let (x, y) = place((x, top));
-            mark(root, (x + beside[i], y + 2), &ARROW, colour)?;
-        }
-    }
-    Ok(())
 }

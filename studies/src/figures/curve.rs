@@ -1,7 +1,8 @@
 //! Load-displacement curves of paths, with the joints that became hinges on the way.
 
-use super::chart::{Marker, Series, Spot, chart_svg};
+use super::chart::chart_svg;
 use super::format::{case_title, format_force, parameters_text, unit_load};
+use super::series::{Marker, Series, Spot};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;

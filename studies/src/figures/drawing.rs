@@ -29,9 +29,18 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     let mut canvas = SvgCanvas::new(low, high, loads.margins(low, high), &titles);
     let mut legend = Legend::new();
     let filled = fill::draw(&mut canvas, assembly);
+    let spread = filled && fill::draw_spreads(&mut canvas, stages);
+    let layered = filled && fill::draw_layers(&mut canvas, assembly);
     blocks(&mut canvas, assembly);
+    fill::name_parts(&mut canvas, assembly);
     if filled {
-        legend.push((Symbol::Fill, "fill".into()));
+        legend.push((Symbol::Fill, if layered { "fill, in layers" } else { "fill" }.into()));
+    }
+    if spread {
+        legend.push((Symbol::Spread, "axle, and what it loads".into()));
+    }
+    if fill::mark_lost_mortar(&mut canvas, assembly) {
+        legend.push((Symbol::LostMortar, "joint without mortar".into()));
     }
     if assembly.bodies.iter().any(|body| body.fixed) {
         legend.push((Symbol::Ground, "support".into()));

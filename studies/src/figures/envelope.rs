@@ -1,7 +1,8 @@
 //! The chart of an envelope: the load factor over the place of the load, a line for each vehicle and way it stands.
 
-use super::chart::{Marker, Series, Spot, chart_svg};
+use super::chart::chart_svg;
 use super::format::format_number;
+use super::series::{Marker, Series, Spot};
 use crate::results::StudyResults;
 use serde_json::Value as Json;
 

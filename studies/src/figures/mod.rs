@@ -15,19 +15,23 @@ pub mod hinge_closure;
 pub mod loads;
 pub mod map;
 pub mod mechanism;
+mod scale;
+pub mod series;
 pub mod svg_canvas;
 pub mod sweep;
 pub mod symbols;
 pub mod text_layout;
 pub mod thrust;
+pub mod words;
 
 #[cfg(test)]
 pub(crate) mod sample;
 #[cfg(test)]
 mod tests;
 
-pub use chart::{Marker, Series, Spot, chart_svg};
+pub use chart::chart_svg;
 pub use curve::{curve_charts, curve_svg};
 pub use drawing::scene_svg;
 pub use mechanism::mechanism_svg;
+pub use series::{ChartStyle, Marker, Series, Spot};
 pub use sweep::{sweep_axis, sweep_chart};

@@ -32,6 +32,7 @@ fn stage(name: &str, gravity: Option<Vec2>, forces: Vec<PointForce>, target: Tar
         gravity,
         forces,
         accelerations: vec![],
+        spreads: vec![],
         settlements: vec![],
         target,
         factor_min: 0.0,

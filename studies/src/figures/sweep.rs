@@ -1,7 +1,9 @@
 //! The chart of a study with one swept number: the load against it.
 
-use super::chart::{Series, chart_svg};
-use super::format::{key_with_unit, unit_load};
+use super::chart::chart;
+use super::format::{format_short, kind_words, unit_load};
+use super::series::{ChartStyle, Marker, Series, Spot};
+use super::words::title_of_key;
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;
@@ -27,7 +29,7 @@ pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
     {
         return Some(("span / rise [-]".into(), ratios));
     }
-    Some((key_with_unit(key), values))
+    Some((title_of_key(key), values))
 }
 
 /// The chart of a study, if it has one: the load where all cases have the same at factor 1, else
@@ -59,10 +61,11 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
         let mine = || cases.iter().filter(|(case, x)| case.label.variant.as_deref() == variant && x.is_finite());
         let value =
             |case: &CaseResult| case.load_factor.map(|factor| factor * unit_load.map_or(1.0, |unit| unit / 1e3));
-        let mut points: Vec<(f64, f64)> = mine().filter_map(|&(case, x)| Some((x, value(case)?))).collect();
+        let mut found: Vec<(f64, f64, &CaseResult)> =
+            mine().filter_map(|&(case, x)| Some((x, value(case)?, case))).collect();
         let unbounded = mine().filter(|(case, _)| case.status == Status::Unbounded);
         let mut open_points: Vec<(f64, f64)> = unbounded.map(|&(_, x)| (x, f64::INFINITY)).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
         open_points.sort_by(|a, b| a.0.total_cmp(&b.0));
         for status in [Status::NoEquilibrium, Status::Stalled, Status::Stands, Status::LimitPoint] {
             let ids: Vec<String> = mine()
@@ -76,12 +79,45 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
                 notes.push(format!("not shown, {name}: {shown}"));
             }
         }
-        series.push(Series { name: variant.unwrap_or("collapse").to_string(), points, open_points, spots: None });
+        series.push(Series {
+            name: variant.unwrap_or("collapse").to_string(),
+            points: found.iter().map(|(x, y, _)| (*x, *y)).collect(),
+            spots: Some(marks(&found, open_points.is_empty())).filter(|spots| !spots.is_empty()),
+            dots: true,
+            cases: found.iter().map(|(_, _, case)| case.label.id).collect(),
+            open_points,
+            ..Series::default()
+        });
     }
     if series.iter().all(|s| s.points.is_empty() && s.open_points.is_empty()) {
         return None;
     }
     let y_label = if unit_load.is_some() { "load at collapse [kN]" } else { "load factor at collapse [-]" };
     let title = format!("{study}: {y_label} over {x_label}");
-    Some(chart_svg(&title, x_label, y_label, &series, &notes))
+    let (low, high) = cases.iter().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), (_, x)| (l.min(*x), h.max(*x)));
+    let style = ChartStyle { log: [low > 0.0 && high >= WIDE * low, false] };
+    Some(chart(&title, x_label, y_label, &series, &notes, &style))
+}
+
+/// From this ratio of the greatest to the least value on an axis is logarithmic.
+const WIDE: f64 = 50.0;
+
+/// Marks of a line: its greatest value where that lies inside, and each first case of another kind of mechanism.
+fn marks(found: &[(f64, f64, &CaseResult)], bounded: bool) -> Vec<Spot> {
+    let mut spots = Vec::new();
+    let top = (0..found.len()).max_by(|a, b| found[*a].1.total_cmp(&found[*b].1));
+    if let Some(top) = top.filter(|top| bounded && (1..found.len() - 1).contains(top)) {
+        let (x, y, _) = found[top];
+        spots.push(Spot { at: (x, y), kind: "greatest", marker: Marker::Ring, label: format_short(y, 4) });
+    }
+    let kind = |case: &CaseResult| case.mechanism.as_ref().map(|mechanism| kind_words(mechanism.kind));
+    for pair in found.windows(2) {
+        if let (Some(before), Some(after)) = (kind(pair[0].2), kind(pair[1].2))
+            && before != after
+        {
+            let at = (pair[1].0, pair[1].1);
+            spots.push(Spot { at, kind: "another mechanism", marker: Marker::Square, label: after.into() });
+        }
+    }
+    spots
 }

@@ -10,6 +10,10 @@ use voussoir_core::model::{Assembly, Joint};
 pub const STONE: &str = "#e9dfcb";
 /// Fill above the rings.
 pub const FILL: &str = "#f4eede";
+/// Where loads spread in the fill.
+pub const SPREAD: &str = "#dce9f1";
+/// Parts of joints without mortar.
+pub const LOST: &str = "#e0762e";
 /// Forces of the fill.
 pub const PRESSURE: &str = "#a05a00";
 /// Outline of blocks.
@@ -42,6 +46,10 @@ pub enum Symbol {
     Ground,
     /// The fill of a bridge.
     Fill,
+    /// A load that spreads in the fill.
+    Spread,
+    /// The part of a joint that has lost its mortar.
+    LostMortar,
     /// A force of the fill.
     Pressure,
     /// A load's arrow.
@@ -79,6 +87,11 @@ impl LegendSymbol for Symbol {
             Symbol::Ground => boxed(canvas, [x, y], "url(#ground)", OUTLINE, ""),
             Symbol::Before => boxed(canvas, [x, y], "none", "#999999", "4 3"),
             Symbol::Fill => boxed(canvas, [x, y], FILL, "#b9ad93", ""),
+            Symbol::Spread => {
+                let sides = [[x + 12.0, y - 7.0], [x + 22.0, y - 7.0], [x + 32.0, y + 7.0], [x + 2.0, y + 7.0]];
+                canvas.pixels(&sides, SPREAD, LOAD, "");
+            }
+            Symbol::LostMortar => canvas.line(&[[x + 6.0, y], [x + 28.0, y]], LOST, 3.5, ""),
             Symbol::Pressure => canvas.arrow(ends[0], ends[1], PRESSURE, 1.6, 7.0),
             Symbol::Load => canvas.arrow(ends[0], ends[1], LOAD, 2.2, 10.0),
             Symbol::EarlierLoad => canvas.arrow(ends[0], ends[1], EARLIER, 2.2, 10.0),

@@ -1,14 +1,18 @@
 //! Studies with a scene as commands see them: their cases are solved as their kind says, certified, and written by
 //! all writers.
 
-use super::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification, kind};
+use super::kind::{LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
+use crate::figures::envelope::envelope_chart;
 use crate::figures::format::format_number;
+use crate::figures::sweep::study_chart;
+use crate::figures::{curve_svg, mechanism_svg, scene_svg};
 use crate::results::{CaseLabel, CaseResult, StudyResults};
 use crate::solve::explain::explain;
 use crate::solve::{Observer, side_by_side};
 use crate::study::{Case, Study, as_blocks};
 use crate::verify::{solve_again, verify_against};
 use crate::writers::comparison::comparison_table;
+use crate::writers::record::record;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
 use serde_json::{Map, Value as Json};
@@ -28,7 +32,7 @@ impl Study {
         let (study, version) = (self.name.clone(), version.to_string());
         let ids: Vec<usize> = cases.iter().map(|case| case.label.id).filter(|id| *id < self.cases.len()).collect();
         let only_cases = (ids.len() < self.cases.len()).then_some(ids);
-        StudyResults { study, version, only_cases, cases, comparison: own.comparison, own: own.other }
+        StudyResults { study, version, date: None, only_cases, cases, comparison: own.comparison, own: own.other }
     }
 
     /// Stored cases that are this study's own: of the same label, and of the same resolved case.
@@ -64,6 +68,36 @@ impl LoadedStudy for Study {
         explain(self)
     }
 
+    fn piece(&self, results: &str, piece: Piece) -> Option<String> {
+        if piece == Piece::Record {
+            return Some(record(self));
+        }
+        let results: StudyResults = serde_json::from_str(results).ok()?;
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        if cases.len() != results.cases.len() {
+            return None;
+        }
+        let output = StudyOutput::new(self, &results, &cases);
+        let of_case = |id: usize| {
+            let place = results.cases.iter().position(|case| case.label.id == id)?;
+            let (assembly, stages) = output.scene(place)?;
+            Some((&results.cases[place], assembly, stages))
+        };
+        match piece {
+            Piece::Record => None,
+            Piece::Chart => study_chart(&output).or_else(|| envelope_chart(&self.name, &results)),
+            Piece::Scene(id) => {
+                of_case(id).map(|(case, assembly, stages)| scene_svg(&self.name, assembly, stages, case))
+            }
+            Piece::Mechanism(id) => {
+                of_case(id).and_then(|(case, assembly, _)| mechanism_svg(&self.name, assembly, case))
+            }
+            Piece::Curve(id) => {
+                of_case(id).and_then(|(case, assembly, stages)| curve_svg(&self.name, assembly, stages, case))
+            }
+        }
+    }
+
     fn as_blocks(&self) -> Result<String, String> {
         as_blocks(self.cases.first().ok_or("the study has no case")?, &self.name)
     }
@@ -83,7 +117,8 @@ impl LoadedStudy for Study {
             let solved = kind.solve(self, &rest, request.jobs, observer);
             done.extend(solved.into_iter().map(|case| (case.label.id, case)));
         }
-        let results = self.results(&request.version, done.into_values().collect());
+        let cases = done.into_values().collect();
+        let results = StudyResults { date: request.date.clone(), ..self.results(&request.version, cases) };
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
         let files = side_by_side(request.jobs, || written(&output));
@@ -93,7 +128,7 @@ impl LoadedStudy for Study {
             table += &comparison_table(comparison);
         }
         table += &found(&results.own);
-        let certified = results.cases.iter().all(|case| case.certificate.passed);
+        let certified = results.certified() && !observer.cancelled();
         RunOutput { files, table, remarks: remarks(request, others, self.count()), certified }
     }
 
@@ -101,6 +136,9 @@ impl LoadedStudy for Study {
         let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
         let results: StudyResults = serde_json::from_value(json.clone()).map_err(|error| error.to_string())?;
         let again = solve_again(self, &results, stored.jobs, observer);
+        if observer.cancelled() {
+            return Err("the check was cancelled".into());
+        }
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let files = if cases.len() == results.cases.len() {
             let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));

@@ -8,11 +8,11 @@ mod worsts;
 
 use self::request::{Request, Run};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
+use super::search::{case_at, range_mistakes};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudySource};
-use serde_json::Value as Json;
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
@@ -74,25 +74,16 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// The case of a study at other values, with the id that it has among all.
-fn case_at(study: &Study, base: usize, id: usize, values: &[(String, Json)]) -> Option<Case> {
-    let values: Vec<(&str, Json)> = values.iter().map(|(key, value)| (key.as_str(), value.clone())).collect();
-    let mut case = study.at(base, &values).ok()?;
-    case.id = id;
-    case.brief = true;
-    Some(case)
-}
-
 impl Envelope {
     /// All places of all runs of one case of the study, in order of id.
-    fn of_case(&self, study: &Study, base: usize, request: &Request) -> Vec<CaseResult> {
+    fn of_case(&self, study: &Study, base: usize, request: &Request, observer: &dyn Observer) -> Vec<CaseResult> {
         let case = &study.cases[base];
         let runs = request.runs(case);
         let run = |(number, run): (usize, &Run)| {
             let first = study.cases.len() + (base * runs.len() + number) * STRIDE;
             let solve = |index: usize, value: f64| {
                 let case = case_at(study, base, first + index, &request.values(run, value))?;
-                Some(solve_case(&case))
+                solve_unless_cancelled(&case, observer)
             };
             let places = places::places(case, request, run);
             search::worst_place(&places, request, &solve)
@@ -109,10 +100,7 @@ impl StudyKind for Envelope {
         for case in &study.cases {
             for run in request.runs(case) {
                 for value in request.range {
-                    let values = request.values(&run, value);
-                    let values: Vec<(&str, Json)> =
-                        values.iter().map(|(key, value)| (key.as_str(), value.clone())).collect();
-                    study.at(case.id, &values)?;
+                    study.at(case.id, &request.values(&run, value))?;
                 }
             }
         }
@@ -125,22 +113,13 @@ impl StudyKind for Envelope {
                 Diagnostic::new("envelope", "is missing").help("say what moves: [envelope] parameter, from, to"),
             ];
         };
-        let mut diagnostics = Vec::new();
-        if request.range[0] >= request.range[1] {
-            let message = format!("{} must be more than from, {}", request.range[1], request.range[0]);
-            diagnostics.push(Diagnostic::new("envelope.to", message));
-        }
-        let keys = [request.parameter.clone(), request.beside("vehicle"), request.beside("direction")];
-        for key in keys.iter().filter(|key| outline.axes.iter().any(|(swept, _)| swept.contains(key))) {
-            diagnostics.push(Diagnostic::new("envelope.parameter", format!("\"{key}\" is swept besides")));
-        }
-        diagnostics
+        range_mistakes("envelope", request.range, &request.keys(), outline)
     }
 
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = Request::of(&study.outline) else { return results };
-        let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request)).collect::<Vec<_>>();
+        let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request, observer)).collect::<Vec<_>>();
         results.extend(side_by_side(jobs, all));
         results
     }
@@ -153,8 +132,8 @@ impl StudyKind for Envelope {
         // Every case has as many runs as the first, because kinds of loads are not swept.
         let runs = request.runs(study.cases.first()?).len();
         let base = (label.id - study.cases.len()) / STRIDE / runs;
-        let keys = [request.parameter.clone(), request.beside("vehicle"), request.beside("direction")];
-        let given = keys.iter().filter_map(|key| Some((key.clone(), label.parameters.get(key)?.clone())));
+        let keys = request.keys().into_iter();
+        let given = keys.filter_map(|key| label.parameters.get(&key).cloned().map(|value| (key, value)));
         case_at(study, base, label.id, &given.collect::<Vec<_>>()).map(Cow::Owned)
     }
 

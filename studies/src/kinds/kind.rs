@@ -3,7 +3,7 @@
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, Unobserved, solve_cases};
-use crate::study::{Case, Outline, Study, StudySource};
+use crate::study::{Case, Outline, ReadFile, Study, StudySource};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Diagnostic, Parameter};
@@ -14,6 +14,12 @@ use voussoir_core::plugin::{Diagnostic, Parameter};
 pub trait StudyKind: Sync {
     /// Reads a study file of this kind.
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>>;
+
+    /// The same where files that the study names can be read: relative to its own, by `read`.
+    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        let _ = read;
+        self.read(source)
+    }
 
     /// All keys of its study files, where they are not those of studies with a scene.
     fn file_keys(&self) -> Option<&'static [Parameter]> {
@@ -75,6 +81,18 @@ pub trait LoadedStudy: Send + Sync {
     /// What will be solved, in words.
     fn explain(&self) -> String;
 
+    /// Studies that are run before it, each into a folder of its own inside this study's.
+    fn parts(&self) -> &[Part] {
+        &[]
+    }
+
+    /// A piece of a page about the results whose results.json is given, as HTML or SVG; `None` where there is no such
+    /// piece.
+    fn piece(&self, results: &str, piece: Piece) -> Option<String> {
+        let _ = (results, piece);
+        None
+    }
+
     /// Its first case as a study of the scene `blocks`; an error says why there is none.
     fn as_blocks(&self) -> Result<String, String> {
         Err("this study has no scene".into())
@@ -90,6 +108,31 @@ pub trait LoadedStudy: Send + Sync {
     fn verify(&self, results: &str) -> Result<Verification, String> {
         self.verify_stored(&StoredResults { results, jobs: 1, file: &|_| None }, &Unobserved)
     }
+}
+
+/// A study that is run for another one, which reports on it.
+pub struct Part {
+    /// Name of its folder.
+    pub folder: String,
+    /// Name of its file, for messages.
+    pub file: String,
+    /// The study.
+    pub study: Box<dyn LoadedStudy>,
+}
+
+/// What a page can show of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Piece {
+    /// What was given: geometry, materials, joints, loads, solver.
+    Record,
+    /// The chart of all its cases.
+    Chart,
+    /// The scene of a case.
+    Scene(usize),
+    /// Its mechanism.
+    Mechanism(usize),
+    /// Its load-displacement curve.
+    Curve(usize),
 }
 
 /// What is asked of a run.
@@ -108,6 +151,10 @@ pub struct RunRequest {
     pub stored: Option<[String; 2]>,
     /// Version of the program, for results.json.
     pub version: String,
+    /// The day of the run, for results.json.
+    pub date: Option<String>,
+    /// The results.json of each of the study's parts, in order.
+    pub parts: Vec<String>,
 }
 
 /// What a run has made.

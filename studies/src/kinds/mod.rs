@@ -9,10 +9,14 @@ pub mod map;
 pub mod optimise;
 pub mod point;
 mod read;
+pub mod report;
 pub mod run;
+mod run_study;
 mod search;
 
 pub use kind::{
-    KindEntry, LoadedStudy, OwnResults, RunOutput, RunRequest, StoredResults, StudyKind, Verification, kind, kinds,
+    KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind, Verification,
+    kind, kinds,
 };
-pub use read::read_study;
+pub use read::{read_source, read_source_beside, read_study};
+pub use run_study::RunOptions;

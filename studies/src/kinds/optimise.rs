@@ -7,11 +7,11 @@ mod search;
 
 use self::request::{Request, STRIDE};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
+use super::search::{case_at, range_mistakes};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, side_by_side, solve_case, solve_cases};
+use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudySource};
-use serde_json::Value as Json;
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
@@ -83,10 +83,7 @@ impl StudyKind for Optimise {
         let study = Study::from_source(source)?;
         if let Some(request) = Request::of(&study.outline) {
             // A key that does not exist, or that takes no number, shows at both ends.
-            let at = |value: f64| {
-                let values: Vec<(&str, Json)> = request.keys.iter().map(|key| (key.as_str(), value.into())).collect();
-                study.at(0, &values)
-            };
+            let at = |value: f64| study.at(0, &request.values(value));
             let middle = 0.5 * (request.range[0] + request.range[1]);
             if let (Err(wrong), Err(_), Err(_)) = (at(request.range[0]), at(request.range[1]), at(middle)) {
                 return Err(wrong);
@@ -103,15 +100,7 @@ impl StudyKind for Optimise {
             return vec![Diagnostic::new("optimise", "needs parameter, or parameters, and not both").help(help)];
         }
         let Some(request) = Request::of(outline) else { return Vec::new() };
-        let mut diagnostics = Vec::new();
-        if request.range[0] >= request.range[1] {
-            let message = format!("{} must be more than from, {}", request.range[1], request.range[0]);
-            diagnostics.push(Diagnostic::new("optimise.to", message));
-        }
-        for key in request.keys.iter().filter(|key| outline.axes.iter().any(|(swept, _)| swept.contains(key))) {
-            diagnostics.push(Diagnostic::new("optimise.parameter", format!("\"{key}\" is swept besides")));
-        }
-        diagnostics
+        range_mistakes("optimise", request.range, &request.keys, outline)
     }
 
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
@@ -121,8 +110,8 @@ impl StudyKind for Optimise {
             let of = |&base: &usize| {
                 let first = study.cases.len() + base * STRIDE;
                 let solve = |index: usize, value: f64| {
-                    let case = request.case(study, base, first + index, value)?;
-                    let result = solve_case(&case);
+                    let case = case_at(study, base, first + index, &request.values(value))?;
+                    let result = solve_unless_cancelled(&case, observer)?;
                     Some((request.merit(&case, &result), result))
                 };
                 search::best_value(&request, &solve)
@@ -140,7 +129,7 @@ impl StudyKind for Optimise {
         let request = Request::of(&study.outline)?;
         let base = (label.id - study.cases.len()) / STRIDE;
         let value = label.parameters.get(request.keys.first()?)?.as_f64()?;
-        request.case(study, base, label.id, value).map(Cow::Owned)
+        case_at(study, base, label.id, &request.values(value)).map(Cow::Owned)
     }
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {

@@ -2,7 +2,7 @@
 
 use super::kind::{LoadedStudy, kind, kinds};
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
-use crate::study::StudySource;
+use crate::study::{ReadFile, StudySource, no_files};
 
 /// Reads a study of any kind; every mistake at once. Arguments as of [`crate::study::load`].
 pub fn read_study(
@@ -10,11 +10,20 @@ pub fn read_study(
     file: &str,
     sets: &[(String, String)],
 ) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-    let source = StudySource::parse(text, file, sets)?;
+    read_source(StudySource::parse(text, file, sets)?)
+}
+
+/// Reads a study of any kind from its source.
+pub fn read_source(source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    read_source_beside(source, &no_files)
+}
+
+/// The same where the study may name other files, which are read by `read`.
+pub fn read_source_beside(source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
     // A kind that does not exist is one mistake among others of a file with a scene.
     let kind = kind(source.kind()).or_else(|| kind("run"));
     match kind {
-        Some(kind) => kind.read(source),
+        Some(kind) => kind.read_beside(source, read),
         None => {
             let names: Vec<_> = kinds().iter().map(|entry| entry.tag).collect();
             let help = suggest(source.kind(), &names, "kinds available");

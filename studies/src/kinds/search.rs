@@ -1,6 +1,8 @@
 //! What kinds share that search a range of values: golden sections, and stretches of one status.
 
+use crate::study::{Case, Outline, Study};
 use serde_json::{Value as Json, json};
+use voussoir_core::plugin::Diagnostic;
 
 /// Golden section: (√5 − 1)/2.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -29,4 +31,22 @@ pub(super) fn intervals(tried: &[(f64, Json)]) -> Vec<Json> {
     let stretches = tried.chunk_by(|a, b| a.1 == b.1);
     let ends = stretches.filter_map(|stretch| Some((stretch.first()?, stretch.last()?)));
     ends.map(|(a, b)| json!({ "from": a.0, "to": b.0, "status": a.1 })).collect()
+}
+
+/// A case of a study at other values, without figures of its own, under the id that it has among all.
+pub(super) fn case_at(study: &Study, base: usize, id: usize, values: &[(String, Json)]) -> Option<Case> {
+    let mut case = study.at(base, values).ok()?;
+    case.id = id;
+    case.brief = true;
+    Some(case)
+}
+
+/// What is wrong with a search over a range: its ends in the wrong order, and keys that the study sweeps besides.
+pub(super) fn range_mistakes(table: &str, range: [f64; 2], keys: &[String], outline: &Outline) -> Vec<Diagnostic> {
+    let [from, to] = range;
+    let reversed =
+        (from >= to).then(|| Diagnostic::new(format!("{table}.to"), format!("{to} must be more than from, {from}")));
+    let swept = |key: &&String| outline.axes.iter().any(|(swept, _)| swept.contains(key));
+    let besides = |key: &String| Diagnostic::new(format!("{table}.parameter"), format!("\"{key}\" is swept besides"));
+    reversed.into_iter().chain(keys.iter().filter(swept).map(besides)).collect()
 }

@@ -8,7 +8,7 @@
 use super::dispersion::{Dispersion, Patch, Through};
 use super::site::LoadSite;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{CONTACT_TOLERANCE, Chord, PointForce, carried};
+use voussoir_core::model::{CONTACT_TOLERANCE, Chord, LoadSpread, PointForce, carried};
 use voussoir_core::plugin::Diagnostic;
 
 /// Share of the scene's size within which a load is at a vertex.
@@ -117,6 +117,8 @@ pub struct FromRoad {
     pub forces: Vec<PointForce>,
     /// How far the patch reaches beyond its own ends after its way through the fill \[m\].
     pub reach: f64,
+    /// The same for drawings.
+    pub spread: LoadSpread,
 }
 
 /// A load of 1 N, even over a patch of the road, spread in the fill; `None` where its centre is off the bridge.
@@ -129,6 +131,7 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
     let dispersion: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
     let spread = dispersion.map_or_else(|| vec![patch], |law| law.spread(patch, &fill));
     let reach = spread.iter().map(|part| patch.from - part.from).fold(0.0, f64::max);
+    let parts = spread.len();
     let mut forces = Vec::new();
     for Patch { from, to, share } in spread {
         let force = Vec2::new(0.0, -share);
@@ -141,7 +144,28 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
         let movable = under.into_iter().filter(|chord| site.moves(chord.body));
         forces.extend(movable.map(|chord| PointForce { body: chord.body, point: chord.at(from), force: each }));
     }
-    Ok(Some(FromRoad { forces, reach }))
+    let forces = if parts > 1 { merged(site, forces) } else { forces };
+    let ends = |y: f64, reach: f64| [Vec2::new(patch.from - reach, y), Vec2::new(patch.to + reach, y)];
+    let level = chord.at(centre).y;
+    let road = site.assembly.bridge.as_ref().and_then(|bridge| bridge.road_at(centre)).unwrap_or(level);
+    let spread = LoadSpread { on_road: ends(road, 0.0), below: ends(level, reach) };
+    Ok(Some(FromRoad { forces, reach, spread }))
+}
+
+/// Downward forces with one resultant for each rigid block: on its straight chord, where they stand.
+fn merged(site: &LoadSite, forces: Vec<PointForce>) -> Vec<PointForce> {
+    let mut out: Vec<PointForce> = Vec::new();
+    for force in forces {
+        match out.iter_mut().find(|other| other.body == force.body && site.assembly.is_rigid(force.body)) {
+            Some(other) => {
+                let sum = other.force + force.force;
+                other.point += (force.point - other.point) * (force.force.y / sum.y);
+                other.force = sum;
+            }
+            None => out.push(force),
+        }
+    }
+    out
 }
 
 /// The layers between the road and a level at x, from the lowest.

@@ -2,8 +2,8 @@
 
 use super::site::LoadSite;
 use std::fmt::Debug;
-use voussoir_core::model::PointForce;
 use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{LoadSpread, PointForce};
 use voussoir_core::plugin::Diagnostic;
 
 /// What a load does to the blocks.
@@ -13,6 +13,8 @@ pub struct Placed {
     pub forces: Vec<PointForce>,
     /// Accelerations of all blocks \[m/s²\].
     pub accelerations: Vec<Vec2>,
+    /// How what stands on a road has spread.
+    pub spreads: Vec<LoadSpread>,
     /// What a user should know of where the load went.
     pub notes: Vec<String>,
 }

@@ -13,6 +13,7 @@ mod site;
 pub mod strip;
 #[cfg(test)]
 mod tests;
+mod track;
 pub mod vehicle;
 mod vehicle_axles;
 
@@ -20,4 +21,5 @@ pub use extrados::fill_layers;
 pub use keys::load_shape;
 pub use load_kind::{LoadKind, Placed};
 pub use site::{BlockName, LoadSite, LoadTables};
+pub use track::{Track, footprints};
 pub use vehicle_axles::{Axle, VEHICLE, VehicleAxles};

@@ -5,6 +5,7 @@ use super::dispersion::Patch;
 use super::extrados::from_road;
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
+use super::track::{TRACK, Track, footprints, loaded_width};
 use super::vehicle_axles::Axle;
 use serde::{Deserialize, Serialize};
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -45,6 +46,8 @@ pub struct VehicleLoad {
     /// What carries it.
     #[serde(default)]
     pub across: Across,
+    /// Between its axles and the road.
+    pub track: Option<Track>,
 }
 
 impl VehicleLoad {
@@ -58,7 +61,7 @@ impl VehicleLoad {
 
     /// Width that carries an axle, of the bridge's width, with its reach to both sides in the fill \[m\].
     fn carrying(&self, axle: &Axle, width: f64, reach: f64) -> f64 {
-        match (self.across, axle.wheel_width) {
+        match (self.across, loaded_width(axle, self.track.as_ref())) {
             (Across::Effective, Some(wheel)) => width.min(wheel + 2.0 * reach),
             _ => width,
         }
@@ -72,20 +75,35 @@ impl LoadKind for VehicleLoad {
         let Some(vehicle) = site.tables.vehicles.get(&self.vehicle) else {
             return site.fail("vehicle", format!("there is no vehicle called \"{}\"", self.vehicle));
         };
+        if let Some((key, message)) = self.track.as_ref().and_then(Track::mistake) {
+            return site.fail(key, message);
+        }
         let width = site.assembly.width;
         let mut placed = Placed::default();
         for (i, axle) in vehicle.axles.iter().enumerate() {
-            let (x, half) = (self.place_of(axle), axle.length / 2.0);
-            let patch = Patch { from: x - half, to: x + half, share: 1.0 };
-            let Some(spread) = from_road(site, patch, "at")? else {
-                placed.notes.push(format!("axle {i} of \"{}\" is off the bridge: it counts zero", self.vehicle));
-                continue;
-            };
-            let force = axle.force * axle.lift_off * width / self.carrying(axle, width, spread.reach);
-            placed.forces.extend(spread.forces.into_iter().map(|mut share| {
-                share.force *= force;
-                share
-            }));
+            let x = self.place_of(axle);
+            let prints = footprints(axle, self.track.as_ref());
+            let count = prints.len();
+            let mut off = 0;
+            for Patch { from, to, share } in prints {
+                let patch = Patch { from: x + from, to: x + to, share: 1.0 };
+                let Some(spread) = from_road(site, patch, "at")? else {
+                    off += 1;
+                    continue;
+                };
+                let force = share * axle.force * axle.lift_off * width / self.carrying(axle, width, spread.reach);
+                placed.spreads.push(spread.spread);
+                placed.forces.extend(spread.forces.into_iter().map(|mut part| {
+                    part.force *= force;
+                    part
+                }));
+            }
+            if off > 0 {
+                let what =
+                    if count > 1 { format!("{off} of {count} sleepers under axle {i}") } else { format!("axle {i}") };
+                let (is, counts) = if off > 1 { ("are", "they count") } else { ("is", "it counts") };
+                placed.notes.push(format!("{what} of \"{}\" {is} off the bridge: {counts} zero", self.vehicle));
+            }
         }
         Ok(placed)
     }
@@ -116,8 +134,17 @@ voussoir_core::inventory::submit! {
                 shape: Shape::Choice(&["full_width", "effective"]),
                 need: Need::Default("\"full_width\""),
             },
+            Parameter {
+                name: "track",
+                doc: "rails, sleepers and ballast between the axles and the road, which is the level under the ballast",
+                shape: TRACK,
+                need: Need::Optional("each axle presses on the road itself"),
+            },
         ],
-        sources: &["National Highways 2020, CS 454 (effective width, lift-off)"],
+        sources: &[
+            "National Highways 2020, CS 454 (effective width, lift-off)",
+            "EN 1991-2:2003, 6.3.6.1 and 6.3.6.2 (25, 50 and 25 % on three sleepers; 4 : 1 in ballast)",
+        ],
         file: file!(),
         page: include_str!("vehicle.md"),
         ..Card::BLANK

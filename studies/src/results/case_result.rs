@@ -1,6 +1,8 @@
 //! The result of a case, as it stands in `results.json`.
 
-use super::entries::{DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, YieldedEntry};
+use super::entries::{
+    DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry,
+};
 use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
@@ -64,6 +66,9 @@ pub struct PathRecord {
     /// On request: \[displacement of the load point \[m\], factor\] of the last stage.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<Vec<[f64; 2]>>,
+    /// On request: states of the path in order, for drawings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub states: Vec<StateEntry>,
     /// Displacement of every body as a rigid motion at the state of the field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacements: Option<Vec<DisplacementEntry>>,
@@ -154,6 +159,9 @@ pub struct CaseResult {
     /// What a path leaves.
     #[serde(flatten)]
     pub path: PathRecord,
+    /// The partial factors that its values were multiplied or divided by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub partial_factors: Option<Json>,
     /// On bridges, what stands on which block.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadEntry>,
@@ -189,6 +197,7 @@ impl CaseResult {
             seconds: 0.0,
             stages: Vec::new(),
             path: PathRecord::default(),
+            partial_factors: None,
             loads: Vec::new(),
         }
     }

@@ -90,6 +90,24 @@ pub struct YieldedEntry {
     pub elements: Vec<f64>,
 }
 
+/// A state of a path, for drawings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StateEntry {
+    /// Name of the stage.
+    pub stage: String,
+    /// The factor of that stage's loads (of its gravity, where `gravity` is set).
+    pub factor: f64,
+    /// Whether gravity was being applied.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub gravity: bool,
+    /// Displacement of the loads along themselves by the rigid motion of their blocks \[m\].
+    pub displacement: f64,
+    /// \[u_x, u_y, θ\] of every body at its centroid, in the order of the scene.
+    pub bodies: Vec<[f64; 3]>,
+    /// Pressure at every contact point, in the order of `field` \[Pa\].
+    pub pressures: Vec<f64>,
+}
+
 /// An event of a path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EventEntry {

@@ -16,7 +16,7 @@ pub mod thrust_line;
 pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult};
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
-    DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, YieldedEntry,
+    DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, StateEntry, YieldedEntry,
 };
 pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 pub use rank::load_rank;

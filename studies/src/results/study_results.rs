@@ -12,6 +12,9 @@ pub struct StudyResults {
     pub study: String,
     /// Version of the program.
     pub version: String,
+    /// The day of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
     /// Ids of the cases, where the run was asked for some of them only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only_cases: Option<Vec<usize>>,
@@ -23,4 +26,16 @@ pub struct StudyResults {
     /// What other study kinds add, by name.
     #[serde(flatten)]
     pub own: Map<String, Json>,
+}
+
+impl StudyResults {
+    /// The result of a case by its id; `None` where it was not asked for, or not answered before the run was cancelled.
+    pub fn case(&self, id: usize) -> Option<&CaseResult> {
+        self.cases.iter().find(|case| case.label.id == id)
+    }
+
+    /// Whether every case that is here is answered and its certificate passed.
+    pub fn certified(&self) -> bool {
+        self.cases.iter().all(|case| case.certificate.passed)
+    }
 }

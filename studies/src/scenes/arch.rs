@@ -5,10 +5,11 @@ use super::keys::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
+use super::thickness::{THICKNESS, Thickness};
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
+use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Range, Shape, check_as};
 
 /// How the ring meets its supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,8 +30,8 @@ const MAX_VOUSSOIRS: usize = 2_000_000;
 pub struct Arch {
     /// Shape of the intrados.
     pub profile: Profile,
-    /// Of the ring, along the joints \[m\]; not for `points`.
-    pub thickness: Option<f64>,
+    /// Of the ring, along the joints; not for `points`.
+    pub thickness: Option<Thickness>,
     /// Out of plane \[m\].
     pub width: f64,
     /// Stress state of deformable voussoirs.
@@ -136,8 +137,12 @@ impl Scene for Arch {
 
 const PARAMETERS: &[Parameter] = &[
     Parameter { name: "profile", doc: "shape of the intrados", shape: PROFILE, need: Need::Required },
-    Parameter::number("thickness", Quantity::Length, Range::POSITIVE, "of the ring, along the joints")
-        .optional("the profile is a list of points"),
+    Parameter {
+        name: "thickness",
+        doc: "of the ring, along the joints; { crown, springing } grows with the arc length between them",
+        shape: THICKNESS,
+        need: Need::Optional("the profile is a list of points"),
+    },
     WIDTH,
     PLANE,
     Parameter {

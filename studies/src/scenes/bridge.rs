@@ -1,15 +1,19 @@
 //! `bridge`: spans of one or several rings on abutments and piers, with fill.
 #![doc = include_str!("bridge.md")]
 
+mod builder;
+mod damage;
 mod fill;
 mod keys;
 mod piers;
 mod rings;
 
+pub use self::damage::{Damage, Face};
 pub use self::fill::{Extent, Fill, Haunching, Layer};
 pub use self::piers::{Footing, Pier};
 pub use self::rings::{Counts, RadialJoints, Span};
 
+use self::builder::Builder;
 use self::piers::PierBlocks;
 use self::rings::SpanBlocks;
 use super::arch::Ends;
@@ -17,10 +21,8 @@ use super::keys::PlaneState;
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use serde::{Deserialize, Serialize};
-use voussoir_core::model::geometry::{Vec2, bounding_box};
-use voussoir_core::model::{
-    ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Chord, Gap, Joint, Scene, find_joints,
-};
+use voussoir_core::model::geometry::bounding_box;
+use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Scene, find_joints};
 use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Range, check_as};
 
 /// Spans on abutments and piers, with fill.
@@ -45,6 +47,9 @@ pub struct BridgeScene {
     pub piers: Vec<Pier>,
     /// Its fill.
     pub fill: Option<Fill>,
+    /// What time and water have taken.
+    #[serde(default)]
+    pub damage: Vec<Damage>,
     /// Mesh of deformable blocks.
     pub mesh: Option<Mesh>,
 }
@@ -115,95 +120,6 @@ struct Indices {
     ring_joint: usize,
 }
 
-/// Bodies and joints as they are put together.
-#[derive(Default)]
-struct Builder {
-    bodies: Vec<Body>,
-    /// Across rings; they come first.
-    radial: Vec<Joint>,
-    other: Vec<Joint>,
-    extrados: Vec<Chord>,
-}
-
-impl Builder {
-    fn body(&mut self, name: String, vertices: Vec<Vec2>, material: usize, fixed: bool) -> usize {
-        self.bodies.push(Body { name, vertices, material, fixed });
-        self.bodies.len() - 1
-    }
-
-    /// The rings of a span on what stands `before` it; `bonds` of joints across rings, between rings, at springings.
-    /// The joints at its end are left without the body that comes after.
-    fn span(
-        &mut self,
-        index: usize,
-        blocks: &SpanBlocks,
-        before: usize,
-        bonds: [Bond; 3],
-        alone: bool,
-        material: usize,
-    ) {
-        let [bond, ring_bond, springing] = bonds;
-        let mut first = Vec::new();
-        for (r, ring) in blocks.rings.iter().enumerate() {
-            first.push(self.bodies.len());
-            let count = ring.voussoirs.len();
-            for (k, vertices) in ring.voussoirs.iter().enumerate() {
-                let name = if alone { k.to_string() } else { format!("s{index}r{r}v{k}") };
-                let body = self.body(name, vertices.clone(), material, false);
-                let minus = if k == 0 { before } else { body - 1 };
-                let bond = if k == 0 { springing } else { bond };
-                self.radial.push(Joint { minus, plus: body, ends: ring.joints[k], bond, gap: Gap::default() });
-            }
-            let minus = self.bodies.len() - 1;
-            // The next body is not yet known: `usize::MAX` stands for it.
-            let end = Joint { minus, plus: usize::MAX, ends: ring.joints[count], bond: springing, gap: Gap::default() };
-            self.radial.push(end);
-        }
-        for (r, interface) in blocks.interfaces.iter().enumerate() {
-            for (below, above, ends) in interface {
-                let (minus, plus) = (first[r] + below, first[r + 1] + above);
-                self.other.push(Joint { minus, plus, ends: *ends, bond: ring_bond, gap: Gap::default() });
-            }
-        }
-        if let (Some(outermost), Some(first)) = (blocks.rings.last(), first.last()) {
-            let count = outermost.voussoirs.len();
-            self.extrados.extend((0..count).map(|k| Chord {
-                body: first + k,
-                ends: [outermost.joints[k][1], outermost.joints[k + 1][1]],
-                from_middle: (2 * k + 1).abs_diff(count),
-            }));
-        }
-    }
-
-    /// Joins the rings that end here to a body.
-    fn join_ends(&mut self, body: usize) {
-        self.radial.iter_mut().filter(|joint| joint.plus == usize::MAX).for_each(|joint| joint.plus = body);
-    }
-
-    /// A pier, on which the rings before it end; returns the body on which the next span begins.
-    fn pier(&mut self, index: usize, pier: &Pier, blocks: &PierBlocks, bond: Bond, material: usize) -> usize {
-        let cap = blocks.cap.as_ref().map(|cap| self.body(format!("p{index}cap"), cap.clone(), material, false));
-        let courses: Vec<usize> = (blocks.courses.iter().enumerate())
-            .map(|(i, course)| self.body(format!("p{index}c{i}"), course.clone(), material, false))
-            .collect();
-        let ground = self.body(format!("footing{index}"), Vec::new(), material, true);
-        let top = cap.unwrap_or(courses[0]);
-        self.join_ends(top);
-        if let Some(ends) = blocks.top {
-            self.extrados.push(Chord { body: top, ends, from_middle: Chord::NO_RING });
-        }
-        let below = courses.iter().copied().chain([ground]);
-        let above = cap.into_iter().chain(courses.iter().copied());
-        let levels = if cap.is_some() { &blocks.levels[..] } else { &blocks.levels[1..] };
-        let below = below.skip(usize::from(cap.is_none()));
-        for ((minus, plus), [left, right]) in below.zip(above).zip(levels) {
-            let bond = if minus == ground && pier.footing == Footing::Bonded { Bond::Bonded } else { bond };
-            self.other.push(Joint { minus, plus, ends: [*right, *left], bond, gap: Gap::default() });
-        }
-        top
-    }
-}
-
 impl BridgeScene {
     fn indices(&self, catalogue: &Catalogue) -> Result<Indices, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
@@ -268,14 +184,18 @@ impl Scene for BridgeScene {
         let indices = self.indices(catalogue).map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let shapes = self.shapes().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(indices), Some(shapes)) = (indices, shapes) else { return Err(from_root(diagnostics)) };
-        let Builder { bodies, radial, other, extrados } = self.put_together(&shapes, &indices);
+        let mut builder = self.put_together(&shapes, &indices);
+        builder.damage(&self.damage, catalogue).map_err(from_root)?;
+        let Builder { bodies, radial, other, extrados, rings: _ } = builder;
         if let Some(wrong) = overlap(&bodies) {
             return Err(from_root(vec![wrong]));
         }
         let ends = [shapes.spans[0].springing(0)[0], shapes.spans[shapes.spans.len() - 1].springing(1)[0]];
-        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1;
+        // A repointed joint is two: then joints are not numbered along the ring.
+        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1 && other.is_empty();
         let ring = || {
-            let crown = radial.iter().fold(f64::NEG_INFINITY, |top, joint| top.max(joint.ends[0].y));
+            let joints = &shapes.spans[0].rings[0].joints;
+            let crown = joints.iter().fold(f64::NEG_INFINITY, |top, ends| top.max(ends[0].y));
             let rise = crown - (ends[0].y + ends[1].y) / 2.0;
             ArchLayout { first: 1, voussoirs: radial.len() - 1, span: ends[1].x - ends[0].x, rise }
         };

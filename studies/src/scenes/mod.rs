@@ -8,8 +8,10 @@ mod keys;
 mod lookup;
 pub mod mesh;
 pub mod profile;
+mod surveyed;
 #[cfg(test)]
 pub(crate) mod test_catalogue;
+pub mod thickness;
 pub mod wall;
 
 pub(crate) use keys::POINT;

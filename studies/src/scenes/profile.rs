@@ -2,12 +2,14 @@
 //! voussoirs. x = 0 at midspan, y = 0 at the intrados springings.
 //!
 //! Joints are normal to the intrados at equal arc length (on a segmental arch at equal angles, the
-//! same thing), the thickness is measured along them. At the apex of a pointed arch, where the
+//! same thing), the thickness is measured along them; it may grow from the crown to the springings. At the apex of a pointed arch, where the
 //! intrados has no normal, the joint is upright. Sources: plane geometry; the catenary after
 //! Bernoulli, Huygens and Leibniz (1691).
 
 use super::curve::Curve;
 use super::lookup::out_of_range;
+use super::surveyed::cut;
+use super::thickness::Thickness;
 use serde::{Deserialize, Serialize};
 use voussoir_core::model::crosses_itself;
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, is_convex};
@@ -64,8 +66,19 @@ pub enum Profile {
     /// Vertices joint by joint, from left to right.
     Points {
         /// Intrados end of each joint \[m\].
+        #[serde(default)]
         intrados: Vec<[f64; 2]>,
         /// Extrados end of each joint \[m\].
+        #[serde(default)]
+        extrados: Vec<[f64; 2]>,
+    },
+    /// Points along the faces of the ring, cut into voussoirs of equal length.
+    Surveyed {
+        /// Points of the intrados from springing to springing \[m\].
+        #[serde(default)]
+        intrados: Vec<[f64; 2]>,
+        /// Points of the extrados \[m\].
+        #[serde(default)]
         extrados: Vec<[f64; 2]>,
     },
 }
@@ -75,6 +88,17 @@ const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSIT
 const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
 
 const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
+const SURVEY: Parameter = Parameter {
+    name: "file",
+    doc: "a table of them beside the study: a line a point, columns curve, x, y, or a line a joint, columns intrados_x, \
+          intrados_y, extrados_x, extrados_y; a unit may follow a name: x [mm]",
+    shape: Shape::Text,
+    need: Need::Optional("intrados and extrados are given"),
+};
+
+const fn vertices(name: &'static str, doc: &'static str) -> Parameter {
+    Parameter { name, doc, shape: VERTICES, need: Need::Optional("file is given") }
+}
 
 /// What a profile may hold.
 pub const PROFILE: Shape = Shape::Tagged {
@@ -111,18 +135,18 @@ pub const PROFILE: Shape = Shape::Tagged {
             tag: "points",
             doc: "vertices joint by joint, from left to right",
             parameters: &[
-                Parameter {
-                    name: "intrados",
-                    doc: "intrados end of each joint",
-                    shape: VERTICES,
-                    need: Need::Required,
-                },
-                Parameter {
-                    name: "extrados",
-                    doc: "extrados end of each joint",
-                    shape: VERTICES,
-                    need: Need::Required,
-                },
+                vertices("intrados", "intrados end of each joint"),
+                vertices("extrados", "extrados end of each joint"),
+                SURVEY,
+            ],
+        },
+        Variant {
+            tag: "surveyed",
+            doc: "points along both faces, cut into `voussoirs` of equal length along the intrados",
+            parameters: &[
+                vertices("intrados", "points of the intrados from springing to springing"),
+                vertices("extrados", "points of the extrados, beginning and ending at the springing faces"),
+                SURVEY,
             ],
         },
     ],
@@ -196,17 +220,24 @@ impl Profile {
     /// `points`, which hold them. Issues have paths from the scene's table.
     pub fn ring(
         &self,
-        thickness: Option<f64>,
+        thickness: Option<Thickness>,
         voussoirs: Option<usize>,
         springing: Option<Springing>,
     ) -> Result<Ring, Vec<Diagnostic>> {
         if let Profile::Points { intrados, extrados } = self {
             return ring_of_points(intrados, extrados, thickness, voussoirs, springing);
         }
+        if let Profile::Surveyed { intrados, extrados } = self {
+            let Some(voussoirs) = voussoirs else {
+                return Err(vec![Diagnostic::new("voussoirs", "is missing: the number of voussoirs")]);
+            };
+            let [intrados, extrados] = cut(intrados, extrados, voussoirs)?;
+            return ring_of_points(&intrados, &extrados, thickness, None, springing);
+        }
         let mut diagnostics = Vec::new();
         match thickness {
             None => diagnostics.push(Diagnostic::new("thickness", "is missing: the thickness of the ring [m]")),
-            Some(thickness) => diagnostics.extend(out_of_range("thickness", thickness, Range::POSITIVE)),
+            Some(thickness) => diagnostics.extend(thickness.mistakes()),
         }
         match voussoirs {
             None => diagnostics.push(Diagnostic::new("voussoirs", "is missing: the number of voussoirs")),
@@ -227,6 +258,10 @@ impl Profile {
         }
         let mut ring = ring_on(&curve, thickness, voussoirs);
         if let Some(springing) = springing {
+            let Some(thickness) = thickness.even() else {
+                let wrong = Diagnostic::new("springing", "is given besides a thickness that varies");
+                return Err(vec![wrong.help("the end joints are normal to the intrados there; remove this key")]);
+            };
             move_springings(&mut ring, &curve, thickness, springing)?;
         }
         check_voussoirs(&ring, springing)?;
@@ -242,7 +277,7 @@ impl Profile {
             | Profile::Catenary { span, rise }
             | Profile::Pointed { span, rise }
             | Profile::ThreeCentred { span, rise, .. } => (span, rise),
-            Profile::Points { .. } => unreachable!("a list of points is no curve"),
+            Profile::Points { .. } | Profile::Surveyed { .. } => unreachable!("a list of points is no curve"),
         };
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("profile.span", span, Range::POSITIVE));
@@ -268,7 +303,7 @@ impl Profile {
             ]),
             Profile::Pointed { .. } => Ok(Curve::pointed(span, rise)),
             Profile::ThreeCentred { crown_radius, .. } => three_centred(span, rise, crown_radius).map_err(|i| vec![i]),
-            Profile::Points { .. } => unreachable!("returned above"),
+            Profile::Points { .. } | Profile::Surveyed { .. } => unreachable!("returned above"),
         }
     }
 }
@@ -295,12 +330,12 @@ fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Diagnostic> 
 }
 
 /// Joints normal to the curve at equal arc length. Joint N − k is the exact mirror image of joint k.
-fn ring_on(curve: &Curve, thickness: f64, voussoirs: usize) -> Ring {
+fn ring_on(curve: &Curve, thickness: Thickness, voussoirs: usize) -> Ring {
     let (mut intrados, mut extrados) = (Vec::new(), Vec::new());
     for k in 0..=voussoirs {
         let from_crown = (2 * k).abs_diff(voussoirs);
         let (point, normal) = curve.at_share(from_crown, voussoirs);
-        let outer = point + normal * thickness;
+        let outer = point + normal * thickness.at(from_crown as f64 / voussoirs as f64);
         let left = 2 * k < voussoirs;
         intrados.push(if left { mirrored(point) } else { point });
         extrados.push(if left { mirrored(outer) } else { outer });
@@ -365,7 +400,7 @@ fn is_sound(vertices: &[Vec2]) -> bool {
 fn ring_of_points(
     intrados: &[[f64; 2]],
     extrados: &[[f64; 2]],
-    thickness: Option<f64>,
+    thickness: Option<Thickness>,
     voussoirs: Option<usize>,
     springing: Option<Springing>,
 ) -> Result<Ring, Vec<Diagnostic>> {

@@ -50,6 +50,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         parameters: case.parameters.clone(),
     };
     result.loads = load_entries(case);
+    result.partial_factors = case.resolved.get("factors").cloned();
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
         let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
         let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
@@ -78,19 +79,29 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     result.certificate.failures.extend(wrong);
 }
 
-/// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`.
+/// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`. Those
+/// that are not answered when the observer cancels are left out.
 pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
     let one = |id: &usize| {
-        let case = &study.cases[*id];
-        let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
+        let result = solve_unless_cancelled(&study.cases[*id], observer)?;
         observer.answered(&result);
-        result
+        Some(result)
     };
     if jobs > 1 {
-        side_by_side(jobs, || wanted.par_iter().map(one).collect())
+        side_by_side(jobs, || wanted.par_iter().filter_map(one).collect())
     } else {
-        wanted.iter().map(one).collect()
+        wanted.iter().filter_map(one).collect()
     }
+}
+
+/// Solves one case; `None` where the observer has cancelled before it was answered.
+pub fn solve_unless_cancelled(case: &Case, observer: &dyn Observer) -> Option<CaseResult> {
+    if observer.cancelled() {
+        return None;
+    }
+    let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
+    // A path that was cut short is stalled; one that came to its end in the same moment is answered.
+    (result.status != Status::Stalled || !observer.cancelled()).then_some(result)
 }
 
 /// Tells an observer of a study how far the path of a case has come.
@@ -110,7 +121,9 @@ impl PathObserver for Followed<'_> {
             gravity: load_step.gravity,
             factor: state.factor,
             states: self.states,
+            problem,
+            state,
         });
-        true
+        !self.observer.cancelled()
     }
 }

@@ -17,6 +17,8 @@ pub struct CaseInput<'a> {
     pub of_stages: &'a [Option<SelectedSolver>],
     /// Whether the points of a path are asked for.
     pub curve: bool,
+    /// How many states of a path are kept.
+    pub states: usize,
     /// What a path solver is told; its tolerance is the greatest relative gap between bounds too.
     pub settings: &'a PathSettings,
 }
@@ -30,6 +32,7 @@ impl<'a> CaseInput<'a> {
             solver: &case.solver.solver,
             of_stages: &case.solver.of_stages,
             curve: case.output_curve,
+            states: case.output_states,
             settings: &case.solver.settings,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::auto::{TaggedPathSolver, limit_solvers, path_solvers, willing};
 use super::case_input::CaseInput;
+use super::explain_bridge::explain_bridge;
 use crate::results::stage_start::search_start;
 use crate::study::{Case, Study};
 use std::fmt::Write;
@@ -30,6 +31,9 @@ fn explain_case(case: &Case, text: &mut String) {
         assembly.bodies.len(),
         assembly.joints.len()
     );
+    if let Some(bridge) = &assembly.bridge {
+        explain_bridge(case, bridge, text);
+    }
     let input = CaseInput::of(case);
     let solvers = path_solvers(&input);
     if !solvers.is_empty() {

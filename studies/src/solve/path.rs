@@ -3,6 +3,7 @@
 use super::auto::{TaggedPathSolver, willing};
 use super::case_input::CaseInput;
 use super::path_result::{Seen, path_result};
+use super::recorded::Recorder;
 use crate::results::CaseResult;
 use voussoir_core::certificate::PathChecker;
 use voussoir_core::path::{PathObserver, PathProblem, PathState};
@@ -13,11 +14,13 @@ struct Watched<'a> {
     observer: &'a mut dyn PathObserver,
     /// The last state of each stage, by index.
     ends: Vec<Option<PathState>>,
+    recorder: Recorder<'a>,
 }
 
 impl PathObserver for Watched<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
         self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
+        self.recorder.state(problem, state);
         self.checker.state(problem, state) && self.observer.state(problem, state)
     }
 }
@@ -40,10 +43,12 @@ pub(super) fn solve_by_path(
         Ok(checker) => checker,
         Err(why) => return failed(tag, why),
     };
-    let mut watched = Watched { checker, observer, ends: vec![None; input.stages.len()] };
+    let recorder = Recorder::new(input);
+    let mut watched = Watched { checker, observer, ends: vec![None; input.stages.len()], recorder };
     let solved = solver.trace(&problem, input.settings, &mut watched);
     let energy = solver.energy_tolerance();
-    path_result(input, tag, &problem, solved, Seen { checker: watched.checker, ends: watched.ends, energy })
+    let Watched { checker, ends, recorder, .. } = watched;
+    path_result(input, tag, &problem, solved, Seen { checker, ends, energy, states: recorder.chosen() })
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

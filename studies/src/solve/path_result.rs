@@ -10,7 +10,7 @@ use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{
     BranchEntry, CaseResult, DisplacementEntry, EventEntry, LimitPointEntry, PathRecord, Proof, ProofFields,
-    StabilityEntry, StageResult,
+    StabilityEntry, StageResult, StateEntry,
 };
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
@@ -29,6 +29,8 @@ pub(super) struct Seen {
     pub ends: Vec<Option<PathState>>,
     /// How much of the energy of a stage its steps may lose.
     pub energy: f64,
+    /// States that are kept.
+    pub states: Vec<StateEntry>,
 }
 
 /// The result of a path.
@@ -37,7 +39,7 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    Seen { checker, ends, energy }: Seen,
+    Seen { checker, ends, energy, states }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     prefer_symmetric(assembly, &checker, finite, &mut solved);
@@ -100,7 +102,7 @@ pub(super) fn path_result(
             &solved.stability,
         ),
         notes,
-        path: path_record(input, problem, solved, checker),
+        path: PathRecord { states, ..path_record(input, problem, solved, checker) },
         ..CaseResult::empty()
     }
 }
@@ -137,6 +139,7 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
         first_limit_point: first,
         limit_points,
         branches,
+        states: Vec::new(),
     }
 }
 
@@ -297,7 +300,12 @@ fn events(input: &CaseInput, problem: &PathProblem, events: &[PathEvent]) -> Vec
 }
 
 /// Displacement of every block at its centroid from the rigid motions of the path's bodies.
-fn displacements(assembly: &Assembly, problem: &PathProblem, motion: &[[f64; 3]], finite: bool) -> Vec<[f64; 3]> {
+pub(super) fn displacements(
+    assembly: &Assembly,
+    problem: &PathProblem,
+    motion: &[[f64; 3]],
+    finite: bool,
+) -> Vec<[f64; 3]> {
     let of_block = |block: usize| {
         let body = problem.body_of[block];
         let u = carried(motion[body], problem.bodies[body].pole, assembly.inertia(block).centroid, finite);

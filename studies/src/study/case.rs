@@ -4,6 +4,7 @@ use super::assemble::{assembly, catalogue};
 use super::diagnostics::DiagnosticList;
 use super::keys::{kind_tables, study_keys};
 use super::model::{Case, SelectedSolver};
+use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::warnings;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::stages::build_stages;
@@ -22,9 +23,12 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     let mut notes: Vec<String> =
         unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
     check_kind(&mut diagnostics, &resolved);
-    let catalogue = catalogue(&mut diagnostics, &resolved);
-    let assembly = catalogue.and_then(|catalogue| assembly(&mut diagnostics, &resolved, &catalogue));
-    let stages = build_stages(&mut diagnostics, &resolved, assembly.as_ref(), &mut notes);
+    let tables = design(&resolved, &mut notes);
+    check(&mut diagnostics, &resolved, &tables);
+    let catalogue = catalogue(&mut diagnostics, &tables);
+    let assembly = catalogue.and_then(|catalogue| assembly(&mut diagnostics, &tables, &catalogue));
+    let mut stages = build_stages(&mut diagnostics, &tables, assembly.as_ref(), &mut notes);
+    multiply_loads(stages.as_deref_mut().unwrap_or_default(), &resolved);
     let solver =
         resolved.get("solver").and_then(|solver| choose_solver(&mut diagnostics, solver, &resolved, assembly.as_ref()));
     let limit = solver.as_ref().is_some_and(|choice| matches!(choice.solver, SelectedSolver::Limit(..)));
@@ -35,10 +39,26 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
+            let states = resolved.get("output").and_then(|output| output["states"].as_u64());
+            let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
+            note_of_yielding(&assembly, &resolved, &mut notes);
             let resolved = Json::Object(resolved);
             let brief = false;
-            Ok(Case { id, variant, scene, parameters, assembly, stages, solver, output_curve, notes, brief, resolved })
+            Ok(Case {
+                id,
+                variant,
+                scene,
+                parameters,
+                assembly,
+                stages,
+                solver,
+                output_curve,
+                output_states,
+                notes,
+                brief,
+                resolved,
+            })
         }
         _ => Err(diagnostics.found),
     }

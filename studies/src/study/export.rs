@@ -1,6 +1,7 @@
 //! A case of any scene as a study of the scene `blocks`: every block by its vertices, every load by its forces.
 
 use super::model::Case;
+use super::partial_factors::design;
 use serde_json::{Map, Value as Json, json};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bond, Joint, PointForce, Stage, fill_weights};
@@ -11,13 +12,19 @@ const GROUND: f64 = 0.5;
 /// The study in TOML. An error says what has no counterpart there.
 pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     let assembly = &case.assembly;
+    let damage = case.resolved["scene"]["damage"].as_array();
+    if damage.is_some_and(|list| list.iter().any(|entry| entry["kind"] != "lost_voussoir")) {
+        return Err("joints that touch over a part of their edges only have no counterpart there".into());
+    }
     let mut study = Map::new();
     study.insert("name".into(), format!("{name}_blocks").into());
     study.insert("scene".into(), scene(case)?);
+    let resolved = case.resolved.as_object().cloned().unwrap_or_default();
+    let tables = design(&resolved, &mut Vec::new());
     for table in ["materials", "joints", "solver"] {
-        study.extend(case.resolved.get(table).map(|value| (table.to_string(), value.clone())));
+        study.extend(tables.get(table).map(|value| (table.to_string(), value.clone())));
     }
-    let resolved = case.resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let resolved = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
     let mut gravity = Vec2::zeros();
     let mut stages = Vec::new();
     for (stage, table) in case.stages.iter().zip(resolved) {

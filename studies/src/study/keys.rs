@@ -1,5 +1,6 @@
 //! The keys of a study file.
 
+use super::partial_factors::FACTORS;
 use crate::config::common_keys::STOP;
 use crate::kinds::kinds;
 use crate::loads::{VEHICLE, load_shape};
@@ -95,6 +96,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         Need::Default("true"),
         "figures: of all cases, of the worst of each variant, of none; true: of all up to 50 cases, else of the worst",
     ),
+    key(
+        "states",
+        Shape::Integer { min: 2, max: 500 },
+        Need::Optional("no states are kept"),
+        "of each path so many states are kept, for the drawing that moves in the report",
+    ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ];
 
@@ -178,6 +185,12 @@ static COMMON: &[Parameter] = &[
         Shape::Map(&VEHICLE),
         Need::Optional("no vehicles"),
         "vehicles by name, for loads of kind \"vehicle\"",
+    ),
+    key(
+        "factors",
+        FACTORS,
+        Need::Optional("all are 1"),
+        "partial factors on weights, loads and strengths; the values given elsewhere are characteristic ones",
     ),
     key(
         "sweep",

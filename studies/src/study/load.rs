@@ -27,11 +27,6 @@ pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, 
 }
 
 impl Study {
-    /// Reads a study from TOML.
-    pub fn from_toml(text: &str) -> Result<Study, Vec<LocatedDiagnostic>> {
-        load(text, "study", &[])
-    }
-
     /// The study that a source describes.
     pub fn from_source(source: StudySource) -> Result<Study, Vec<LocatedDiagnostic>> {
         let StudySource { root, sets, mut diagnostics } = source;
@@ -79,17 +74,17 @@ impl Study {
 
     /// Case `id` with other values of some keys, numbers or texts, as a study kind needs it that chooses values itself. Its `id`
     /// and `parameters` are those of the case, with the keys that are set.
-    pub fn at(&self, id: usize, values: &[(&str, Json)]) -> Result<Case, Vec<LocatedDiagnostic>> {
+    pub fn at(&self, id: usize, values: &[(String, Json)]) -> Result<Case, Vec<LocatedDiagnostic>> {
         let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {
-            let origin = Origin::Set((*key).into());
+            let origin = Origin::Set(key.as_str().into());
             let written = match value {
                 Json::String(text) => Value::String(text.clone()),
                 number => Value::Float(number.as_f64().unwrap_or(f64::NAN)),
             };
             let node = Node { value: written, origin: origin.clone() };
             set(&mut expanded.root, key, node, &origin).map_err(|wrong| vec![*wrong])?;
-            expanded.parameters.insert((*key).into(), value.clone());
+            expanded.parameters.insert(key.clone(), value.clone());
         }
         build_case(id, expanded)
     }

@@ -4,23 +4,32 @@
 //! the whole file is reported at once. Solving the cases is not done here.
 
 mod assemble;
+mod builder;
 mod case;
 mod diagnostics;
+mod documented_vehicles;
+mod error;
 mod export;
 mod keys;
 mod load;
 mod model;
 mod outline;
+mod partial_factors;
 mod plausibility;
 mod solver;
 mod source;
 mod stages;
+mod survey;
 
 pub(crate) use assemble::read_plugin;
+pub use builder::StudyBuilder;
 pub use diagnostics::DiagnosticList;
+pub use error::StudyError;
 pub use export::as_blocks;
 pub use keys::{OUTPUT, VARIANT, study_keys};
 pub use load::load;
 pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study};
 pub use outline::Outline;
+pub use partial_factors::design;
 pub use source::{StudySource, kind_of};
+pub use survey::{ReadFile, beside, no_files};

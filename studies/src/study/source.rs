@@ -1,9 +1,12 @@
 //! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
 
+use super::documented_vehicles;
+use super::survey::{ReadFile, import, no_files};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::config::document::{Node, Value, parse, parse_value};
+use crate::config::document::{Node, Value, from_json, parse, parse_value};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
+use serde_json::Value as Json;
 
 /// A study file as a tree of keys, and what was found wrong with it so far.
 #[derive(Debug, Clone)]
@@ -20,18 +23,53 @@ impl StudySource {
     /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
     /// a value that is no TOML is taken as text. Errors are those of syntax.
     pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
-        let mut root = parse(text, file)?;
-        let mut diagnostics = Vec::new();
+        Self::parse_with(text, file, sets, &no_files)
+    }
+
+    /// As [`StudySource::parse`]; the files that the study names are read by `read`.
+    pub fn parse_with(
+        text: &str,
+        file: &str,
+        sets: &[(String, String)],
+        read: ReadFile,
+    ) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let mut source = StudySource { root: parse(text, file)?, sets: sets.to_vec(), diagnostics: Vec::new() };
         for (path, value) in sets {
             let origin = Origin::Set(path.as_str().into());
-            diagnostics.extend(set(&mut root, path, value_of(value, &origin), &origin).err().map(|wrong| *wrong));
+            source.set(path, value_of(value, &origin), &origin);
         }
-        if let Some(node) = root.table().and_then(|table| table.get("name"))
+        source.complete(read)
+    }
+
+    /// A study from a value that a program has made, with the tables and keys of a study file; then `sets`, keys
+    /// and values in order. Errors are values that no study can hold.
+    pub fn of_value(value: &Json, sets: &[(String, Json)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let mut source = StudySource { root: from_json(value)?, sets: Vec::new(), diagnostics: Vec::new() };
+        for (path, value) in sets {
+            source.set(path, from_json(value)?, &Origin::Value);
+        }
+        source.complete(&no_files)
+    }
+
+    fn set(&mut self, path: &str, value: Node, origin: &Origin) {
+        self.diagnostics.extend(set(&mut self.root, path, value, origin).err().map(|wrong| *wrong));
+    }
+
+    /// The same with what it names besides: documented vehicles, and points of files; and with what is wrong with its name.
+    /// What a file lacks would be missing in the study too: then that is all that is said.
+    fn complete(mut self, read: ReadFile) -> Result<Self, Vec<LocatedDiagnostic>> {
+        documented_vehicles::add(&mut self.root);
+        let before = self.diagnostics.len();
+        import(&mut self.root, read, &mut self.diagnostics);
+        if self.diagnostics.len() > before {
+            return Err(self.diagnostics);
+        }
+        if let Some(node) = self.root.table().and_then(|table| table.get("name"))
             && let Some(wrong) = node.text().and_then(no_file_name)
         {
-            diagnostics.push(LocatedDiagnostic::new(&node.origin, "name", wrong).help(FILE_NAME));
+            self.diagnostics.push(LocatedDiagnostic::new(&node.origin, "name", wrong).help(FILE_NAME));
         }
-        Ok(StudySource { root, sets: sets.to_vec(), diagnostics })
+        Ok(self)
     }
 
     /// The tag of the study's kind.

@@ -25,12 +25,14 @@ pub(super) fn build_stages(
         let (target, factors) = build_target(diagnostics, stages, index, &at);
         let settlements = assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
         let settlements = settlements.unwrap_or_default();
-        let Placed { forces, accelerations, notes: own } = build_loads(diagnostics, stage, assembly, &tables, &at);
+        let Placed { forces, accelerations, spreads, notes: own } =
+            build_loads(diagnostics, stage, assembly, &tables, &at);
         let stage = Stage {
             name: stage["name"].as_str().unwrap_or_default().to_string(),
             gravity: gravity(&stage["gravity"]),
             forces,
             accelerations,
+            spreads,
             settlements,
             target,
             factor_min: factors[0],
@@ -120,7 +122,7 @@ fn build_loads(
         };
         let (Some(load), Some(assembly)) = (load, assembly) else { continue };
         match load.place(&LoadSite::new(assembly, tables, &path)) {
-            Ok(Placed { forces: placed, accelerations: accelerated, notes }) => {
+            Ok(Placed { forces: placed, accelerations: accelerated, spreads, notes }) => {
                 let (groups, _) = assembly.rigid_groups();
                 let held = placed.iter().find(|f| groups[f.body].is_none() && assembly.is_rigid(f.body));
                 if let Some(force) = held {
@@ -133,6 +135,7 @@ fn build_loads(
                 }
                 all.forces.extend(placed);
                 all.accelerations.extend(accelerated);
+                all.spreads.extend(spreads);
                 all.notes.extend(notes);
             }
             Err(wrong) => diagnostics.extend(wrong),

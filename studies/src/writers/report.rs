@@ -1,17 +1,19 @@
 //! `report.html`: one self-contained page for reading and printing.
 
 use super::comparison::{comparison_rows, figure};
-use super::page::{self, STYLE};
+use super::live::case_data;
+use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
-    case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, key_with_unit,
-    kind_words, open_bounds, status_meaning, status_word, unit_load,
+    case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, kind_words,
+    open_bounds, status_meaning, status_word, unit_load,
 };
 use crate::figures::sweep::study_chart;
+use crate::figures::words::title_of_key;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
@@ -41,6 +43,9 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
+    if let Some(inputs) = &study.inputs {
+        body += &format!("<details open><summary>Inputs</summary>\n{inputs}</details>\n");
+    }
     if study.output.figures.anything()
         && let Some(chart) = study_chart(study)
     {
@@ -65,15 +70,12 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     body += &paths(study, drawn);
     body += &certificates(cases);
     body += &format!(
-        "<footer>Written by Voussoir {}. SI units; forces in N, kN or MN as marked. The numbers to the last bit are in \
+        "<footer>Written by Voussoir {}{}. SI units; forces in N, kN or MN as marked. The numbers to the last bit are in \
          results.json and results.csv beside this page.</footer>\n",
-        escape(&study.results.version)
+        escape(&study.results.version),
+        study.results.date.as_ref().map_or(String::new(), |date| format!(", {}", escape(date)))
     );
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
-        escape(study.name)
-    )
+    page::whole(study.name, &body, &live(study, drawn))
 }
 
 /// Variants beside each other, where the study compares them.
@@ -170,7 +172,7 @@ fn case_table(study: &StudyOutput) -> String {
     let mut header = vec!["id".to_string()];
     header.extend(variants.then(|| "variant".into()));
     header.extend(scenes.then(|| "scene".into()));
-    header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
+    header.extend(study.sweep_keys.iter().map(|key| title_of_key(key)));
     header.extend(["status".to_string(), "load factor".into()]);
     header.extend(with_load.then(|| "load".into()));
     header.extend(["bounds", "mechanism", "hinges at joints", "certificate", "time"].map(String::from));
@@ -237,6 +239,9 @@ fn figures(study: &StudyOutput, drawn: usize) -> String {
         text += &format!(
             "<figure>{scene}<figcaption>The scene with its loads, forces and joints that move.</figcaption></figure>\n"
         );
+        if study.output.figures.anything() && (case.proof.motion.is_some() || !case.path.states.is_empty()) {
+            text += &format!("<div class=\"moving\" data-case=\"{}\"></div>\n", case.label.id);
+        }
         if let Some(svg) = mechanism_svg(study.name, assembly, case) {
             let svg = page::own_ids(&svg, &format!("mechanism-{}", case.label.id));
             text += &format!(
@@ -249,6 +254,15 @@ fn figures(study: &StudyOutput, drawn: usize) -> String {
         text += "</details>\n";
     }
     text
+}
+
+/// What the script draws: the cases that figures show, and those of the chart.
+fn live(study: &StudyOutput, drawn: usize) -> Vec<Json> {
+    if !study.output.figures.anything() {
+        return Vec::new();
+    }
+    let chosen = study.results.cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id)).take(drawn);
+    chosen.filter_map(|(place, case)| case_data(study.scene(place)?.0, case)).collect()
 }
 
 /// What a load-displacement curve shows.

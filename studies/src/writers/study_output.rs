@@ -1,5 +1,6 @@
 //! What writers are given: the results and what they were computed from.
 
+use super::record::record;
 use crate::results::{CaseResult, StudyResults, load_rank};
 use crate::study::{Case, Drawn, Output, Study};
 use serde_json::Value as Json;
@@ -23,6 +24,8 @@ pub struct StudyOutput<'a> {
     pub output: Output,
     /// Ids of the cases that are drawn, where not all are.
     pub drawn: Option<BTreeSet<usize>>,
+    /// What was given, as HTML.
+    pub inputs: Option<String>,
 }
 
 /// The scene of a case.
@@ -52,6 +55,7 @@ impl<'a> StudyOutput<'a> {
             sweep_keys: swept.map(|parameters| parameters.keys().cloned().collect()).unwrap_or_default(),
             output: study.output.clone(),
             drawn: drawn(study, results),
+            inputs: Some(record(study)),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
 
 /// Associated friction with a crushing strength.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -42,6 +42,12 @@ voussoir_core::inventory::submit! {
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE],
         samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6\nstiffness = 1e10", 1e-3, &["elastic", "sliding"])],
+        known_paths: &[KnownPath {
+            table: "friction = 0.6\ncompressive_strength = 5e6\nstiffness = 1e10",
+            source: "by hand: crushed at f_c, then back with k",
+            steps: &[(&[-1e-3, 0.0], &[5e6, 0.0]), (&[-8e-4, 0.0], &[3e6, 0.0])],
+            tolerance: 1e-12,
+        }],
         sources: &["where the equations come from"],
         file: file!(),
         page: "# `capped_friction`\n\nPurpose, equations, regimes, state, validity, sources.\n",

@@ -4,4 +4,4 @@ mod added_law;
 mod capped_friction;
 mod cards;
 mod laws;
-mod state;
+mod mutants;

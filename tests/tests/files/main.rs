@@ -5,5 +5,7 @@ mod forgery;
 mod labels;
 mod lower_bound;
 mod pages;
+mod report;
 mod round_trip;
+mod survey;
 mod tampering;

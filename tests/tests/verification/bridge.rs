@@ -6,7 +6,7 @@ use voussoir::core::limit::Status;
 use voussoir::core::model::{Assembly, Bond, Bridge, Gap, Joint, PointForce, find_joints};
 use voussoir::results::{CaseResult, LoadOrigin};
 use voussoir_tests::written::{findings, results};
-use voussoir_tests::{answered, assert_close, changed, collapse_factor, first_case};
+use voussoir_tests::{answered, assert_close, changed, collapse_factor, first_case, study};
 
 /// The bridge of Prestwood's dimensions: 60 voussoirs, crushing at 4.5 MPa, a patch of 0.3 m at the quarter of the span.
 const PRESTWOOD: &str = r#"
@@ -470,4 +470,142 @@ fn paths_refuse_fill_whose_strength_changes() {
     let result = answered(&changed(&text, "[[stages]]\nname = \"live\"", twice));
     assert_eq!(result.status, Status::Stalled);
     assert!(result.notes.iter().any(|note| note.contains("gravity changes")), "{:?}", result.notes);
+}
+
+/// Two rings with a damaged joint or voussoir.
+fn two_rings(damage: &str) -> String {
+    changed(RINGS, "[materials.stone]", &format!("damage = [{damage}]\n[materials.stone]"))
+}
+
+/// A joint of which a part is repointed with its own law is the same joint; with one that cannot slip it is no weaker, and one
+/// that has lost that part is no stronger.
+#[test]
+fn repointed_and_lost_mortar() {
+    let whole = first_case(RINGS);
+    let sound = collapse_factor(RINGS);
+    for side in ["intrados", "extrados"] {
+        let own = two_rings(&format!(
+            "{{ kind = \"repointed\", ring = 1, side = \"{side}\", depth = 0.03, joint = \"dry\" }}"
+        ));
+        assert_eq!(first_case(&own).assembly.joints.len(), whole.assembly.joints.len() + 41);
+        assert_close(collapse_factor(&own), sound, 1e-8);
+        let lost = collapse_factor(&two_rings(&format!(
+            "{{ kind = \"lost_mortar\", ring = 1, side = \"{side}\", depth = 0.03 }}"
+        )));
+        assert!(lost < sound * 0.999, "{side}: {lost} {sound}");
+    }
+}
+
+/// What is lost is lost from both faces, and the deepest entry of a face counts.
+#[test]
+fn joints_that_lost_mortar_are_shorter() {
+    let text = two_rings(
+        "{ kind = \"lost_mortar\", joints = [3], depth = 0.02 }, { kind = \"lost_mortar\", joints = [3], depth = 0.01 }, \
+         { kind = \"lost_mortar\", joints = [3], side = \"extrados\", depth = 0.03 }",
+    );
+    let (case, sound) = (first_case(&text), first_case(RINGS));
+    let [joint, whole] = [&case, &sound].map(|case| case.assembly.joints[3].clone());
+    assert_close((joint.ends[0] - whole.ends[0]).norm(), 0.02, 1e-12);
+    assert_close((joint.ends[1] - whole.ends[1]).norm(), 0.03, 1e-12);
+    assert_close(joint.height(), 0.1075 - 0.05, 1e-12);
+}
+
+/// A voussoir of the inner ring is gone with its weight and its four joints; of the outer ring none can be.
+#[test]
+fn a_lost_voussoir() {
+    let (case, sound) = (first_case(&two_rings("{ kind = \"lost_voussoir\", voussoirs = [12] }")), first_case(RINGS));
+    assert!(case.assembly.body("s0r0v12").is_none() && case.assembly.body("s0r0v13").is_some());
+    assert_eq!(case.assembly.joints.len() + 3, sound.assembly.joints.len());
+    for joint in &case.assembly.joints {
+        assert!(joint.minus < case.assembly.bodies.len() && joint.plus < case.assembly.bodies.len());
+    }
+    let outer = two_rings("{ kind = \"lost_voussoir\", ring = 1, voussoirs = [12] }");
+    let wrong = voussoir::study::load(&outer, "a.toml", &[]).unwrap_err();
+    assert!(wrong[0].to_string().contains("carries the fill"), "{}", wrong[0]);
+}
+
+/// Partial factors: weights and loads scale the load of a ring that cannot crush, and each strength is divided.
+#[test]
+fn partial_factors_are_those_of_the_design_values() {
+    let with = |factors: &str| collapse_factor(&format!("{RESISTING}[factors]\n{factors}"));
+    let plain = collapse_factor(RESISTING);
+    assert_close(with("masonry_weight = 1.2\nfill_weight = 1.2"), 1.2 * plain, 1e-9);
+    assert_close(with("loads = 1.6"), plain / 1.6, 1e-9);
+    assert_close(with("loads = { live = 1.6 }"), plain / 1.6, 1e-9);
+    assert_close(
+        with("friction = 1.5"),
+        collapse_factor(&changed(RESISTING, "friction = 0.6", "friction = 0.4")),
+        1e-9,
+    );
+    let angle = (30f64.to_radians().tan() / 1.25).atan().to_degrees();
+    let by_hand = resisting(&[("friction_angle = 30.0", &format!("friction_angle = {angle:?}"))]);
+    assert_close(with("fill_friction = 1.25"), by_hand, 1e-9);
+    let crushing = collapse_factor(&changed(PRESTWOOD, "4.5 MPa", "3 MPa"));
+    assert_close(collapse_factor(&format!("{PRESTWOOD}[factors]\ncompressive_strength = 1.5")), crushing, 1e-9);
+    let result = answered(&format!("{RESISTING}[factors]\ncohesion = 2.0\nloads = 1.5"));
+    assert!(
+        result.notes.iter().any(|note| note.contains("factors.cohesion = 2 changes nothing")),
+        "{:?}",
+        result.notes
+    );
+    assert_eq!(result.partial_factors, Some(serde_json::json!({ "cohesion": 2.0, "loads": 1.5 })));
+}
+
+/// An axle on sleepers: 25, 50 and 25 % at their distance, each on its width and the ballast's spread.
+#[test]
+fn an_axle_on_a_track() {
+    let track = "at = 1.6375, track = { sleeper_spacing = 0.6, sleeper_width = 0.26, ballast_depth = 0.2 } }";
+    let text =
+        changed(&changed(PRESTWOOD, "at = 1.6375 }", track), "law = \"uniform\", angle = 30.0", "law = \"none\"");
+    let forces = &first_case(&text).stages[1].forces;
+    let [force, moment] = sums(forces);
+    assert_close(force, 1000.0, 1e-12);
+    assert_close(moment, 1637.5, 1e-12);
+    // By hand: three patches of 0.26 + 2 × 0.2/4 = 0.36 m do not touch each other.
+    let near = |x: f64| forces.iter().filter(|f| (f.point.x - x).abs() < 0.18).map(|f| -f.force.y).sum::<f64>();
+    for (x, share) in [(1.0375, 250.0), (1.6375, 500.0), (2.2375, 250.0)] {
+        assert_close(near(x), share, 1e-12);
+    }
+}
+
+/// Boussinesq's stress conserves force and moment, reaches as far as the cut-off, and presses more under the load than the
+/// even spread of the same width.
+#[test]
+fn boussinesqs_stress_under_an_axle() {
+    let text = changed(PRESTWOOD, "law = \"uniform\", angle = 30.0", "law = \"boussinesq\", angle = 45.0");
+    let even = changed(PRESTWOOD, "angle = 30.0", "angle = 45.0");
+    let (case, even_case) = (first_case(&text), first_case(&even));
+    let [force, moment] = sums(&case.stages[1].forces);
+    assert_close(force, 1000.0, 1e-12);
+    assert_close(moment, 1637.5, 1e-12);
+    let most = |forces: &[PointForce]| forces.iter().map(|f| -f.force.y).fold(0.0, f64::max);
+    assert_eq!(case.stages[1].forces.len(), even_case.stages[1].forces.len());
+    assert!(most(&case.stages[1].forces) > 1.1 * most(&even_case.stages[1].forces));
+    let factors = [&text, &even, &changed(PRESTWOOD, "angle = 30.0", "angle = 0.0")].map(|text| collapse_factor(text));
+    assert!(factors[2] < factors[0] && factors[0] < factors[1], "{factors:?}");
+}
+
+/// A vehicle of a published rule needs no entry; one of the study's own goes before it.
+#[test]
+fn documented_vehicles_need_no_entry() {
+    let text = changed(PRESTWOOD, "vehicle = \"patch\"", "vehicle = \"cs454_single\"");
+    assert_close(sums(&first_case(&text).stages[1].forces)[0], 11500.0 * 9.81, 1e-12);
+    let own = changed(&text, "[vehicles.patch]", "[vehicles.cs454_single]");
+    assert_close(sums(&first_case(&own).stages[1].forces)[0], 1000.0, 1e-12);
+    let read = study(&text);
+    assert!(read.resolved.to_string().contains("cs454_single"), "{}", read.resolved);
+}
+
+/// A ring whose thickness grows to the springings: joints as high as said, and twice half the thickness is as much.
+#[test]
+fn a_ring_that_grows_to_the_springings() {
+    let text = changed(PRESTWOOD, "thickness = 0.22", "thickness = { crown = 0.22, springing = 0.33 }");
+    let joints = first_case(&text).assembly.joints;
+    assert_close(joints[30].height(), 0.22, 1e-12);
+    assert_close(joints[0].height(), 0.33, 1e-12);
+    assert_close(joints[15].height(), 0.275, 1e-12);
+    let same = changed(PRESTWOOD, "thickness = 0.22", "thickness = { crown = 0.22, springing = 0.22 }");
+    assert_close(collapse_factor(&same), 107.198974, 1e-8);
+    let wrong = changed(&text, "voussoirs = 60", "voussoirs = 60, springing = 20.0");
+    assert!(voussoir::study::load(&wrong, "a.toml", &[]).is_err());
 }

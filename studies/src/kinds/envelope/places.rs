@@ -2,7 +2,7 @@
 
 use super::request::{Request, Run, value_at};
 use crate::loads::dispersion::{Dispersion, Patch};
-use crate::loads::{LoadSite, LoadTables, VehicleAxles, fill_layers};
+use crate::loads::{LoadSite, LoadTables, Track, VehicleAxles, fill_layers, footprints};
 use crate::study::Case;
 use voussoir_core::model::Chord;
 
@@ -23,7 +23,9 @@ pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
     let [from, to] = request.range;
     let last = (request.scan - 1) as f64;
     let even = (0..request.scan).map(|i| if i + 1 == request.scan { to } else { from + (to - from) * i as f64 / last });
-    let Places { scan: entering, joints } = events(case, run);
+    let load = request.parameter.rsplit_once('.').and_then(|(table, _)| value_at(&case.resolved, table));
+    let track = load.and_then(|load| serde_json::from_value(load.get("track")?.clone()).ok());
+    let Places { scan: entering, joints } = events(case, run, track.as_ref());
     let tidy = |places: &mut Vec<f64>| {
         places.retain(|x| from <= *x && *x <= to);
         places.sort_by(f64::total_cmp);
@@ -36,7 +38,7 @@ pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
 }
 
 /// Where an axle enters or leaves, and where an edge of its patch on the extrados meets a joint.
-fn events(case: &Case, run: &Run) -> Places {
+fn events(case: &Case, run: &Run, track: Option<&Track>) -> Places {
     let name = run.vehicle.as_deref().unwrap_or_default();
     let vehicle = case.resolved.get("vehicles").and_then(|all| all.get(name));
     let vehicle: Option<VehicleAxles> = vehicle.and_then(|table| serde_json::from_value(table.clone()).ok());
@@ -55,14 +57,16 @@ fn events(case: &Case, run: &Run) -> Places {
     let hair = 1e-9 * (last - first);
     let mut places = Places::default();
     for axle in &vehicle.axles {
-        let origin = |x: f64| x - sense * axle.at;
-        places.scan.extend([first + hair, last - hair].map(origin));
-        for joint in &joints {
-            for side in [-1.0, 1.0] {
-                let centre = centre_of(&site, &chords, *joint, side, axle.length / 2.0);
-                // A patch without length jumps from one block to the next.
-                let apart = if axle.length == 0.0 { hair } else { 0.0 };
-                places.joints.push(origin(centre + side * apart));
+        for Patch { from, to, .. } in footprints(axle, track) {
+            let origin = |x: f64| x - sense * axle.at - (from + to) / 2.0;
+            places.scan.extend([first + hair, last - hair].map(origin));
+            for joint in &joints {
+                for side in [-1.0, 1.0] {
+                    let centre = centre_of(&site, &chords, *joint, side, (to - from) / 2.0);
+                    // A patch without length jumps from one block to the next.
+                    let apart = if to == from { hair } else { 0.0 };
+                    places.joints.push(origin(centre + side * apart));
+                }
             }
         }
     }

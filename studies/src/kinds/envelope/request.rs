@@ -41,6 +41,11 @@ impl Request {
         format!("{table}.{key}")
     }
 
+    /// The keys that the envelope sets: the parameter, vehicle and direction.
+    pub fn keys(&self) -> Vec<String> {
+        vec![self.parameter.clone(), self.beside("vehicle"), self.beside("direction")]
+    }
+
     /// What is tried on a case: vehicle and direction, each where there is one.
     pub fn runs(&self, case: &Case) -> Vec<Run> {
         let load = self.parameter.rsplit_once('.').and_then(|(table, _)| value_at(&case.resolved, table));

@@ -1,7 +1,7 @@
 //! What `[optimise]` asks for.
 
 use crate::results::CaseResult;
-use crate::study::{Case, Outline, Study};
+use crate::study::{Case, Outline};
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 
@@ -37,13 +37,9 @@ impl Request {
         })
     }
 
-    /// The case of the study with other values, and the id that it has among all.
-    pub fn case(&self, study: &Study, base: usize, id: usize, value: f64) -> Option<Case> {
-        let values: Vec<(&str, Json)> = self.keys.iter().map(|key| (key.as_str(), Json::from(value))).collect();
-        let mut case = study.at(base, &values).ok()?;
-        case.id = id;
-        case.brief = true;
-        Some(case)
+    /// The keys, all at one value.
+    pub fn values(&self, value: f64) -> Vec<(String, Json)> {
+        self.keys.iter().map(|key| (key.clone(), value.into())).collect()
     }
 
     /// What an answer counts in the sense of the goal: better is greater. `None` where there is no finite result.

@@ -3,10 +3,11 @@
 use super::drive::drive_point;
 use super::result::{PathStatus, PointResult};
 use super::study::PointStudy;
-use crate::figures::chart::{Series, chart_svg};
+use crate::figures::chart::chart_svg;
 use crate::figures::format::{format_number, format_value, key_with_unit};
+use crate::figures::series::Series;
 use crate::kinds::case_study::remarks;
-use crate::kinds::kind::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification};
+use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification};
 use crate::solve::Observer;
 use crate::verify::repeat::differences;
 use crate::writers::csv_table::csv_table;
@@ -36,7 +37,11 @@ impl LoadedStudy for PointStudy {
         text
     }
 
-    fn run(&self, request: &RunRequest, _observer: &dyn Observer) -> RunOutput {
+    fn piece(&self, _results: &str, piece: Piece) -> Option<String> {
+        (piece == Piece::Chart).then(|| figure(self, &self.cases.iter().map(drive_point).collect::<Vec<_>>()))
+    }
+
+    fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
         let stored = match &request.stored {
             Some([results, _]) if request.keep => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
             _ => Vec::new(),
@@ -44,6 +49,7 @@ impl LoadedStudy for PointStudy {
         let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
         // Driving a point costs little: those that stay are driven again, so that they are of this study.
         let chosen = self.cases.iter().filter(|case| request.wanted.contains(&case.id) || others.contains(&case.id));
+        let chosen = chosen.take_while(|_| !observer.cancelled());
         let results: Vec<PointResult> = chosen.map(drive_point).collect();
         let others = results.iter().filter(|result| !request.wanted.contains(&result.id)).count();
         RunOutput {
@@ -53,7 +59,7 @@ impl LoadedStudy for PointStudy {
                 .collect(),
             table: table(self, &results),
             remarks: remarks(request, others, self.cases.len()),
-            certified: results.iter().all(|result| result.status == PathStatus::Reached),
+            certified: results.iter().all(|result| result.status == PathStatus::Reached) && !observer.cancelled(),
         }
     }
 
@@ -148,9 +154,17 @@ pub fn csv(results: &[PointResult]) -> String {
     csv_table(header.collect(), rows.into_iter())
 }
 
-/// What tells a case apart.
+/// What tells a case apart: keys by their last name, those of one value together.
 fn name(result: &PointResult) -> String {
-    let parameters = result.parameters.iter().map(|(key, value)| format!("{key} = {}", format_value(value)));
+    let mut parameters: Vec<(String, String)> = Vec::new();
+    for (key, value) in &result.parameters {
+        let (short, value) = (key.rsplit('.').next().unwrap_or(key), format_value(value));
+        match parameters.iter_mut().find(|(_, other)| *other == value) {
+            Some((names, _)) => *names += &format!(", {short}"),
+            None => parameters.push((short.to_string(), value)),
+        }
+    }
+    let parameters = parameters.into_iter().map(|(names, value)| format!("{names} = {value}"));
     let words: Vec<String> = result.variant.iter().cloned().chain(parameters).collect();
     if words.is_empty() { result.law.clone() } else { words.join(", ") }
 }

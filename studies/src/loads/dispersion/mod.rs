@@ -1,5 +1,6 @@
 //! Dispersion of live loads between where they stand and the extrados of an arch. One file each; file = tag.
 
+pub mod boussinesq;
 mod law;
 pub mod none;
 pub mod uniform;

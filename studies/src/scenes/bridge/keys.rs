@@ -1,5 +1,6 @@
 //! Keys of the scene `bridge`.
 
+use super::damage::DAMAGE;
 use super::fill::FRICTION;
 use super::piers::MAX_COURSES;
 use super::rings::{MAX_RINGS, MAX_VOUSSOIRS};
@@ -7,6 +8,7 @@ use crate::scenes::POINT;
 use crate::scenes::keys::{JOINT, MATERIAL, PLANE, WIDTH};
 use crate::scenes::mesh::MESH;
 use crate::scenes::profile::{PROFILE, SPRINGING};
+use crate::scenes::thickness::THICKNESS;
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
 
 const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
@@ -23,8 +25,12 @@ const ANGLE: Range = Range::new(0.0, false, 90.0, true);
 
 const SPAN: &[Parameter] = &[
     key("profile", PROFILE, Need::Required, "shape of the intrados"),
-    Parameter::number("thickness", Quantity::Length, Range::POSITIVE, "of all rings together, along the joints")
-        .optional("the profile is a list of points"),
+    key(
+        "thickness",
+        THICKNESS,
+        Need::Optional("the profile is a list of points"),
+        "of all rings together, along the joints; { crown, springing } grows with the arc length between them",
+    ),
     key(
         "voussoirs",
         Shape::Either(&[COUNT, Shape::List { of: &COUNT, min: 1, max: MAX_RINGS }]),
@@ -168,5 +174,11 @@ pub(super) const PARAMETERS: &[Parameter] = &[
         "one between two spans",
     ),
     key("fill", Shape::Table(FILL), Need::Optional("bare rings"), "fill between the rings and the road"),
+    key(
+        "damage",
+        Shape::List { of: &DAMAGE, min: 0, max: usize::MAX },
+        Need::Default("[]"),
+        "joints that have lost mortar or are repointed, lost voussoirs: { kind = \"lost_mortar\", depth = 0.05 }",
+    ),
     MESH,
 ];

@@ -6,6 +6,7 @@
 use crate::scenes::arch::Ends;
 use crate::scenes::lookup::{out_of_range, take};
 use crate::scenes::profile::{Profile, Ring, Springing};
+use crate::scenes::thickness::Thickness;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use voussoir_core::model::geometry::Vec2;
@@ -45,8 +46,8 @@ pub enum Counts {
 pub struct Span {
     /// Shape of the intrados.
     pub profile: Profile,
-    /// Of all rings together, along the joints \[m\]; not for `points`.
-    pub thickness: Option<f64>,
+    /// Of all rings together, along the joints; not for `points`.
+    pub thickness: Option<Thickness>,
     /// Number of voussoirs.
     pub voussoirs: Option<Counts>,
     /// Instead: their least length along the lower face of their ring \[m\].
@@ -164,8 +165,9 @@ impl Span {
     fn crown(&self, ring: &Ring) -> f64 {
         let highest = ring.extrados.iter().fold(f64::NEG_INFINITY, |top, point| top.max(point.y));
         match (&self.profile, self.thickness) {
+            (Profile::Surveyed { extrados, .. }, _) => extrados.iter().fold(highest, |top, point| top.max(point[1])),
             (Profile::Points { .. }, _) | (_, None) => highest,
-            (_, Some(thickness)) => highest.max(ring.rise + thickness),
+            (_, Some(thickness)) => highest.max(ring.rise + thickness.at(0.0)),
         }
     }
 

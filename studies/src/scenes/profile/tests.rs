@@ -21,7 +21,7 @@ fn profiles() -> Vec<Profile> {
 }
 
 fn ring(profile: &Profile, voussoirs: usize) -> Ring {
-    profile.ring(Some(0.3), Some(voussoirs), None).unwrap()
+    profile.ring(Some(0.3.into()), Some(voussoirs), None).unwrap()
 }
 
 #[test]
@@ -122,7 +122,9 @@ fn joints_are_perpendicular_to_the_curve_and_as_long_as_the_ring_is_thick() {
 #[test]
 fn rings_are_exact_mirror_images_with_the_crown_at_zero() {
     for profile in profiles() {
-        for n in [1, 2, 7, 10, 33].into_iter().filter(|&n| n > 2 || profile.ring(Some(0.3), Some(n), None).is_ok()) {
+        for n in
+            [1, 2, 7, 10, 33].into_iter().filter(|&n| n > 2 || profile.ring(Some(0.3.into()), Some(n), None).is_ok())
+        {
             let ring = ring(&profile, n);
             for points in [&ring.intrados, &ring.extrados] {
                 for k in 0..=n {
@@ -141,7 +143,7 @@ fn a_springing_at_the_radial_angle_reproduces_the_default() {
         let joint = default.extrados[16] - default.intrados[16];
         let degrees = joint.y.atan2(joint.x).to_degrees();
         for springing in [Springing::Both(degrees), Springing::Each([degrees, degrees])] {
-            let moved = profile.ring(Some(0.3), Some(16), Some(springing)).unwrap();
+            let moved = profile.ring(Some(0.3.into()), Some(16), Some(springing)).unwrap();
             for (a, b) in default.extrados.iter().zip(&moved.extrados) {
                 assert!((a - b).norm() < 1e-14 * default.span.max(default.rise), "{profile:?} {a} {b}");
             }
@@ -153,7 +155,8 @@ fn a_springing_at_the_radial_angle_reproduces_the_default() {
 fn a_springing_puts_the_end_vertex_on_the_plane_and_on_the_extrados_circle() {
     let (span, rise) = (9.42, 2.99);
     let radius: f64 = (span * span / 4.0 + rise * rise) / (2.0 * rise);
-    let ring = Profile::Segmental { span, rise }.ring(Some(0.6), Some(15), Some(Springing::Each([0.0, 60.0]))).unwrap();
+    let ring =
+        Profile::Segmental { span, rise }.ring(Some(0.6.into()), Some(15), Some(Springing::Each([0.0, 60.0]))).unwrap();
     let centre = Vec2::new(0.0, rise - radius);
     let (left, right) = (ring.extrados[0], ring.extrados[15]);
     assert_eq!(left.y, 0.0);
@@ -165,7 +168,7 @@ fn a_springing_puts_the_end_vertex_on_the_plane_and_on_the_extrados_circle() {
 }
 
 fn path(profile: Profile, springing: Option<Springing>) -> String {
-    profile.ring(Some(0.3), Some(60), springing).unwrap_err()[0].path.clone()
+    profile.ring(Some(0.3.into()), Some(60), springing).unwrap_err()[0].path.clone()
 }
 
 #[test]
@@ -202,7 +205,7 @@ fn a_fine_segmental_ring_tends_to_the_annulus_sector() {
     let radius = (span * span / 4.0 + rise * rise) / (2.0 * rise);
     let sector = 2.0 * (2.0 * rise / span).atan() * ((radius + t).powi(2) - radius * radius);
     let error = |n: usize| {
-        let ring = Profile::Segmental { span, rise }.ring(Some(t), Some(n), None).unwrap();
+        let ring = Profile::Segmental { span, rise }.ring(Some(t.into()), Some(n), None).unwrap();
         let area: f64 = (0..n).map(|k| area_and_centroid(&ring.voussoir(k)).0).sum();
         (area / sector - 1.0).abs()
     };

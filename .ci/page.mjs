@@ -1,0 +1,113 @@
+// Opens pages of results in a headless browser and uses them as a reader would. Argument: the folder that holds
+// rise/, path/ and report/ with a report.html each; screenshots and PDFs are written beside them.
+import puppeteer from 'puppeteer-core';
+import path from 'node:path';
+import { statSync } from 'node:fs';
+
+const out = path.resolve(process.argv[2]);
+const browser = await puppeteer.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-gpu'] });
+let failures = 0;
+const expect = (truth, words) => {
+  if (!truth) failures += 1;
+  console.log(`${truth ? 'ok    ' : 'FAILED'} ${words}`);
+};
+
+async function open(name, width, dark) {
+  const page = await browser.newPage();
+  const seen = [];
+  page.on('console', message => ['error', 'warn'].includes(message.type()) && seen.push(message.text()));
+  page.on('pageerror', error => seen.push(String(error)));
+  page.on('request', request => request.url().startsWith('file:') || seen.push(`request to ${request.url()}`));
+  await page.setViewport({ width, height: 900 });
+  await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }]);
+  await page.goto(`file://${out}/${name}/report.html`);
+  return { page, seen, name: `${name} at ${width} px${dark ? ', dark' : ''}` };
+}
+
+const shot = (page, name, fullPage = false) => page.screenshot({ path: `${out}/${name}.png`, fullPage });
+
+for (const [name, width, dark] of [['rise', 1100, false], ['rise', 400, true], ['path', 1100, true], ['path', 400, false], ['report', 1100, false], ['report', 400, true]]) {
+  const { page, seen, name: words } = await open(name, width, dark);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  expect(wide <= 0, `${words}: nothing sticks out (${wide} px)`);
+  const [ink, paper] = await page.evaluate(() => [getComputedStyle(document.body).color, getComputedStyle(document.body).backgroundColor]);
+  const bright = colour => colour.match(/\d+/g).slice(0, 3).reduce((sum, x) => sum + +x, 0) / 765;
+  expect(Math.abs(bright(ink) - bright(paper)) > 0.6 && bright(paper) < 0.5 === dark, `${words}: ink on paper`);
+  await shot(page, `${name}-${width}${dark ? '-dark' : ''}`);
+  expect(seen.length === 0, `${words}: no error, no request ${seen.join('; ')}`);
+  await page.close();
+}
+
+{
+  const { page, seen } = await open('rise', 1100, false);
+  const column = index => page.$$eval('.wide > table', (tables, index) => {
+    const table = tables.find(table => table.textContent.includes('load factor'));
+    return [...table.tBodies[0].rows].filter(row => !row.hidden).map(row => row.cells[index].textContent);
+  }, index);
+  const heads = await page.$$eval('.wide > table', tables => [...tables.find(table => table.textContent.includes('load factor')).tHead.rows[0].cells].map(cell => cell.textContent));
+  const load = heads.findIndex(head => head.startsWith('load factor'));
+  const click = () => page.evaluate(load => [...document.querySelectorAll('.wide > table')].find(table => table.textContent.includes('load factor')).tHead.rows[0].cells[load].querySelector('button').click(), load);
+  await click();
+  const sorted = (await column(load)).map(parseFloat).filter(x => !isNaN(x));
+  expect(sorted.length > 20 && sorted.every((x, i) => i === 0 || sorted[i - 1] <= x), 'the table sorts by load');
+  await click();
+  const reversed = (await column(load)).map(parseFloat).filter(x => !isNaN(x));
+  expect(reversed.every((x, i) => i === 0 || reversed[i - 1] >= x), 'and the other way round');
+  await page.type('.filter input', '10 MPa');
+  expect((await column(1)).every(text => text === '10 MPa'), 'the field filters rows');
+  const chart = await page.$('svg .plot .series polygon');
+  const box = await chart.boundingBox();
+  await chart.scrollIntoView();
+  const moved = await chart.boundingBox();
+  await page.mouse.move(moved.x + moved.width / 2, moved.y + moved.height / 2);
+  const tip = await page.$eval('.tip', tip => [tip.hidden, tip.textContent, tip.querySelectorAll('svg polygon').length]);
+  expect(!tip[0] && / at /.test(tip[1]) && tip[2] > 10, `hovering a chart shows "${tip[1]}" and the drawing`);
+  await shot(page, 'hover');
+  await page.mouse.move(1, 1);
+  await page.$eval('svg[tabindex]', svg => svg.focus());
+  await page.keyboard.press('ArrowRight');
+  expect(!(await page.$eval('.tip', tip => tip.hidden)), 'arrow keys show points of a chart');
+  const before = await page.$eval('details .moving polygon.stone', stone => stone.getAttribute('points'));
+  await page.$eval('details .moving input', slider => { slider.value = 100; slider.dispatchEvent(new Event('input')); });
+  const after = await page.$eval('details .moving polygon.stone:nth-of-type(18)', stone => stone && stone.getAttribute('points')).catch(() => null);
+  const ghosts = await page.$$eval('details .moving', moving => moving[0].querySelectorAll('.ghost').length);
+  expect(before && ghosts > 10 && after !== before, 'a slider moves the mechanism');
+  await page.pdf({ path: `${out}/rise.pdf`, format: 'A4' });
+  const size = statSync(`${out}/rise.pdf`).size;
+  expect(size > 300000, `every case is printed (${size} bytes)`);
+  const html = statSync(`${out}/rise/report.html`).size;
+  expect(html < 1.5e6, `the page of 38 cases is small (${html} bytes)`);
+  expect(seen.length === 0, `no error while it is used ${seen.join('; ')}`);
+  await page.close();
+}
+
+{
+  const { page, seen } = await open('path', 1100, false);
+  const states = await page.$eval('details .moving input', slider => +slider.max);
+  const read = async value => {
+    await page.$eval('details .moving input', (slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, value);
+    return page.evaluate(() => {
+      const moving = document.querySelector('details .moving'), cursor = document.querySelector('.cursor');
+      return [moving.querySelector('output').textContent, cursor && cursor.getAttribute('cy'), moving.querySelectorAll('.stress').length, moving.querySelectorAll('.thrust').length, moving.querySelectorAll('.open').length];
+    });
+  };
+  const [first, last] = [await read(Math.floor(states / 2)), await read(states)];
+  expect(states > 10 && first[0] !== last[0] && first[1] !== last[1], `a slider goes through the states of a path: "${last[0]}"`);
+  expect(last[2] > 5 && last[3] > 0 && last[4] > 0, 'with contact stresses, thrust line and open joints');
+  await (await page.$('details .moving')).scrollIntoView();
+  await shot(page, 'states');
+  expect(seen.length === 0, `no error ${seen.join('; ')}`);
+  await page.close();
+}
+
+{
+  const { page, seen } = await open('report', 1100, false);
+  const verdicts = await page.$$eval('.verdict', verdicts => verdicts.map(verdict => verdict.textContent));
+  expect(verdicts.join() === 'reproduced,depends on strength', `verdicts: ${verdicts.join(', ')}`);
+  expect(await page.$$eval('figure svg', drawn => drawn.length) === 3, 'the report draws what its text names');
+  await page.pdf({ path: `${out}/report.pdf`, format: 'A4' });
+  expect(seen.length === 0, `no error ${seen.join('; ')}`);
+  await page.close();
+}
+await browser.close();
+process.exit(failures ? 1 : 0);

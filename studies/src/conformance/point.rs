@@ -1,0 +1,125 @@
+//! A law at a point, of joints and of materials in one form, so that each check is written once.
+
+use std::sync::Arc;
+use voussoir_core::law::{
+    InterfaceResponse, StressPoint, StressUpdate, TractionPoint, UpdateBranch, UpdateContext, UpdateFailure,
+};
+
+/// What an update says, in as many components as the law has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Said {
+    /// Tractions or stresses.
+    pub force: [f64; 6],
+    pub tangent: [[f64; 6]; 6],
+    pub branch: UpdateBranch,
+    pub stored: f64,
+    pub dissipated: f64,
+}
+
+/// A law at a point: a joint from gaps to tractions, or a material from strains to stresses.
+#[derive(Debug, Clone)]
+pub(super) enum Point {
+    Joint(Arc<dyn InterfaceResponse>),
+    /// With its characteristic length \[m\].
+    Material(Arc<dyn StressUpdate>, f64),
+}
+
+impl Point {
+    /// A material at a length it can have.
+    pub(super) fn material(law: Arc<dyn StressUpdate>) -> Self {
+        let length = if law.largest_length().is_finite() { 0.3 * law.largest_length() } else { 1.0 };
+        Point::Material(law, length)
+    }
+
+    pub(super) fn components(&self) -> usize {
+        match self {
+            Point::Joint(_) => 2,
+            Point::Material(..) => 6,
+        }
+    }
+
+    /// Of the work that the point takes up: σ·dε, but −t·dg, because tractions press positive and gaps open positive.
+    pub(super) fn sign(&self) -> f64 {
+        match self {
+            Point::Joint(_) => -1.0,
+            Point::Material(..) => 1.0,
+        }
+    }
+
+    pub(super) fn state_size(&self) -> usize {
+        match self {
+            Point::Joint(law) => law.state_size(),
+            Point::Material(law, _) => law.state_size(),
+        }
+    }
+
+    pub(super) fn state_names(&self) -> &'static [&'static str] {
+        match self {
+            Point::Joint(law) => law.state_names(),
+            Point::Material(law, _) => law.state_names(),
+        }
+    }
+
+    /// The state of the untouched point; numbers that the law does not write are not numbers.
+    pub(super) fn untouched(&self) -> Vec<f64> {
+        let mut state = vec![f64::NAN; self.state_size()];
+        match self {
+            Point::Joint(law) => law.initial_state(&mut state),
+            Point::Material(law, _) => law.initial_state(&mut state),
+        }
+        state
+    }
+
+    pub(super) fn update(&self, at: &[f64; 6], old: &[f64], new: &mut [f64]) -> Result<Said, UpdateFailure> {
+        match self {
+            Point::Joint(law) => Ok(joint(&law.respond_point([at[0], at[1]], old, new)?)),
+            Point::Material(law, length) => {
+                Ok(material(&law.update_point(at, &UpdateContext::of_length(*length), old, new)?))
+            }
+        }
+    }
+
+    /// The same through the law's own loop over points.
+    pub(super) fn batch(&self, at: &[[f64; 6]], old: &[f64], new: &mut [f64]) -> Result<Vec<Said>, UpdateFailure> {
+        match self {
+            Point::Joint(law) => {
+                let gaps: Vec<[f64; 2]> = at.iter().map(|at| [at[0], at[1]]).collect();
+                let mut points = vec![TractionPoint::ZERO; at.len()];
+                law.respond(&gaps, old, new, &mut points).map_err(|failed| failed.failure)?;
+                Ok(points.iter().map(joint).collect())
+            }
+            Point::Material(law, length) => {
+                let contexts = vec![UpdateContext::of_length(*length); at.len()];
+                let mut points = vec![StressPoint::ZERO; at.len()];
+                law.update(at, &contexts, old, new, &mut points).map_err(|failed| failed.failure)?;
+                Ok(points.iter().map(material).collect())
+            }
+        }
+    }
+
+    /// The greatest entry of the tangent at the untouched point, pressed a little: what stiffnesses and stresses are
+    /// measured by.
+    pub(super) fn stiffness(&self, size: f64) -> Option<f64> {
+        let (old, mut new) = (self.untouched(), vec![0.0; self.state_size()]);
+        let mut at = [0.0; 6];
+        at[0] = if matches!(self, Point::Joint(_)) { -1e-3 * size } else { 0.0 };
+        let said = self.update(&at, &old, &mut new).ok()?;
+        let greatest = said.tangent.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
+        (greatest > 0.0 && greatest.is_finite()).then_some(greatest)
+    }
+}
+
+fn joint(point: &TractionPoint) -> Said {
+    let (mut force, mut tangent) = ([0.0; 6], [[0.0; 6]; 6]);
+    force[..2].copy_from_slice(&point.traction);
+    for (row, own) in tangent.iter_mut().zip(&point.tangent) {
+        row[..2].copy_from_slice(own);
+    }
+    let TractionPoint { branch, stored, dissipated, .. } = *point;
+    Said { force, tangent, branch, stored, dissipated }
+}
+
+fn material(point: &StressPoint) -> Said {
+    let StressPoint { stress, tangent, branch, stored, dissipated } = *point;
+    Said { force: stress, tangent, branch, stored, dissipated }
+}

@@ -1,0 +1,75 @@
+//! The axis of a chart, straight or logarithmic: its range, its ticks, and places of values.
+
+use super::axes::{Axis, round_values};
+
+/// An axis of a chart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Values, or their decimal logarithms, to pixels.
+    axis: Axis,
+    /// Whether it is logarithmic.
+    log: bool,
+}
+
+impl Scale {
+    /// An axis between two values that run to two places \[px\].
+    pub fn new(values: [f64; 2], places: [f64; 2], log: bool) -> Self {
+        let values = if log { values.map(f64::log10) } else { values };
+        Scale { axis: Axis { values, places }, log }
+    }
+
+    /// Place of a value \[px\].
+    pub fn at(&self, value: f64) -> f64 {
+        self.axis.at(if self.log { value.log10() } else { value })
+    }
+
+    /// Values with a line and a number.
+    pub fn ticks(&self, count: usize) -> Vec<f64> {
+        if !self.log {
+            return self.axis.ticks(count);
+        }
+        let [low, high] = self.axis.values;
+        let (first, last) = (low.floor() as i32, high.ceil() as i32);
+        let steps: &[f64] = if high - low > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        let all = (first..=last).flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
+        let within: Vec<f64> = all.filter(|tick| (low - 1e-9..=high + 1e-9).contains(&tick.log10())).collect();
+        // Less than a decade has hardly any of these.
+        if within.len() < 3 { round_values(10f64.powf(low), 10f64.powf(high), count) } else { within }
+    }
+
+    /// `low high from to log` for scripts that read values off the drawing.
+    pub fn describe(&self) -> String {
+        let [low, high] = if self.log { self.axis.values.map(|x| 10f64.powf(x)) } else { self.axis.values };
+        let [from, to] = self.axis.places;
+        format!("{low:e} {high:e} {from:.2} {to:.2} {}", u8::from(self.log))
+    }
+}
+
+/// Least and greatest value with a margin of 4 %; a single value gets one of 10 %. `None` where there is none.
+pub fn range(values: impl Iterator<Item = f64>, log: bool) -> Option<[f64; 2]> {
+    let usable = values.filter(|x| x.is_finite() && (!log || *x > 0.0));
+    let (low, high) = usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    if low > high {
+        return None;
+    }
+    if log {
+        let margin = if high > low { (high / low).powf(0.04) } else { 1.5 };
+        return Some([low / margin, high * margin]);
+    }
+    let margin = if high > low { 0.04 * (high - low) } else { 0.1 * high.abs().max(1e-9) };
+    Some([low - margin, high + margin])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logarithmic_axes_have_decades() {
+        let scale = Scale::new([0.5, 2000.0], [0.0, 100.0], true);
+        assert_eq!(scale.ticks(5), [1.0, 10.0, 100.0, 1000.0]);
+        assert!((Scale::new([1.0, 100.0], [0.0, 100.0], true).at(10.0) - 50.0).abs() < 1e-12);
+        assert_eq!(Scale::new([1.0, 20.0], [0.0, 100.0], true).ticks(5), [1.0, 2.0, 5.0, 10.0, 20.0]);
+        assert_eq!(range([0.0, 1.0, 10.0].into_iter(), true).map(|[low, _]| low > 0.8), Some(true));
+    }
+}

@@ -1,0 +1,49 @@
+//! `report`: several studies on one page, with what is said of them and whether the numbers bear it out.
+#![doc = include_str!("report.md")]
+
+mod claims;
+mod contents;
+mod evaluate;
+mod expression;
+mod figures;
+mod keys;
+mod page;
+mod parts;
+mod series;
+mod study;
+mod value;
+
+use super::kind::{KindEntry, LoadedStudy, StudyKind};
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::study::{ReadFile, StudySource, no_files};
+use voussoir_core::plugin::{Card, Parameter, PluginKind};
+
+struct Report;
+
+voussoir_core::inventory::submit! { KindEntry { tag: "report", kind: &Report } }
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::StudyKind,
+        tag: "report",
+        summary: "runs several studies and writes one page: texts, charts of their results, verdicts on claims",
+        parameters: keys::REPORT,
+        file: file!(),
+        page: include_str!("report.md"),
+        ..Card::BLANK
+    }
+}
+
+impl StudyKind for Report {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        self.read_beside(source, &no_files)
+    }
+
+    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+        Ok(Box::new(study::ReportStudy::read(source, read)?))
+    }
+
+    fn file_keys(&self) -> Option<&'static [Parameter]> {
+        Some(keys::STUDY)
+    }
+}

@@ -1,0 +1,177 @@
+//! Claims: what is said, what tests it, and what the numbers answer.
+
+use super::evaluate::evaluate;
+use super::expression::Expression;
+use super::value::Value;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value as Json, json};
+
+/// `[[report.claims]]`, read.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Claim {
+    /// Its number or name.
+    pub id: String,
+    /// What is claimed.
+    pub claim: String,
+    /// Where it stands.
+    pub source: String,
+    /// What the tests differ in.
+    #[serde(default)]
+    pub depends_on: Option<String>,
+    /// What a reader should know besides.
+    pub remark: String,
+    /// What decides.
+    pub tests: Vec<Test>,
+}
+
+/// A test of a claim.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Test {
+    /// What is tested.
+    pub of: String,
+    /// Expression of the number behind it.
+    pub value: String,
+    /// Its unit.
+    pub unit: String,
+    /// Condition under which the claim is true here.
+    pub holds: String,
+}
+
+/// What the numbers say of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Every test holds.
+    Reproduced,
+    /// No test holds.
+    Refuted,
+    /// Some tests hold.
+    DependsOn,
+    /// A number is missing that a test needs.
+    Undecided,
+}
+
+impl Verdict {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Verdict::Reproduced => "reproduced",
+            Verdict::Refuted => "refuted",
+            Verdict::DependsOn => "depends on",
+            Verdict::Undecided => "undecided",
+        }
+    }
+}
+
+/// What a test came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tested {
+    /// The number behind it.
+    pub value: Value,
+    /// Whether it holds; `None` where a number is missing.
+    pub holds: Option<bool>,
+}
+
+/// A claim with its answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer<'a> {
+    /// What was claimed.
+    pub claim: &'a Claim,
+    /// What the numbers say.
+    pub verdict: Verdict,
+    /// Test by test.
+    pub tests: Vec<Tested>,
+}
+
+impl Claim {
+    /// What the numbers say; `series` knows the named series.
+    pub fn answer(&self, series: &dyn Fn(&str) -> Option<Value>) -> Answer<'_> {
+        let tests: Vec<Tested> = self.tests.iter().map(|test| test.run(series)).collect();
+        let all = |holds: bool| tests.iter().all(|test| test.holds == Some(holds));
+        let verdict = match () {
+            () if tests.iter().any(|test| test.holds.is_none()) => Verdict::Undecided,
+            () if all(true) => Verdict::Reproduced,
+            () if all(false) => Verdict::Refuted,
+            () => Verdict::DependsOn,
+        };
+        Answer { claim: self, verdict, tests }
+    }
+}
+
+impl Test {
+    fn run(&self, series: &dyn Fn(&str) -> Option<Value>) -> Tested {
+        let value = match Expression::parse(&self.value) {
+            Ok(expression) => evaluate(&expression, series),
+            Err(why) => Value::unknown(why),
+        };
+        let names = |name: &str| if name == "value" { Some(value.clone()) } else { series(name) };
+        let holds = Expression::parse(&self.holds).map(|expression| evaluate(&expression, &names));
+        let holds = match holds {
+            Ok(Value::Truth(truth)) => Some(truth),
+            _ => None,
+        };
+        Tested { value, holds }
+    }
+}
+
+impl Answer<'_> {
+    /// In one line: `depends on the strength`.
+    pub fn words(&self) -> String {
+        match (self.verdict, &self.claim.depends_on) {
+            (Verdict::DependsOn, Some(parameter)) => format!("depends on {parameter}"),
+            (verdict, _) => verdict.words().into(),
+        }
+    }
+
+    /// The entry of results.json.
+    pub fn entry(&self) -> Json {
+        let test = |(test, tested): (&Test, &Tested)| {
+            let value = match &tested.value {
+                Value::Number(x) if x.is_finite() => json!(x),
+                Value::Truth(truth) => json!(truth),
+                other => json!(other.describe()),
+            };
+            json!({ "of": test.of, "value": value, "unit": test.unit, "expression": test.value, "condition": test.holds,
+                    "holds": tested.holds })
+        };
+        json!({
+            "id": self.claim.id,
+            "claim": self.claim.claim,
+            "source": self.claim.source,
+            "verdict": self.verdict,
+            "depends_on": self.claim.depends_on.as_ref().filter(|_| self.verdict == Verdict::DependsOn),
+            "tests": self.claim.tests.iter().zip(&self.tests).map(test).collect::<Vec<_>>(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn verdict(conditions: &[&str]) -> Verdict {
+        let test = |holds: &&str| Test {
+            of: String::new(),
+            value: "2 * a".into(),
+            unit: String::new(),
+            holds: holds.to_string(),
+        };
+        let claim = Claim {
+            id: "1".into(),
+            claim: String::new(),
+            source: String::new(),
+            depends_on: Some("a".into()),
+            remark: String::new(),
+            tests: conditions.iter().map(test).collect(),
+        };
+        claim.answer(&|name| (name == "a").then_some(Value::Number(3.0))).verdict
+    }
+
+    #[test]
+    fn verdicts_come_from_numbers() {
+        assert_eq!(verdict(&["value == 6", "a < value"]), Verdict::Reproduced);
+        assert_eq!(verdict(&["value == 6", "a > value"]), Verdict::DependsOn);
+        assert_eq!(verdict(&["value == 5", "a > value"]), Verdict::Refuted);
+        assert_eq!(verdict(&["value == 6", "b > value"]), Verdict::Undecided);
+    }
+}

@@ -1,0 +1,145 @@
+//! What a report says of its studies, and the mistakes in it.
+
+use super::claims::Claim;
+use super::evaluate::FUNCTIONS;
+use super::expression::Expression;
+use super::figures::{Chart, Image, Table};
+use super::series::Selection;
+use crate::config::diagnostic::suggest;
+use crate::kinds::kind::Part;
+use crate::study::DiagnosticList;
+use crate::writers::markdown::images;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// `[report]`, read.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Contents {
+    /// Heading of the page.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// Study files.
+    pub studies: Vec<String>,
+    /// Markdown before each study, and after the last.
+    pub text: Vec<String>,
+    /// Markdown at the head.
+    pub introduction: String,
+    /// Results by name.
+    pub series: BTreeMap<String, Selection>,
+    /// What is claimed.
+    pub claims: Vec<Claim>,
+    /// Charts of series.
+    pub charts: Vec<Chart>,
+    /// Tables of series.
+    pub tables: Vec<Table>,
+    /// Whether figures are drawn.
+    #[serde(skip)]
+    pub figures: bool,
+}
+
+impl Contents {
+    /// Mistakes in what is said of the studies.
+    pub fn check(&self, diagnostics: &mut DiagnosticList<'_>, parts: &[Part]) {
+        let studies: Vec<&str> = parts.iter().map(|part| part.folder.as_str()).collect();
+        let names: Vec<&str> = self.series.keys().map(String::as_str).collect();
+        if self.text.len() > self.studies.len() + 1 {
+            let message = format!("there are {} texts for {} studies", self.text.len(), self.studies.len());
+            diagnostics.wrong("report.text", message, "one before each study, and one more at the end");
+        }
+        for (name, series) in &self.series {
+            let key = format!("report.series.{name}");
+            match (&series.study, &series.points) {
+                (Some(study), None) if !studies.is_empty() && !studies.contains(&study.as_str()) => {
+                    let help = suggest(study, &studies, "studies");
+                    diagnostics.wrong(&format!("{key}.study"), format!("there is no study \"{study}\" here"), help);
+                }
+                (Some(_), None) | (None, Some(_)) => {}
+                _ => diagnostics.wrong(&key, "needs either study or points", "name the study whose results are meant"),
+            }
+            for (own, text) in [("x", &series.x), ("y", &series.y)] {
+                check_expression(diagnostics, &format!("{key}.{own}"), text, &["x", "y"]);
+            }
+        }
+        for (index, claim) in self.claims.iter().enumerate() {
+            let key = format!("report.claims.{index}");
+            if claim.tests.len() > 1 && claim.depends_on.is_none() {
+                let help = "name what the tests differ in: \"the strength\"";
+                diagnostics.wrong(&format!("{key}.depends_on"), "is missing: the claim has several tests", help);
+            }
+            for (place, test) in claim.tests.iter().enumerate() {
+                let key = format!("{key}.tests.{place}");
+                check_expression(diagnostics, &format!("{key}.value"), &test.value, &names);
+                let with_value: Vec<&str> = names.iter().copied().chain(["value"]).collect();
+                check_expression(diagnostics, &format!("{key}.holds"), &test.holds, &with_value);
+            }
+        }
+        let charts =
+            self.charts.iter().enumerate().map(|(i, chart)| (format!("report.charts.{i}.series"), &chart.series));
+        let tables =
+            self.tables.iter().enumerate().map(|(i, table)| (format!("report.tables.{i}.series"), &table.series));
+        for (key, list) in charts.chain(tables) {
+            for (place, name) in list.iter().enumerate().filter(|(_, name)| !names.contains(&name.as_str())) {
+                let help = suggest(name, &names, "series");
+                diagnostics.wrong(&format!("{key}.{place}"), format!("there is no series \"{name}\""), help);
+            }
+        }
+        self.check_images(diagnostics, &studies, &names);
+    }
+
+    fn check_images(&self, diagnostics: &mut DiagnosticList<'_>, studies: &[&str], series: &[&str]) {
+        let charts: Vec<&str> = self.charts.iter().map(|chart| chart.name.as_str()).collect();
+        let tables: Vec<&str> = self.tables.iter().map(|table| table.name.as_str()).collect();
+        let numbered = self.text.iter().enumerate().map(|(i, text)| (format!("report.text.{i}"), text));
+        let texts = numbered.chain([("report.introduction".to_string(), &self.introduction)]);
+        for (key, text) in texts {
+            for place in images(text) {
+                let (known, name): (&[&str], String) = match Image::parse(&place) {
+                    Some(Image::Chart(name)) => (&charts, name),
+                    Some(Image::Table(name)) => (&tables, name),
+                    Some(Image::Study(name)) => (studies, name),
+                    Some(Image::Case(_, name, _)) => (series, name),
+                    None => {
+                        let help =
+                            "a text shows chart:NAME, table:NAME, study:NAME, and scene:, mechanism: or curve:SERIES@x";
+                        diagnostics.wrong(&key, format!("there is nothing to draw at \"{place}\""), help);
+                        continue;
+                    }
+                };
+                if !known.contains(&name.as_str()) && !known.is_empty() {
+                    diagnostics.wrong(
+                        &key,
+                        format!("there is no \"{name}\" for {place}"),
+                        suggest(&name, known, "names"),
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Mistakes in an expression: its form, names that do not exist, functions with too few or many arguments.
+fn check_expression(diagnostics: &mut DiagnosticList<'_>, key: &str, text: &str, names: &[&str]) {
+    let expression = match Expression::parse(text) {
+        Ok(expression) => expression,
+        Err(why) => return diagnostics.wrong(key, why, "such as abs(argmax(series) - 0.59) < 0.1"),
+    };
+    let functions: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
+    expression.names(&mut |name, arguments| match arguments {
+        None if !names.contains(&name) => {
+            diagnostics.wrong(key, format!("there is no series \"{name}\""), suggest(name, names, "series"));
+        }
+        Some(count) => match FUNCTIONS.iter().find(|function| function.name == name) {
+            None => diagnostics.wrong(
+                key,
+                format!("there is no function \"{name}\""),
+                suggest(name, &functions, "functions"),
+            ),
+            Some(function) if function.arguments != count => {
+                let message = format!("{name} takes {} argument(s), not {count}", function.arguments);
+                diagnostics.wrong(key, message, function.doc);
+            }
+            Some(_) => {}
+        },
+        None => {}
+    });
+}

@@ -1,0 +1,249 @@
+//! Series: which results of which study they are made of.
+
+use super::value::Value;
+use serde::Deserialize;
+use serde_json::{Map, Value as Json};
+
+/// `[report.series.NAME]`, read.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Selection {
+    /// Name of the study.
+    #[serde(default)]
+    pub study: Option<String>,
+    /// Name of its variant.
+    #[serde(default)]
+    pub variant: Option<String>,
+    /// Swept keys with the value that is meant.
+    #[serde(default, rename = "where")]
+    pub fixed: Map<String, Json>,
+    /// The key that makes the abscissa.
+    #[serde(default)]
+    pub over: Option<String>,
+    /// Least abscissa.
+    #[serde(default)]
+    pub from: Option<f64>,
+    /// Greatest abscissa.
+    #[serde(default)]
+    pub to: Option<f64>,
+    /// Path of the result in an entry.
+    pub result: String,
+    /// List of results.json that is read.
+    pub entries: String,
+    /// Expression of `x`, for charts and tables.
+    pub x: String,
+    /// Expression of `y`, for charts and tables.
+    pub y: String,
+    /// Words for legends.
+    #[serde(default)]
+    pub label: Option<String>,
+    /// Published numbers instead of results.
+    #[serde(default)]
+    pub points: Option<Vec<[f64; 2]>>,
+}
+
+/// An entry of results with its abscissa.
+#[derive(Debug, Clone, Copy)]
+pub struct Chosen<'a> {
+    /// Abscissa.
+    pub x: f64,
+    /// The entry.
+    pub entry: &'a Json,
+}
+
+/// Whether a whole key is meant by a name: itself, or its last names.
+fn meant(key: &str, name: &str) -> bool {
+    key == name || key.strip_suffix(name).is_some_and(|before| before.ends_with('.'))
+}
+
+fn same(a: &Json, b: &Json) -> bool {
+    match (a.as_f64(), b.as_f64()) {
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
+        _ => a == b,
+    }
+}
+
+/// A named value of an entry: a swept key, or an entry of its own.
+fn named<'a>(entry: &'a Json, name: &str) -> Option<&'a Json> {
+    let swept = entry["parameters"].as_object();
+    let swept = swept.and_then(|swept| swept.iter().find(|(key, _)| meant(key, name)).map(|(_, value)| value));
+    swept.or_else(|| entry.get(name))
+}
+
+impl Selection {
+    /// The entries that are meant, by growing abscissa; `results` is the results.json of the study.
+    pub fn choose<'a>(&self, results: &'a Json) -> Vec<Chosen<'a>> {
+        let entries = results[self.entries.as_str()].as_array().into_iter().flatten();
+        let of_variant = |entry: &&Json| match &self.variant {
+            Some(variant) => entry["variant"].as_str() == Some(variant),
+            None => true,
+        };
+        let fits = |entry: &&Json| {
+            self.fixed.iter().all(|(name, value)| named(entry, name).is_some_and(|own| same(own, value)))
+        };
+        let chosen = entries
+            .filter(of_variant)
+            .filter(fits)
+            .filter_map(|entry| Some(Chosen { x: self.abscissa(entry)?, entry }));
+        let inside = |chosen: &Chosen| {
+            self.from.is_none_or(|low| chosen.x >= low) && self.to.is_none_or(|high| chosen.x <= high)
+        };
+        let mut chosen: Vec<Chosen> = chosen.filter(inside).collect();
+        chosen.sort_by(|a, b| a.x.total_cmp(&b.x));
+        chosen
+    }
+
+    fn abscissa(&self, entry: &Json) -> Option<f64> {
+        if let Some(over) = &self.over {
+            return named(entry, over)?.as_f64();
+        }
+        if self.entries == "curve" {
+            return entry["value"].as_f64();
+        }
+        let free = |key: &str| !self.fixed.keys().any(|name| meant(key, name));
+        let swept = entry["parameters"].as_object().into_iter().flatten();
+        let mut numbers = swept.filter(|(key, _)| free(key)).filter_map(|(_, value)| value.as_f64());
+        Some(numbers.next().unwrap_or(0.0))
+    }
+
+    /// The series; `results` gives the results.json of a study by its name.
+    pub fn value<'a>(&self, results: &dyn Fn(&str) -> Option<&'a Json>) -> Value {
+        if let Some(points) = &self.points {
+            return Value::Series(points.iter().map(|[x, y]| (*x, Value::Number(*y))).collect());
+        }
+        let study = self.study.as_deref().unwrap_or_default();
+        let Some(results) = results(study) else { return Value::unknown(format!("{study} has no results")) };
+        let chosen = self.choose(results);
+        if self.result == "curve" {
+            return match chosen.as_slice() {
+                [one] => curve(one.entry),
+                several => Value::unknown(format!("a curve is that of one case, not of {}", several.len())),
+            };
+        }
+        if chosen.is_empty() {
+            return Value::unknown(format!("{study} has no such results"));
+        }
+        Value::Series(chosen.iter().map(|chosen| (chosen.x, result(chosen.entry, &self.result))).collect())
+    }
+}
+
+/// Displacement in millimetres and factor along the path of a case.
+fn curve(case: &Json) -> Value {
+    let points = case["curve"].as_array().into_iter().flatten();
+    let point = |point: &Json| Some((point[0].as_f64()? * 1e3, Value::Number(point[1].as_f64()?)));
+    let points: Vec<(f64, Value)> = points.filter_map(point).collect();
+    if points.is_empty() {
+        Value::unknown("there is no curve: [output] curve = true asks for it")
+    } else {
+        Value::Series(points)
+    }
+}
+
+/// What stands at a path of an entry; a load factor also where it is infinite.
+fn result(entry: &Json, path: &str) -> Value {
+    let status = entry["status"].as_str().unwrap_or_default();
+    if ["load_factor", "first_limit_point", "result", "value"].contains(&path) {
+        match (status, entry[path].as_f64()) {
+            ("unbounded", _) if path != "value" => return Value::Number(f64::INFINITY),
+            ("unbounded", _) => return Value::none("unbounded"),
+            (_, Some(number)) => return Value::Number(number),
+            ("stalled", _) => return Value::unknown("a case stalled"),
+            ("no_equilibrium", _) => return Value::none("no equilibrium"),
+            _ if path == "first_limit_point" => return result(entry, "load_factor"),
+            (word, _) => return Value::none(word.replace('_', " ")),
+        }
+    }
+    if let Some(column) = path.strip_prefix("last.") {
+        return last(entry, column);
+    }
+    let names: Vec<&str> = path.split('.').collect();
+    follow(entry, &names)
+}
+
+/// The last value of a column of a driven point.
+fn last(entry: &Json, column: &str) -> Value {
+    let columns = entry["columns"].as_array().into_iter().flatten();
+    let named = |name: &Json| name.as_str().and_then(|name| name.split(' ').next()) == Some(column);
+    let place = columns.clone().position(named);
+    let row = entry["rows"].as_array().and_then(|rows| rows.last());
+    match place.zip(row).and_then(|(place, row)| row[place].as_f64()) {
+        Some(number) => Value::Number(number),
+        None => Value::unknown(format!("there is no column {column}")),
+    }
+}
+
+/// A joint that turns by less than this share of the greatest rotation is no hinge to an engineer.
+const LITTLE: f64 = 0.2;
+
+/// Sides of hinges as an engineer draws them, in order: neighbouring joints that open on one side are one hinge.
+fn sides(hinges: &[Json]) -> Value {
+    // Joint, side and rotation of the last joint of each hinge, with the rotation of all its joints.
+    let mut groups: Vec<(i64, &str, f64)> = Vec::new();
+    for hinge in hinges {
+        let (joint, side) = (hinge["joint"].as_i64().unwrap_or(-9), hinge["side"].as_str().unwrap_or_default());
+        let turn = hinge["rotation"].as_f64().unwrap_or(0.0);
+        match groups.last_mut().filter(|last| last.0 + 1 == joint && last.1 == side && last.2 * turn > 0.0) {
+            Some(last) => *last = (joint, side, last.2 + turn),
+            None => groups.push((joint, side, turn)),
+        }
+    }
+    let greatest = groups.iter().map(|group| group.2.abs()).fold(0.0, f64::max);
+    let kept = groups.iter().filter(|group| group.2.abs() >= LITTLE * greatest);
+    Value::List(kept.map(|group| Value::Word(group.1.into())).collect())
+}
+
+fn follow(value: &Json, path: &[&str]) -> Value {
+    let Some((name, rest)) = path.split_first() else { return plain(value) };
+    match (*name, value) {
+        ("sides", Json::Array(hinges)) => sides(hinges),
+        ("*", Json::Array(items)) => Value::List(items.iter().map(|item| follow(item, rest)).collect()),
+        (index, Json::Array(items)) => match index.parse::<usize>().ok().and_then(|index| items.get(index)) {
+            Some(item) => follow(item, rest),
+            None => Value::none(format!("no entry {index}")),
+        },
+        (key, Json::Object(map)) => {
+            map.get(key).map_or_else(|| Value::none(format!("no {key}")), |value| follow(value, rest))
+        }
+        (key, _) => Value::none(format!("no {key}")),
+    }
+}
+
+fn plain(value: &Json) -> Value {
+    match value {
+        Json::Number(number) => Value::Number(number.as_f64().unwrap_or(f64::NAN)),
+        Json::String(word) => Value::Word(word.clone()),
+        Json::Bool(truth) => Value::Truth(*truth),
+        Json::Array(items) => Value::List(items.iter().map(plain).collect()),
+        _ => Value::none("none"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn selection(more: Json) -> Selection {
+        let mut table = json!({ "study": "s", "result": "load_factor", "entries": "cases", "x": "x", "y": "y" });
+        table.as_object_mut().expect("a table").extend(more.as_object().expect("a table").clone());
+        serde_json::from_value(table).expect("a selection")
+    }
+
+    #[test]
+    fn results_are_found_by_variant_and_swept_key() {
+        let case = |variant: &str, rise: f64, place: f64, status: &str, factor: Json| {
+            json!({ "variant": variant, "parameters": { "scene.profile.rise": rise, "a.b": place }, "status": status, "load_factor": factor,
+                    "mechanism": { "hinges": [{ "joint": 1 }, { "joint": 4 }] } })
+        };
+        let results = json!({ "cases": [
+            case("one", 2.0, 0.5, "collapse", json!(7.0)), case("one", 1.0, 0.5, "unbounded", json!(null)),
+            case("one", 1.0, 0.25, "collapse", json!(3.0)), case("two", 1.0, 0.5, "collapse", json!(5.0)),
+        ] });
+        let value = |more: Json| selection(more).value(&|_| Some(&results));
+        let found = value(json!({ "variant": "one", "where": { "b": 0.5 } }));
+        assert_eq!(found, Value::Series(vec![(1.0, Value::Number(f64::INFINITY)), (2.0, Value::Number(7.0))]));
+        let joints = value(json!({ "variant": "two", "over": "rise", "result": "mechanism.hinges.*.joint" }));
+        let list = Value::List(vec![Value::Number(1.0), Value::Number(4.0)]);
+        assert_eq!(joints, Value::Series(vec![(1.0, list)]));
+        assert!(matches!(value(json!({ "variant": "three" })), Value::Missing { proven: false, .. }));
+    }
+}

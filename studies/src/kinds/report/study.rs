@@ -1,0 +1,198 @@
+//! A study of studies as commands see it: its parts are run first, then the page is made from their results.
+
+use super::claims::{Answer, Verdict};
+use super::contents::Contents;
+use super::figures::Chart;
+use super::keys::STUDY;
+use super::page::results_page;
+use super::parts::Parts;
+use super::value::Value;
+use crate::config::check::Checker;
+use crate::config::diagnostic::{LocatedDiagnostic, sort};
+use crate::config::document::Node;
+use crate::config::origin::Origin;
+use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, StoredResults, Verification};
+use crate::kinds::read::read_source;
+use crate::solve::Observer;
+use crate::study::{DiagnosticList, Drawn, ReadFile, StudySource};
+use crate::verify::repeat::differences;
+use serde::Deserialize;
+use serde_json::{Value as Json, json};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use voussoir_core::plugin::Shape;
+
+/// A study of studies.
+pub struct ReportStudy {
+    /// Its name.
+    pub name: String,
+    /// What it says.
+    pub contents: Contents,
+    parts: Vec<Part>,
+    resolved: toml::Value,
+}
+
+impl ReportStudy {
+    /// Reads a study of studies and its parts; every mistake at once.
+    pub fn read(source: StudySource, read: ReadFile) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let StudySource { root, diagnostics, .. } = source;
+        let mut checker = Checker::new(&root);
+        let checked = checker.check(&root, &Shape::Table(STUDY), "");
+        let found: Vec<_> = diagnostics.into_iter().chain(checker.diagnostics).collect();
+        let contents = checked.as_ref().and_then(|table| Contents::deserialize(&table["report"]).ok());
+        let (Some(table), Some(mut contents), true) = (checked, contents, found.is_empty()) else { return Err(found) };
+        let mut diagnostics = DiagnosticList::new(&root, found);
+        let parts = read_parts(&mut diagnostics, &contents, &root, read);
+        contents.check(&mut diagnostics, &parts);
+        if !diagnostics.found.is_empty() {
+            sort(&mut diagnostics.found);
+            return Err(diagnostics.found);
+        }
+        let mut resolved = root.to_toml();
+        let own = parts.iter().map(|part| toml::Value::from(format!("{}/resolved.toml", part.folder)));
+        if let Some(report) = resolved.get_mut("report").and_then(toml::Value::as_table_mut) {
+            // In the result folder each part's own file stands in its folder.
+            report.insert("studies".into(), own.collect::<Vec<_>>().into());
+        }
+        let name = table["name"].as_str().unwrap_or_default().to_string();
+        contents.figures = Drawn::read(&table["output"]["figures"], 1).anything();
+        Ok(ReportStudy { name, contents, parts, resolved })
+    }
+
+    /// The page and everything else that follows from the results of the parts.
+    fn output(&self, results: &[String], version: &str, date: Option<&str>) -> RunOutput {
+        let parts = Parts::new(&self.parts, results);
+        let series: BTreeMap<&str, Value> = self
+            .contents
+            .series
+            .iter()
+            .map(|(name, own)| (name.as_str(), own.value(&|study| parts.json(study))))
+            .collect();
+        let named = |name: &str| series.get(name).cloned();
+        let answers: Vec<Answer> = self.contents.claims.iter().map(|claim| claim.answer(&named)).collect();
+        let mut whole = json!({ "study": self.name, "version": version });
+        if let Some(date) = date {
+            whole["date"] = date.into();
+        }
+        whole["kind"] = "report".into();
+        whole["cases"] = json!([]);
+        whole["parts"] = parts.entries();
+        whole["claims"] = answers.iter().map(Answer::entry).collect();
+        let mut files = vec![("results.json".to_string(), format!("{whole:#}\n"))];
+        if self.contents.figures {
+            let chart =
+                |chart: &Chart| (format!("figures/chart-{}.svg", chart.name), chart.svg(&self.contents.series, &parts));
+            files.extend(self.contents.charts.iter().map(chart));
+        }
+        files.push(("report.html".into(), results_page(&self.name, &self.contents, &parts, &answers, (version, date))));
+        RunOutput {
+            files: files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect(),
+            table: table(&answers, &parts),
+            remarks: Vec::new(),
+            certified: answers.iter().all(|answer| answer.verdict != Verdict::Undecided),
+        }
+    }
+}
+
+/// The studies that a report names, each of another name.
+fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &Node, read: ReadFile) -> Vec<Part> {
+    let own = match &root.origin {
+        Origin::File { file, .. } => Path::new(&**file).with_file_name(""),
+        _ => PathBuf::new(),
+    };
+    let mut parts: Vec<Part> = Vec::new();
+    for (index, name) in contents.studies.iter().enumerate() {
+        let key = format!("report.studies.{index}");
+        let text = match read(name) {
+            Ok(text) => text,
+            Err(why) => {
+                diagnostics.wrong(&key, format!("{name} cannot be read: {why}"), "paths are relative to this file");
+                continue;
+            }
+        };
+        let file = own.join(name).display().to_string();
+        // What a part names stands beside the part.
+        let beside = |inner: &str| read(&Path::new(name).with_file_name(inner).display().to_string());
+        match StudySource::parse_with(&text, &file, &[], &beside).and_then(read_source) {
+            Ok(study) if !study.parts().is_empty() => {
+                diagnostics.wrong(&key, "is a report itself", "name the studies that it reports on");
+            }
+            Ok(study) if parts.iter().any(|part| part.folder.eq_ignore_ascii_case(study.name())) => {
+                let message = format!("this study is called \"{}\", as an earlier one", study.name());
+                diagnostics.wrong(&key, message, "each study has a folder of its name: give one another name");
+            }
+            Ok(study) => parts.push(Part { folder: study.name().to_string(), file, study }),
+            Err(wrong) => diagnostics.found.extend(wrong),
+        }
+    }
+    parts
+}
+
+/// The table on the terminal: verdicts, then how long each part took.
+fn table(answers: &[Answer], parts: &Parts) -> String {
+    let mut text = String::new();
+    for answer in answers {
+        text += &format!("claim {:<4} {:<28} {}\n", answer.claim.id, answer.words(), answer.claim.claim);
+    }
+    text + "\n" + &parts.times()
+}
+
+impl LoadedStudy for ReportStudy {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn count(&self) -> usize {
+        0
+    }
+
+    fn resolved(&self) -> &toml::Value {
+        &self.resolved
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.parts
+            .iter()
+            .flat_map(|part| part.study.notes().into_iter().map(|note| format!("{}: {note}", part.folder)))
+            .collect()
+    }
+
+    fn explain(&self) -> String {
+        let parts = self.parts.iter().map(|part| part.study.explain());
+        format!(
+            "study \"{}\" (report): {} studies, {} claims\n\n",
+            self.name,
+            self.parts.len(),
+            self.contents.claims.len()
+        ) + &parts.collect::<Vec<_>>().join("\n")
+    }
+
+    fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    fn run(&self, request: &RunRequest, _observer: &dyn Observer) -> RunOutput {
+        self.output(&request.parts, &request.version, request.date.as_deref())
+    }
+
+    /// The page and the verdicts must be those that the results of the parts give; the parts are verified apart.
+    fn verify_stored(&self, stored: &StoredResults, _observer: &dyn Observer) -> Result<Verification, String> {
+        let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
+        let text = |part: &Part| {
+            (stored.file)(&format!("{}/results.json", part.folder)).and_then(|bytes| String::from_utf8(bytes).ok())
+        };
+        let results: Vec<String> = self.parts.iter().map(|part| text(part).unwrap_or_default()).collect();
+        let made = self.output(&results, json["version"].as_str().unwrap_or_default(), json["date"].as_str());
+        let again = made.files.iter().find(|(name, _)| name == "results.json");
+        let again: Json = again.and_then(|(_, bytes)| serde_json::from_slice(bytes).ok()).unwrap_or_default();
+        let findings = differences(&json, &again).into_iter().map(|why| (0, why)).collect();
+        Ok(Verification {
+            cases: self.contents.claims.len(),
+            stalled: 0,
+            findings,
+            files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))),
+            of: self.contents.claims.len(),
+            how: "checked: verdicts, charts and page against the results of the parts, each of which is verified by itself",
+        })
+    }
+}

@@ -1,0 +1,62 @@
+//! Running a study from a program: typed results, an observer, nothing written.
+
+use super::kind::kind;
+use crate::results::StudyResults;
+use crate::solve::{Observer, Unobserved};
+use crate::study::Study;
+
+/// How a study is run.
+#[derive(Clone, Copy)]
+pub struct RunOptions<'a> {
+    /// Ids of the cases; all where there is no list.
+    pub cases: Option<&'a [usize]>,
+    /// Cases side by side; results do not depend on it.
+    pub jobs: usize,
+    /// Who looks on, and may cancel.
+    pub observer: &'a dyn Observer,
+}
+
+impl Default for RunOptions<'_> {
+    fn default() -> Self {
+        RunOptions { cases: None, jobs: 1, observer: &Unobserved }
+    }
+}
+
+impl Study {
+    /// Solves every case, one after the other. What a case comes to is its [status](crate::results::CaseResult::status),
+    /// never an error.
+    pub fn run(&self) -> StudyResults {
+        self.run_with(&RunOptions::default())
+    }
+
+    /// Solves the cases that are asked for; ids that the study does not have are left out.
+    ///
+    /// ```
+    /// use voussoir::prelude::*;
+    /// # let study = Study::builder("block")
+    /// #     .scene("wall", json!({ "width": 1.0, "brick": [0.4, 0.2], "courses": 1, "bricks": 1, "material": "stone", "joint": "dry" }))
+    /// #     .material("stone", "rigid", json!({ "density": 2000.0 }))
+    /// #     .joint("dry", "coulomb", json!({ "friction": 0.4 }))
+    /// #     .gravity(9.81)
+    /// #     .until_collapse("push", json!([{ "kind": "body", "acceleration": [9.81, 0.0] }]))
+    /// #     .sweep("joints.dry.friction", &[0.3, 0.4, 0.5])
+    /// #     .build()?;
+    /// // Stops after the first answer.
+    /// let watch = Watch::new(|event| !matches!(event, RunEvent::Answered(_)));
+    /// let results = study.run_with(&RunOptions { observer: &watch, ..RunOptions::default() });
+    /// assert_eq!(results.cases.len(), 1);
+    /// # Ok::<(), StudyError>(())
+    /// ```
+    pub fn run_with(&self, options: &RunOptions) -> StudyResults {
+        let known = |id: &usize| *id < self.cases.len();
+        let mut wanted: Vec<usize> = match options.cases {
+            Some(ids) => ids.iter().copied().filter(known).collect(),
+            None => (0..self.cases.len()).collect(),
+        };
+        wanted.sort_unstable();
+        wanted.dedup();
+        options.observer.begins(wanted.len());
+        let solve = |kind: &dyn super::kind::StudyKind| kind.solve(self, &wanted, options.jobs, options.observer);
+        self.results(env!("CARGO_PKG_VERSION"), kind(&self.kind).map(solve).unwrap_or_default())
+    }
+}

@@ -1,0 +1,89 @@
+//! The parts of a bridge, in words.
+
+use crate::study::Case;
+use serde_json::Value as Json;
+use std::fmt::Write;
+use voussoir_core::model::{Assembly, Bridge};
+
+/// Bodies whose names begin alike.
+struct Named<'a> {
+    assembly: &'a Assembly,
+    prefix: String,
+}
+
+impl Named<'_> {
+    /// Their number, mass \[kg\], and the first and last name.
+    fn sum(&self) -> Option<(usize, f64, &str, &str)> {
+        let named = |body: &usize| self.assembly.bodies[*body].name.starts_with(&self.prefix);
+        let own: Vec<usize> = (0..self.assembly.bodies.len()).filter(named).collect();
+        let name = |body: &usize| self.assembly.bodies[*body].name.as_str();
+        let mass = own.iter().map(|body| self.assembly.inertia(*body).mass).sum();
+        Some((own.len(), mass, own.first().map(name)?, own.last().map(name)?))
+    }
+}
+
+/// One line for every ring, pier and piece of damage, and for road, fill, vehicles and factors.
+pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
+    let assembly = &case.assembly;
+    let scene = &case.resolved["scene"];
+    let line = |text: &mut String, what: String, prefix: String| {
+        let named = Named { assembly, prefix };
+        if let Some((count, mass, first, last)) = named.sum() {
+            let names = if first == last { first.to_string() } else { format!("{first} … {last}") };
+            let _ = writeln!(text, "  {what}: {count} block(s) {names}, {:.3} t", mass / 1000.0);
+        }
+    };
+    if assembly.arch.is_some() {
+        let _ = writeln!(text, "  span 0, ring 0: {} block(s) 0 … {}", bridge.radial - 1, bridge.radial - 2);
+    }
+    for (i, span) in scene["spans"].as_array().into_iter().flatten().enumerate() {
+        let shape = span["profile"]["shape"].as_str().unwrap_or_default();
+        for ring in 0..span["rings"].as_u64().unwrap_or(1) {
+            line(text, format!("span {i} ({shape}), ring {ring}"), format!("s{i}r{ring}v"));
+        }
+    }
+    for i in 0..scene["piers"].as_array().map_or(0, Vec::len) {
+        line(text, format!("pier {i}"), format!("p{i}c"));
+    }
+    for (i, damage) in scene["damage"].as_array().into_iter().flatten().enumerate() {
+        let _ = writeln!(text, "  damage {i}: {}", words(damage));
+    }
+    if !bridge.road.is_empty() {
+        let mass: f64 = bridge.masses.iter().map(|fill| fill.mass).sum();
+        let levels: Vec<f64> = bridge.layers.iter().map(|layer| layer.0).filter(|level| level.is_finite()).collect();
+        let layers = if levels.is_empty() { String::new() } else { format!(", layers up to {levels:?} m") };
+        let spread = scene["fill"]["dispersion"]["law"].as_str().unwrap_or("none");
+        let _ = writeln!(
+            text,
+            "  fill: {:.3} t on {} faces{layers}; dispersion {spread}; {} horizontal reactions at chords of the extrados",
+            mass / 1000.0,
+            bridge.extrados.len(),
+            bridge.reactions.len()
+        );
+    }
+    for (name, vehicle) in case.resolved["vehicles"].as_object().into_iter().flatten() {
+        let force = |axle: &Json| axle["force"].as_f64().unwrap_or(0.0) * axle["lift_off"].as_f64().unwrap_or(1.0);
+        let axles = vehicle["axles"].as_array();
+        let total: f64 = axles.into_iter().flatten().map(force).sum();
+        let _ = writeln!(text, "  vehicle \"{name}\": {} axle(s), {:.3} kN", axles.map_or(0, Vec::len), total / 1000.0);
+    }
+    if let Some(factors) = case.resolved.get("factors") {
+        let _ = writeln!(text, "  partial factors: {}", words(factors));
+    }
+}
+
+/// A table in one line.
+fn words(table: &Json) -> String {
+    let entry = |(key, value): (&String, &Json)| match value {
+        Json::String(text) => format!("{key} {text}"),
+        value => format!("{key} {value}"),
+    };
+    table
+        .as_object()
+        .into_iter()
+        .flatten()
+        .filter(|(_, value)| !value.is_null())
+        .map(entry)
+        .collect::<Vec<_>>()
+        .join(", ")
+}

@@ -1,0 +1,140 @@
+//! Studies made by a program: from text, a file, a value, or piece by piece.
+
+use super::error::StudyError;
+use super::load::load;
+use super::model::Study;
+use super::source::StudySource;
+use super::survey::beside;
+use serde_json::{Map, Value as Json, json};
+use std::path::Path;
+
+impl Study {
+    /// Reads a study from TOML.
+    pub fn from_toml(text: &str) -> Result<Study, StudyError> {
+        Ok(load(text, "study", &[])?)
+    }
+
+    /// Reads a study file.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Study, StudyError> {
+        let path = path.as_ref();
+        let read = std::fs::read_to_string(path);
+        let text = read.map_err(|error| StudyError::File { path: path.into(), error })?;
+        let source = StudySource::parse_with(&text, &path.display().to_string(), &[], &beside(path))?;
+        Ok(Study::from_source(source)?)
+    }
+
+    /// The study of a value with the tables and keys of a study file.
+    pub fn from_value(value: &Json) -> Result<Study, StudyError> {
+        Ok(Study::from_source(StudySource::of_value(value, &[])?)?)
+    }
+
+    /// Begins a study of this name, to be built piece by piece.
+    pub fn builder(name: &str) -> StudyBuilder {
+        StudyBuilder { study: Map::from_iter([("name".to_string(), json!(name))]), sets: Vec::new() }
+    }
+}
+
+/// A study that is built piece by piece; what is left out has the default of study files. Keys and their units are those of
+/// study files: `voussoir explain TAG` lists them. Mistakes are reported all at once by [`build`](Self::build).
+///
+/// ```
+/// use voussoir::prelude::*;
+/// let study = Study::builder("two blocks")
+///     .scene("wall", json!({ "width": 1.0, "brick": [0.4, 0.2], "courses": 2, "bricks": 1, "material": "stone", "joint": "dry" }))
+///     .material("stone", "rigid", json!({ "density": 2000.0 }))
+///     .joint("dry", "coulomb", json!({ "friction": 0.4 }))
+///     .gravity(9.81)
+///     .until_collapse("push", json!([{ "kind": "body", "acceleration": [9.81, 0.0] }]))
+///     .sweep("joints.dry.friction", &[0.4, 0.5])
+///     .build()?;
+/// let factors: Vec<_> = study.run().cases.iter().filter_map(|case| case.load_factor).collect();
+/// assert!((factors[0] - 0.4).abs() < 1e-9 && (factors[1] - 0.5).abs() < 1e-9);
+/// # Ok::<(), StudyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyBuilder {
+    study: Map<String, Json>,
+    sets: Vec<(String, Json)>,
+}
+
+/// A table with its tag; what is no table stays as it is, for the check to find.
+fn tagged(key: &str, tag: &str, keys: Json) -> Json {
+    match keys {
+        Json::Object(keys) => Json::Object([(key.to_string(), json!(tag))].into_iter().chain(keys).collect()),
+        other => other,
+    }
+}
+
+impl StudyBuilder {
+    /// The entry `name` of a table of tables.
+    fn entry(mut self, table: &str, name: &str, value: Json) -> Self {
+        let entries = self.study.entry(table).or_insert_with(|| json!({}));
+        entries[name] = value;
+        self
+    }
+
+    /// An entry of a list.
+    fn push(mut self, list: &str, value: Json) -> Self {
+        let entries = self.study.entry(list).or_insert_with(|| json!([]));
+        entries.as_array_mut().into_iter().for_each(|entries| entries.push(value.clone()));
+        self
+    }
+
+    /// The scene, by its tag and keys.
+    pub fn scene(mut self, tag: &str, keys: Json) -> Self {
+        self.study.insert("scene".into(), tagged("scene", tag, keys));
+        self
+    }
+
+    /// A material, by its name in the scene, the tag of its law and the law's keys.
+    pub fn material(self, name: &str, law: &str, keys: Json) -> Self {
+        self.entry("materials", name, tagged("law", law, keys))
+    }
+
+    /// The law of joints, by its name in the scene, its tag and keys.
+    pub fn joint(self, name: &str, law: &str, keys: Json) -> Self {
+        self.entry("joints", name, tagged("law", law, keys))
+    }
+
+    /// The next stage: gravity downwards \[m/s²\].
+    pub fn gravity(self, acceleration: f64) -> Self {
+        self.push("stages", json!({ "name": "dead", "gravity": acceleration }))
+    }
+
+    /// The next stage: a list of loads, up to a factor.
+    pub fn stage(self, name: &str, loads: Json, factor: f64) -> Self {
+        self.push("stages", json!({ "name": name, "loads": loads, "factor": factor }))
+    }
+
+    /// The next stage: a list of loads that grow until collapse.
+    pub fn until_collapse(self, name: &str, loads: Json) -> Self {
+        self.push("stages", json!({ "name": name, "loads": loads, "until": "collapse" }))
+    }
+
+    /// Who solves it, by tag and keys.
+    pub fn solver(mut self, tag: &str, keys: Json) -> Self {
+        self.study.insert("solver".into(), tagged("solver", tag, keys));
+        self
+    }
+
+    /// An axis of the sweep: a dotted key and its values.
+    pub fn sweep(self, key: &str, values: &[f64]) -> Self {
+        self.entry("sweep", key, json!({ "list": values }))
+    }
+
+    /// A variant that sets dotted keys.
+    pub fn variant(self, name: &str, set: Json) -> Self {
+        self.push("variants", json!({ "name": name, "set": set }))
+    }
+
+    /// Any key of the study, dotted, such as `stages.live.factor` or `output.curve`; after everything else, in order.
+    pub fn set(mut self, key: &str, value: impl Into<Json>) -> Self {
+        self.sets.push((key.into(), value.into()));
+        self
+    }
+
+    /// Checks the study; every mistake at once.
+    pub fn build(self) -> Result<Study, StudyError> {
+        Ok(Study::from_source(StudySource::of_value(&Json::Object(self.study), &self.sets)?)?)
+    }
+}

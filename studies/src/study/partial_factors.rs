@@ -1,0 +1,169 @@
+//! Partial factors: from the characteristic values of a study to the design values that are computed with.
+//!
+//! The resolved case keeps what was written; blocks, joints, fill and loads are built from its design values. Weights and
+//! loads are multiplied, strengths and coefficients of friction are divided.
+
+use super::diagnostics::DiagnosticList;
+use crate::config::dotted_key::join;
+use serde_json::{Map, Value as Json};
+use voussoir_core::model::{Assembly, Stage};
+use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape, card, nearest};
+
+const fn factor(name: &'static str, doc: &'static str) -> Parameter {
+    Parameter::number(name, Quantity::Ratio, Range::POSITIVE, doc).optional("1")
+}
+
+const LOAD: Shape = Shape::Number(Quantity::Ratio, Range::POSITIVE);
+
+/// What `[factors]` may hold.
+pub(super) const FACTORS: Shape = Shape::Table(&[
+    factor("masonry_weight", "multiplies the density of every material"),
+    factor("fill_weight", "multiplies the densities of fill, layers and backing"),
+    Parameter {
+        name: "loads",
+        doc: "multiplies the loads of all stages, or of the stages named: { live = 1.5 }",
+        shape: Shape::Either(&[LOAD, Shape::Map(&LOAD)]),
+        need: Need::Optional("1"),
+    },
+    factor("friction", "divides the coefficients of friction of joints"),
+    factor("cohesion", "divides the cohesion of joints"),
+    factor("tensile_strength", "divides the tensile strength of joints"),
+    factor("compressive_strength", "divides the crushing strength of joints"),
+    factor("fill_friction", "divides the tangent of the fill's angles of friction"),
+    factor("fill_cohesion", "divides the cohesion of the fill"),
+    factor("backing_strength", "divides the strength of the backing"),
+]);
+
+/// Which numbers of a table a factor changes.
+enum Change {
+    Times,
+    Over,
+    TangentOver,
+}
+
+impl Change {
+    fn apply(&self, number: f64, factor: f64) -> f64 {
+        match self {
+            Change::Times => number * factor,
+            Change::Over => number / factor,
+            Change::TangentOver => (number.to_radians().tan() / factor).atan().to_degrees(),
+        }
+    }
+}
+
+/// The tables under a dotted path, in which `*` stands for every entry of a table or a list.
+fn each<'a>(value: &'a mut Json, path: &str, act: &mut dyn FnMut(&mut Json)) {
+    let (first, rest) = path.split_once('.').map_or((path, None), |(first, rest)| (first, Some(rest)));
+    let mut next = |value: &mut Json| match rest {
+        Some(rest) => each(value, rest, act),
+        None => act(value),
+    };
+    match value {
+        Json::Object(table) if first == "*" => table.values_mut().for_each(&mut next),
+        Json::Array(list) if first == "*" => list.iter_mut().for_each(&mut next),
+        Json::Object(table) => {
+            if let Some(value) = table.get_mut(first) {
+                next(value);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// What each factor changes.
+const CHANGES: &[(&str, &str, Change)] = &[
+    ("masonry_weight", "materials.*.density", Change::Times),
+    ("fill_weight", "scene.fill.density", Change::Times),
+    ("fill_weight", "scene.fill.layers.*.density", Change::Times),
+    ("fill_weight", "scene.fill.haunching.density", Change::Times),
+    ("friction", "joints.*.friction", Change::Over),
+    ("friction", "joints.*.friction_angle", Change::TangentOver),
+    ("friction", "joints.*.dilatancy_angle", Change::TangentOver),
+    ("cohesion", "joints.*.cohesion", Change::Over),
+    ("tensile_strength", "joints.*.tensile_strength", Change::Over),
+    ("compressive_strength", "joints.*.compressive_strength", Change::Over),
+    ("fill_friction", "scene.fill.friction_angle", Change::TangentOver),
+    ("fill_friction", "scene.fill.layers.*.friction_angle", Change::TangentOver),
+    ("fill_cohesion", "scene.fill.cohesion", Change::Over),
+    ("fill_cohesion", "scene.fill.layers.*.cohesion", Change::Over),
+    ("backing_strength", "scene.fill.haunching.strength", Change::Over),
+];
+
+/// The tables of a checked case with its design values; factors that change nothing are noted.
+pub fn design(resolved: &Map<String, Json>, notes: &mut Vec<String>) -> Map<String, Json> {
+    let Some(factors) = resolved.get("factors").and_then(Json::as_object) else { return resolved.clone() };
+    let mut out = Json::Object(resolved.clone());
+    for (name, factor) in factors.iter().filter_map(|(name, factor)| Some((name, factor.as_f64()?))) {
+        let mut changed = name == "loads";
+        for (_, path, change) in CHANGES.iter().filter(|(of, ..)| of == name) {
+            each(&mut out, path, &mut |value| {
+                if let Some(number) = value.as_f64() {
+                    *value = change.apply(number, factor).into();
+                    changed = true;
+                }
+            });
+        }
+        if !changed {
+            notes.push(format!("factors.{name} = {factor} changes nothing: the study has no such number"));
+        }
+    }
+    match out {
+        Json::Object(mut out) => {
+            out.remove("factors");
+            out
+        }
+        _ => resolved.clone(),
+    }
+}
+
+/// Joint laws that cannot be with their design values, and stages that do not exist.
+pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<String, Json>, design: &Map<String, Json>) {
+    let Some(factors) = resolved.get("factors") else { return };
+    let tables = |of: &Map<String, Json>| of.get("joints").and_then(Json::as_object).cloned().unwrap_or_default();
+    let written = tables(resolved);
+    for (name, table) in tables(design).iter().filter(|(name, table)| written.get(*name) != Some(*table)) {
+        let card = table["law"].as_str().and_then(|tag| card(PluginKind::InterfaceLaw, tag));
+        let Some((card, table)) = card.zip(table.as_object()) else { continue };
+        let known = |name: &str| card.parameters.iter().any(|parameter| parameter.name == name);
+        let own: Map<_, _> = table.clone().into_iter().filter(|(name, _)| known(name)).collect();
+        for (key, message) in (card.check)(&Json::Object(own)) {
+            let path = join(&join("joints", name), &key);
+            diagnostics.wrong("factors", format!("{path}, with its design values: {message}"), "change these factors");
+        }
+    }
+    let names: Vec<&str> = resolved
+        .get("stages")
+        .and_then(Json::as_array)
+        .into_iter()
+        .flatten()
+        .filter_map(|stage| stage["name"].as_str())
+        .collect();
+    for name in factors["loads"].as_object().into_iter().flatten().map(|(name, _)| name) {
+        if !names.contains(&name.as_str()) {
+            let help = nearest(name, names.iter().copied())
+                .map_or(format!("stages here: {}", names.join(", ")), |near| format!("did you mean \"{near}\"?"));
+            diagnostics.wrong(&format!("factors.loads.{name}"), format!("there is no stage \"{name}\""), help);
+        }
+    }
+}
+
+/// Multiplies the loads of stages.
+pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Map<String, Json>) {
+    let Some(loads) = resolved.get("factors").map(|factors| &factors["loads"]) else { return };
+    for stage in stages {
+        let factor = loads.as_f64().or_else(|| loads[stage.name.as_str()].as_f64()).unwrap_or(1.0);
+        stage.forces.iter_mut().for_each(|force| force.force *= factor);
+        stage.accelerations.iter_mut().for_each(|acceleration| *acceleration *= factor);
+    }
+}
+
+/// What a user should know of factors on strengths where blocks yield by laws of their own.
+pub(super) fn note_of_yielding(assembly: &Assembly, resolved: &Map<String, Json>, notes: &mut Vec<String>) {
+    let strengths = ["friction", "cohesion", "tensile_strength", "compressive_strength"];
+    let given = strengths.iter().any(|name| resolved.get("factors").is_some_and(|factors| !factors[name].is_null()));
+    if given && (0..assembly.bodies.len()).any(|body| assembly.yields(body)) {
+        notes.push(
+            "factors on strengths are those of joints: blocks that yield keep the strengths of their materials".into(),
+        );
+    }
+}

@@ -1,0 +1,273 @@
+//! Surveyed profiles: `profile = { shape = …, file = "survey.csv" }` becomes the points of the file, so that the
+//! resolved study needs the file no longer.
+
+use crate::config::diagnostic::{LocatedDiagnostic, suggest};
+use crate::config::document::{Entry, Node, Value};
+use crate::config::origin::Origin;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads a file that a study names; the error says why not.
+pub type ReadFile<'a> = &'a dyn Fn(&str) -> Result<String, String>;
+
+/// For studies that come from no place where files could be.
+pub fn no_files(_: &str) -> Result<String, String> {
+    Err("files are read where a study is read from a file; give the points themselves".into())
+}
+
+/// Reads files that stand beside a study file.
+pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
+    let folder = study.parent().unwrap_or(Path::new("")).to_path_buf();
+    move |file| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string())
+}
+
+/// Shapes of profiles whose points may stand in a file.
+const SHAPES: [&str; 2] = ["points", "surveyed"];
+
+/// Replaces every `file` of a profile of points by its points.
+pub fn import(node: &mut Node, read: ReadFile, mistakes: &mut Vec<LocatedDiagnostic>) {
+    match &mut node.value {
+        Value::Array(nodes) => nodes.iter_mut().for_each(|node| import(node, read, mistakes)),
+        Value::Table(table) => {
+            let of_points = table.get("shape").and_then(Node::text).is_some_and(|shape| SHAPES.contains(&shape));
+            let file = table
+                .get("file")
+                .filter(|_| of_points)
+                .and_then(|node| Some((node.text()?.to_string(), node.origin.clone())));
+            let Some((file, origin)) = file else {
+                return table.entries.iter_mut().for_each(|entry| import(&mut entry.node, read, mistakes));
+            };
+            let wrong = |message: String| LocatedDiagnostic::new(&origin, "profile.file", message);
+            for key in ["intrados", "extrados"].into_iter().filter(|key| table.get(key).is_some()) {
+                mistakes.push(wrong(format!("is given besides {key}")).help("keep one of the two"));
+            }
+            let text = match read(&file) {
+                Ok(text) => text,
+                Err(why) => return mistakes.push(wrong(format!("\"{file}\" cannot be read: {why}"))),
+            };
+            match Survey::read(&text, &file) {
+                Ok(survey) => {
+                    table.entries.retain(|entry| entry.key != "file");
+                    table.entries.extend(survey.entries(&origin));
+                }
+                Err(found) => mistakes.extend(found),
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Points of an intrados and an extrados \[m\].
+#[derive(Debug, Default, PartialEq)]
+struct Survey {
+    curves: [Vec<[f64; 2]>; 2],
+}
+
+/// What a column holds: the curve it is of (`None`: that of the line), and x or y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Column {
+    Curve,
+    Coordinate { curve: Option<usize>, axis: usize, unit: f64 },
+    Other,
+}
+
+const CURVES: [&str; 2] = ["intrados", "extrados"];
+const UNITS: [(&str, f64); 5] = [("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("ft", 0.3048), ("in", 0.0254)];
+const COLUMNS: [&str; 7] = ["curve", "x", "y", "intrados_x", "intrados_y", "extrados_x", "extrados_y"];
+
+/// A line of the file as its cells, each with the column of its first character.
+fn cells(line: &str, separator: char) -> Vec<(usize, &str)> {
+    let mut at = 0;
+    line.split(separator)
+        .map(|cell| {
+            let (start, trimmed) = (at, cell.trim());
+            at += cell.len() + separator.len_utf8();
+            let blank = cell.len() - cell.trim_start().len();
+            (line[..start + blank].chars().count() + 1, trimmed)
+        })
+        .collect()
+}
+
+impl Survey {
+    /// Reads a table: a header, then a line a point. Every mistake with its line and column.
+    fn read(text: &str, file: &str) -> Result<Survey, Vec<LocatedDiagnostic>> {
+        let name: Arc<str> = file.into();
+        let at = |line: usize, column: usize| Origin::File { file: name.clone(), line, column };
+        let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+        let mut lines =
+            lines.map(|(i, line)| (i + 1, line)).filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+        let Some((first, header)) = lines.next() else {
+            return Err(vec![LocatedDiagnostic::new(&at(1, 1), "", "there is no line with the names of columns")]);
+        };
+        let separator = [';', '\t', ','].into_iter().find(|c| header.contains(*c)).unwrap_or(',');
+        let columns = Self::columns(&cells(header, separator), &|column| at(first, column))?;
+        let (mut survey, mut mistakes) = (Survey::default(), Vec::new());
+        for (number, line) in lines {
+            let row = Row { cells: cells(line, separator), columns: &columns, decimal_comma: separator != ',' };
+            match row.points(&|column| at(number, column)) {
+                Ok(points) => points.into_iter().for_each(|(curve, point)| survey.curves[curve].push(point)),
+                Err(wrong) => mistakes.push(wrong),
+            }
+        }
+        if mistakes.is_empty()
+            && let Some(curve) = (0..2).find(|&curve| survey.curves[curve].len() < 2)
+        {
+            let message = format!("the {} has {} point(s); it needs two", CURVES[curve], survey.curves[curve].len());
+            mistakes.push(LocatedDiagnostic::new(&at(first, 1), "", message));
+        }
+        if mistakes.is_empty() { Ok(survey) } else { Err(mistakes) }
+    }
+
+    /// What the columns hold, by their names.
+    fn columns(header: &[(usize, &str)], at: &dyn Fn(usize) -> Origin) -> Result<Vec<Column>, Vec<LocatedDiagnostic>> {
+        let (mut columns, mut mistakes) = (Vec::new(), Vec::new());
+        for &(place, title) in header {
+            let (name, unit) = title
+                .split_once('[')
+                .map_or((title, "m"), |(name, rest)| (name.trim(), rest.trim_end_matches(']').trim()));
+            let Some((_, unit)) = UNITS.iter().find(|known| known.0 == unit) else {
+                let units = UNITS.map(|known| known.0).join(", ");
+                mistakes.push(
+                    LocatedDiagnostic::new(&at(place), "", format!("\"{unit}\" is no unit here"))
+                        .help(format!("units: {units}")),
+                );
+                continue;
+            };
+            let lower = name.to_lowercase();
+            let axis = |name: &str| ["x", "y"].iter().position(|axis| *axis == name);
+            let column = match lower.split_once('_') {
+                Some((curve, rest)) => (CURVES.iter().position(|name| *name == curve).zip(axis(rest)))
+                    .map(|(curve, axis)| Column::Coordinate { curve: Some(curve), axis, unit: *unit }),
+                None if lower == "curve" => Some(Column::Curve),
+                None => axis(&lower).map(|axis| Column::Coordinate { curve: None, axis, unit: *unit }),
+            };
+            let near = voussoir_core::plugin::nearest(&lower, COLUMNS.into_iter()).is_some();
+            match column {
+                None if near => {
+                    let help = suggest(&lower, &COLUMNS, "columns");
+                    mistakes.push(
+                        LocatedDiagnostic::new(&at(place), "", format!("there is no column \"{name}\"")).help(help),
+                    );
+                }
+                column => columns.push(column.unwrap_or(Column::Other)),
+            }
+        }
+        let has = |curve: Option<usize>, axis: usize| {
+            columns.iter().any(
+                |column| matches!(column, Column::Coordinate { curve: c, axis: a, .. } if (*c, *a) == (curve, axis)),
+            )
+        };
+        let by_line = columns.contains(&Column::Curve) && has(None, 0) && has(None, 1);
+        let by_column = (0..2).all(|curve| has(Some(curve), 0) && has(Some(curve), 1));
+        if mistakes.is_empty() && !by_line && !by_column {
+            let message = "the columns are neither curve, x, y nor intrados_x, intrados_y, extrados_x, extrados_y";
+            mistakes.push(LocatedDiagnostic::new(&at(1), "", message).help("a unit may follow a name: x [mm]"));
+        }
+        if mistakes.is_empty() { Ok(columns) } else { Err(mistakes) }
+    }
+
+    /// The keys `intrados` and `extrados`.
+    fn entries(self, origin: &Origin) -> Vec<Entry> {
+        let node = |value: Value| Node { value, origin: origin.clone() };
+        let point = |point: [f64; 2]| node(Value::Array(point.map(|x| node(Value::Float(x))).into()));
+        let curve = |points: Vec<[f64; 2]>| node(Value::Array(points.into_iter().map(point).collect()));
+        let named = CURVES.into_iter().zip(self.curves);
+        named.map(|(key, points)| Entry { key: key.into(), origin: origin.clone(), node: curve(points) }).collect()
+    }
+}
+
+/// A line of the table.
+struct Row<'a> {
+    cells: Vec<(usize, &'a str)>,
+    columns: &'a [Column],
+    decimal_comma: bool,
+}
+
+impl Row<'_> {
+    /// Its points with the curve they are of; a pair of empty cells is none.
+    fn points(&self, at: &dyn Fn(usize) -> Origin) -> Result<Vec<(usize, [f64; 2])>, LocatedDiagnostic> {
+        let mut of_line = None;
+        let mut found = [[None; 2]; 3];
+        for (&(place, cell), column) in self.cells.iter().zip(self.columns) {
+            match *column {
+                Column::Curve => {
+                    of_line = CURVES.iter().position(|name| *name == cell.to_lowercase());
+                    if of_line.is_none() {
+                        let message = format!("\"{cell}\" is neither intrados nor extrados");
+                        return Err(LocatedDiagnostic::new(&at(place), "", message));
+                    }
+                }
+                Column::Coordinate { curve, axis, unit } if !cell.is_empty() => {
+                    let written = if self.decimal_comma { cell.replace(',', ".") } else { cell.to_string() };
+                    let number = written.parse::<f64>().ok().filter(|number| number.is_finite());
+                    let Some(number) = number else {
+                        return Err(LocatedDiagnostic::new(&at(place), "", format!("\"{cell}\" is not a number")));
+                    };
+                    found[curve.unwrap_or(2)][axis] = Some(number * unit);
+                }
+                _ => {}
+            }
+        }
+        if let Some(curve) = of_line {
+            found[curve] = found[2];
+        }
+        let mut points = Vec::new();
+        for (curve, pair) in found.iter().take(2).enumerate() {
+            match pair {
+                [Some(x), Some(y)] => points.push((curve, [*x, *y])),
+                [None, None] => {}
+                _ => {
+                    let message = format!("a point of the {} has only one coordinate", CURVES[curve]);
+                    return Err(LocatedDiagnostic::new(&at(1), "", message));
+                }
+            }
+        }
+        if points.is_empty() {
+            return Err(LocatedDiagnostic::new(&at(1), "", "this line has no point"));
+        }
+        Ok(points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Survey, String> {
+        Survey::read(text, "survey.csv")
+            .map_err(|wrong| wrong.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// The same four points written joint by joint, point by point, in millimetres with decimal commas.
+    #[test]
+    fn every_form_gives_the_same_points() {
+        let expected = Survey { curves: [vec![[0.0, 0.0], [3.0, 0.25]], vec![[-0.5, 0.5], [3.5, 0.75]]] };
+        for text in [
+            "intrados_x,intrados_y,extrados_x,extrados_y\n0,0,-0.5,0.5\n3,0.25,3.5,0.75\n",
+            "# surveyed in May\ncurve,x,y,remark\nintrados,0,0,left\nintrados,3,0.25,\n\nextrados,-0.5,0.5\nextrados,3.5,0.75\n",
+            "\u{feff}curve;x [mm];y [mm]\nIntrados;0;0\nextrados;-500,0;500\nintrados;3000;250\nextrados;3500;750",
+            "intrados_x,intrados_y,extrados_x,extrados_y\n0,0,,\n3,0.25,-0.5,0.5\n,,3.5,0.75\n",
+        ] {
+            assert_eq!(read(text).unwrap(), expected, "{text}");
+        }
+    }
+
+    /// Mistakes say file, line and column.
+    #[test]
+    fn mistakes_have_their_line_and_column() {
+        let message = |text: &str| read(text).unwrap_err();
+        assert_eq!(message("curve,x,y\nintrados,0,0\nextrados, 1,o.5\n"), "survey.csv:3:13: \"o.5\" is not a number");
+        assert_eq!(message("curve,x,y\nintrado,0,0\n"), "survey.csv:2:1: \"intrado\" is neither intrados nor extrados");
+        assert_eq!(
+            message("curve,x,y\nintrados,0,0\nintrados,1,0\nextrados,1,1\n"),
+            "survey.csv:1:1: the extrados has 1 point(s); it needs two"
+        );
+        assert!(message("curve,x [mil],y\n").starts_with("survey.csv:1:7: \"mil\" is no unit here"));
+        assert!(message("curv,x,y\n").contains("did you mean \"curve\"?"));
+        assert_eq!(
+            message("curve,x,y\nintrados,0,\n"),
+            "survey.csv:2:1: a point of the intrados has only one coordinate"
+        );
+        assert!(message("").contains("no line with the names"));
+    }
+}

@@ -1,0 +1,103 @@
+//! What the page's script draws of a case: its blocks, how they move, and the states of its path.
+
+use crate::figures::displaced::displaced;
+use crate::results::{CaseResult, StateEntry};
+use serde_json::{Value as Json, json};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Bond};
+
+/// Scenes of more bodies are not drawn by the script.
+const BODIES: usize = 400;
+
+/// The data of a case; `None` where there is too much of it.
+pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult) -> Option<Json> {
+    if assembly.bodies.len() > BODIES {
+        return None;
+    }
+    let unit = assembly.size() * 1e-5;
+    let round = |x: f64| (x / unit).round() * unit;
+    let tidy = |x: f64| json!(format!("{:.6}", round(x)).parse::<f64>().unwrap_or(x));
+    let flat = |points: &[Vec2]| points.iter().flat_map(|p| [tidy(p.x), tidy(p.y)]).collect::<Json>();
+    let centre = |body: usize| flat(&[assembly.inertia(body).centroid]);
+    let joints = assembly.joints.iter().map(|joint| {
+        let [a, b] = joint.ends;
+        json!([joint.minus, joint.plus, tidy(a.x), tidy(a.y), tidy(b.x), tidy(b.y)])
+    });
+    let thrust = result.proof.thrust_line.as_ref().map(|line| {
+        line.iter().map(|point| point.map_or(Json::Null, |[x, y]| json!([tidy(x), tidy(y)]))).collect::<Json>()
+    });
+    let mut data = json!({
+        "id": result.label.id,
+        "bodies": assembly.bodies.iter().map(|body| flat(&body.vertices)).collect::<Json>(),
+        "centres": (0..assembly.bodies.len()).map(centre).collect::<Json>(),
+        "free": assembly.bodies.iter().map(|body| !body.fixed).collect::<Json>(),
+        "joints": joints.collect::<Json>(),
+        "thrust": thrust,
+    });
+    if let Some(motion) = &result.proof.motion
+        && let Some((_, scale)) = displaced(assembly, motion)
+    {
+        // Per unit of the slider: the motion as it is drawn in the figure.
+        let of = |name: &str| motion.iter().find(|entry| entry.body == name).map_or([0.0; 3], |entry| entry.velocity);
+        let moved = assembly.bodies.iter().map(|body| of(&body.name).map(|v| json!(digits(v * scale))));
+        data["motion"] = moved.map(Json::from_iter).collect();
+        data["scale"] = json!(1);
+    }
+    if !result.path.states.is_empty() {
+        add_states(&mut data, assembly, result);
+    }
+    Some(data)
+}
+
+/// Four digits.
+fn digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+fn add_states(data: &mut Json, assembly: &Assembly, result: &CaseResult) {
+    let Some(field) = &result.proof.field else { return };
+    let share = |joint: usize, point: [f64; 2]| {
+        let ends = assembly.joints[joint].ends;
+        let along = ends[1] - ends[0];
+        (Vec2::from(point) - ends[0]).dot(&along) / along.norm_squared()
+    };
+    let last = result.stages.last().map(|stage| stage.name.as_str());
+    let live = |state: &StateEntry| Some(state.stage.as_str()) == last && !state.gravity;
+    let entry = |state: &StateEntry| {
+        let mut stress: Vec<Vec<(f64, f64)>> = vec![Vec::new(); assembly.joints.len()];
+        for (contact, pressure) in field.iter().zip(&state.pressures) {
+            stress[contact.joint].push((share(contact.joint, contact.point), *pressure));
+        }
+        let thrust = assembly.joints.iter().zip(&mut stress).map(|(joint, points)| {
+            // What is bonded neither opens nor presses as a joint does.
+            if matches!(joint.bond, Bond::Bonded) {
+                points.clear();
+            }
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let total: f64 = points.iter().map(|(_, p)| p).sum();
+            let middle = points.iter().map(|(s, p)| s * p).sum::<f64>() / total;
+            let at = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * middle;
+            if total > 0.0 && assembly.arch.is_some() { json!([digits(at.x), digits(at.y)]) } else { Json::Null }
+        });
+        let thrust: Json = thrust.collect();
+        let points =
+            |points: &Vec<(f64, f64)>| points.iter().map(|(s, p)| json!([digits(*s), digits(*p)])).collect::<Json>();
+        json!({
+            "stage": if state.gravity { format!("{} (gravity)", state.stage) } else { state.stage.clone() },
+            "factor": state.factor,
+            "displacement": state.displacement,
+            "live": live(state),
+            "bodies": state.bodies.iter().map(|u| Json::from_iter(u.map(digits))).collect::<Json>(),
+            "thrust": thrust,
+            "stress": stress.iter().map(points).collect::<Json>(),
+        })
+    };
+    let states = &result.path.states;
+    let farthest = states.iter().flat_map(|state| &state.bodies).map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+    let peak =
+        (0..states.len()).filter(|i| live(&states[*i])).max_by(|a, b| states[*a].factor.total_cmp(&states[*b].factor));
+    data["states"] = states.iter().map(entry).collect();
+    data["peak"] = json!(peak);
+    // So that the greatest displacement is about a twentieth of the scene.
+    data["magnify"] = json!((0.05 * assembly.size() / farthest.max(1e-300)).clamp(1.0, 1000.0).round());
+}

@@ -1,0 +1,34 @@
+//! Laws with one fault each: the checks must find it, by name. A law without a fault conforms.
+
+mod facets;
+mod materials;
+mod responses;
+
+use super::laws::allocations;
+use voussoir::conformance::{Options, conform};
+use voussoir::core::plugin::{Card, Sample};
+
+/// Checks a law for each fault: (the key's value, names of checks of which one must find it). `none` must conform.
+fn every_fault_is_found(card: &Card, table: &'static str, sample: Sample, faults: &[(&str, &[&str])]) {
+    let options = Options { allocations: Some(allocations) };
+    let mut wrong = Vec::new();
+    for (fault, checks) in [("none", &[] as &[&str])].iter().chain(faults) {
+        // A card's texts live as long as the program; these few do too.
+        let with = |table: &str| -> &'static str { format!("fault = \"{fault}\"\n{table}").leak() };
+        let samples: &'static [Sample] = Box::leak(Box::new([Sample { table: with(table), ..sample }]));
+        let known: Vec<_> = card.known_paths.iter().map(|path| (path, with(path.table))).collect();
+        let known: Vec<_> =
+            known.into_iter().map(|(path, table)| voussoir::core::plugin::KnownPath { table, ..*path }).collect();
+        let card = Card { samples, known_paths: known.leak(), ..copy(card) };
+        let report = conform(&card, &options);
+        let found = if *fault == "none" { report.passed() } else { checks.iter().all(|check| report.fails(check)) };
+        if !found {
+            wrong.push(format!("{fault}: {checks:?} should have found it\n{report}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+fn copy(card: &Card) -> Card {
+    Card { ..*card }
+}

@@ -1,0 +1,292 @@
+//! A bridge as numbers, and as the text of a study.
+
+use std::fmt::Write;
+
+/// A segmental span.
+#[derive(Debug, Clone)]
+pub struct Span {
+    pub span: f64,
+    pub rise: f64,
+    /// At the crown and at the springings.
+    pub thickness: [f64; 2],
+    pub voussoirs: usize,
+    pub rings: usize,
+}
+
+/// Ground of one kind up to a level.
+#[derive(Debug, Clone)]
+pub struct Soil {
+    pub to_level: f64,
+    pub density: f64,
+    pub friction_angle: f64,
+    pub cohesion: f64,
+    /// Of the spread of loads \[deg\].
+    pub spread: f64,
+    /// A horizontal pressure where it is backing.
+    pub backing: Option<f64>,
+}
+
+#[derive(Debug, Clone)]
+pub struct Axle {
+    pub at: f64,
+    pub force: f64,
+    pub length: f64,
+    pub wheel: f64,
+}
+
+/// Joints that have lost mortar: span, ring, joint, from the intrados, depth.
+pub type Lost = (usize, usize, usize, bool, f64);
+
+#[derive(Debug, Clone)]
+pub struct Bridge {
+    pub width: f64,
+    pub density: f64,
+    pub friction: f64,
+    pub ring_friction: f64,
+    /// Crushing strength and cohesion of all joints.
+    pub crushing: Option<f64>,
+    pub spans: Vec<Span>,
+    /// Height, width, width at the foot, courses.
+    pub piers: Vec<(f64, f64, f64, usize)>,
+    pub cover: f64,
+    /// Rise of the road over its length.
+    pub slope: f64,
+    /// From the lowest; the last reaches up to the road.
+    pub soils: Vec<Soil>,
+    /// Shares of passive pressure by friction and cohesion; `None`: no resistance.
+    pub passive: Option<[f64; 2]>,
+    pub lower: &'static str,
+    pub springings_only: bool,
+    pub spreads: bool,
+    pub effective: bool,
+    pub axles: Vec<Axle>,
+    pub at: f64,
+    pub lost: Vec<Lost>,
+}
+
+/// A linear congruential generator (Knuth's constants).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.next()
+    }
+
+    fn whole(&mut self, from: usize, to: usize) -> usize {
+        from + (self.next() * (to - from + 1) as f64) as usize
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.next() < share
+    }
+}
+
+impl Bridge {
+    pub fn random(seed: u64) -> Bridge {
+        let mut r = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d);
+        (0..4).for_each(|_| _ = r.next());
+        let count = [1, 1, 2, 3][r.whole(0, 3)];
+        let spans: Vec<Span> = (0..count)
+            .map(|_| {
+                let span = r.between(2.0, 9.0);
+                let crown = span * r.between(0.04, 0.09);
+                let springing = if r.chance(0.3) { crown * r.between(1.0, 1.4) } else { crown };
+                let (rise, voussoirs) = (span * r.between(0.15, 0.5), r.whole(6, 22));
+                Span { span, rise, thickness: [crown, springing], voussoirs, rings: r.whole(1, 2) }
+            })
+            .collect();
+        let piers = (1..count)
+            .map(|_| {
+                let width = r.between(0.8, 1.8);
+                (r.between(0.5, 5.0), width, width * r.between(1.0, 1.3), r.whole(1, 3))
+            })
+            .collect();
+        let top = spans.iter().map(|span| span.rise + span.thickness[0]).fold(0.0, f64::max);
+        let soil = |r: &mut Random, to_level: f64| Soil {
+            to_level,
+            density: r.between(1500.0, 2200.0),
+            friction_angle: r.between(0.0, 45.0),
+            cohesion: if r.chance(0.5) { r.between(0.0, 2e4) } else { 0.0 },
+            spread: r.between(0.0, 50.0),
+            backing: None,
+        };
+        let mut soils = Vec::new();
+        if r.chance(0.35) {
+            let level = top * r.between(0.1, 0.6);
+            soils.push(Soil {
+                backing: Some(r.between(0.0, 2e5)),
+                friction_angle: 0.0,
+                cohesion: 0.0,
+                ..soil(&mut r, level)
+            });
+        }
+        if r.chance(0.35) {
+            let level = top * r.between(0.65, 0.95);
+            soils.push(soil(&mut r, level));
+        }
+        soils.push(soil(&mut r, f64::INFINITY));
+        // Backing spreads as the fill does: it has no angle of its own.
+        let last = soils[soils.len() - 1].spread;
+        soils.iter_mut().filter(|soil| soil.backing.is_some()).for_each(|soil| soil.spread = last);
+        let total: f64 = spans.iter().map(|span| span.span).sum();
+        let lost = if r.chance(0.3) {
+            (0..r.whole(1, 3))
+                .map(|_| {
+                    let span = r.whole(0, count - 1);
+                    let s: &Span = &spans[span];
+                    let depth = s.thickness[0] / s.rings as f64 * r.between(0.05, 0.3);
+                    (span, r.whole(0, s.rings - 1), r.whole(0, s.voussoirs), r.chance(0.5), depth)
+                })
+                .collect()
+        } else {
+            Vec::new()
+        };
+        Bridge {
+            width: r.between(2.0, 6.0),
+            density: r.between(1800.0, 2600.0),
+            friction: r.between(0.5, 0.9),
+            ring_friction: r.between(0.2, 0.8),
+            crushing: r.chance(0.5).then(|| 10f64.powf(r.between(5.8, 7.2))),
+            piers,
+            cover: r.between(0.05, 0.8),
+            slope: if r.chance(0.3) { r.between(0.0, 0.03) } else { 0.0 },
+            soils,
+            passive: r.chance(0.7).then(|| [r.between(0.0, 1.0), r.between(0.0, 0.5)]),
+            lower: ["zero", "zero", "active", "at_rest"][r.whole(0, 3)],
+            springings_only: r.chance(0.3),
+            spreads: r.chance(0.7),
+            effective: r.chance(0.3),
+            axles: (0..r.whole(1, 3))
+                .map(|i| Axle {
+                    at: 1.1 * i as f64,
+                    force: r.between(500.0, 2000.0),
+                    length: if r.chance(0.8) { r.between(0.1, 0.5) } else { 0.0 },
+                    wheel: r.between(0.3, 1.5),
+                })
+                .collect(),
+            at: total * r.between(0.05, 0.9),
+            spans,
+            lost,
+        }
+    }
+
+    /// The study of the same numbers.
+    pub fn study(&self) -> String {
+        let mut text = format!(
+            "name = \"random\"\n[scene]\nscene = \"bridge\"\nwidth = {:?}\nmaterial = \"stone\"\njoint = \"dry\"\nring_joint = \"ring\"\nspans = [\n",
+            self.width
+        );
+        for span in &self.spans {
+            let [crown, springing] = span.thickness;
+            let thickness = if crown == springing {
+                format!("{crown:?}")
+            } else {
+                format!("{{ crown = {crown:?}, springing = {springing:?} }}")
+            };
+            let _ = writeln!(
+                text,
+                "  {{ profile = {{ shape = \"segmental\", span = {:?}, rise = {:?} }}, thickness = {thickness}, voussoirs = {}, rings = {} }},",
+                span.span, span.rise, span.voussoirs, span.rings
+            );
+        }
+        text += "]\npiers = [\n";
+        for (height, width, base, courses) in &self.piers {
+            let _ = writeln!(
+                text,
+                "  {{ height = {height:?}, width = {width:?}, base_width = {base:?}, courses = {courses} }},"
+            );
+        }
+        text += "]\ndamage = [\n";
+        for (span, ring, joint, intrados, depth) in &self.lost {
+            let side = if *intrados { "intrados" } else { "extrados" };
+            let _ = writeln!(
+                text,
+                "  {{ kind = \"lost_mortar\", span = {span}, ring = {ring}, joints = [{joint}], side = \"{side}\", depth = {depth:?} }},"
+            );
+        }
+        text += "]\n";
+        text += &self.fill_text();
+        let law = |mu: f64| match self.crushing {
+            Some(strength) => {
+                format!("law = \"mohr_coulomb\"\nfriction = {mu:?}\ncompressive_strength = {strength:?}\n")
+            }
+            None => format!("law = \"coulomb_associated\"\nfriction = {mu:?}\n"),
+        };
+        let _ = write!(
+            text,
+            "[materials.stone]\nlaw = \"rigid\"\ndensity = {:?}\n[joints.dry]\n{}[joints.ring]\n{}[vehicles.cart]\naxles = [\n",
+            self.density,
+            law(self.friction),
+            law(self.ring_friction)
+        );
+        for Axle { at, force, length, wheel } in &self.axles {
+            let _ =
+                writeln!(text, "  {{ at = {at:?}, force = {force:?}, length = {length:?}, wheel_width = {wheel:?} }},");
+        }
+        let across = if self.effective { "effective" } else { "full_width" };
+        let _ = write!(
+            text,
+            "]\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{{ kind = \"vehicle\", vehicle = \"cart\", at = {:?}, across = \"{across}\" }}]\n",
+            self.at
+        );
+        text
+    }
+
+    fn fill_text(&self) -> String {
+        let last = &self.soils[self.soils.len() - 1];
+        let extent = if self.springings_only { "springings" } else { "extrados" };
+        let road: Vec<String> = self.road().iter().map(|[x, y]| format!("[{x:?}, {y:?}]")).collect();
+        let mut text = format!(
+            "[scene.fill]\nroad = [{}]\ndensity = {:?}\nfriction_angle = {:?}\ncohesion = {:?}\nextent = \"{extent}\"\n",
+            road.join(", "),
+            last.density,
+            last.friction_angle,
+            last.cohesion
+        );
+        if self.spreads {
+            let _ = writeln!(text, "dispersion = {{ law = \"uniform\", angle = {:?} }}", last.spread);
+        }
+        if let Some([m_p, m_c]) = self.passive {
+            let _ = writeln!(
+                text,
+                "resistance = {{ law = \"fill_pressure\", passive_factor = {m_p:?}, cohesion_factor = {m_c:?}, lower = \"{}\" }}",
+                self.lower
+            );
+        }
+        let mut layers = Vec::new();
+        for soil in &self.soils[..self.soils.len() - 1] {
+            match soil.backing {
+                Some(strength) => {
+                    let _ = writeln!(
+                        text,
+                        "haunching = {{ level = {:?}, density = {:?}, strength = {strength:?} }}",
+                        soil.to_level, soil.density
+                    );
+                }
+                None => layers.push(format!(
+                    "{{ to_level = {:?}, density = {:?}, friction_angle = {:?}, cohesion = {:?}, angle = {:?} }}",
+                    soil.to_level, soil.density, soil.friction_angle, soil.cohesion, soil.spread
+                )),
+            }
+        }
+        let _ = writeln!(text, "layers = [{}]", layers.join(", "));
+        text
+    }
+
+    /// Two points of a straight road.
+    pub fn road(&self) -> [[f64; 2]; 2] {
+        let top = self.spans.iter().map(|span| span.rise + span.thickness[0]).fold(0.0, f64::max) + self.cover;
+        // High enough everywhere, also where thick springings of a deep ring rise.
+        [[-5.0, top + 0.3], [40.0, top + 0.3 + 45.0 * self.slope]]
+    }
+
+    pub fn road_at(&self, x: f64) -> f64 {
+        let [[x0, y0], [x1, y1]] = self.road();
+        y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    }
+}

@@ -1,0 +1,48 @@
+//! Random bridges against a program of their own: geometry, fill, spread, strengths and equilibrium written down again from
+//! the equations of docs/bridges.md, as a conic program for Clarabel. It shares no code with the scenes, loads and
+//! solvers of Voussoir; only the study's text is made from the same numbers.
+
+mod bridge;
+mod fill;
+mod program;
+
+use self::bridge::Bridge;
+use voussoir::core::limit::Status;
+use voussoir_tests::answered;
+
+/// Ring joints, piers, layers, backing, resistance of every kind, spread, crushing, tapered rings, lost
+/// mortar: 20 bridges (`VOUSSOIR_BRIDGES` for more).
+#[test]
+fn random_bridges_carry_what_an_independent_program_says() {
+    let count = std::env::var("VOUSSOIR_BRIDGES").ok().and_then(|count| count.parse().ok()).unwrap_or(20);
+    let (mut compared, mut refused, mut wrong) = (0, 0, Vec::new());
+    for seed in 0..count {
+        let bridge = Bridge::random(seed);
+        let text = bridge.study();
+        if voussoir::study::load(&text, "bridge.toml", &[]).is_err() {
+            refused += 1;
+            continue;
+        }
+        let (result, expected) = (answered(&text), bridge.load_factor());
+        let same = match (expected, result.status, result.load_factor) {
+            (Some(expected), Status::Collapse, Some(factor)) => {
+                compared += 1;
+                result.certificate.passed && (factor - expected).abs() <= 2e-6 * expected.abs()
+            }
+            // Dead load alone may fail where a load that is added stands.
+            (Some(expected), Status::NoEquilibrium, _) => {
+                let most = result.feasible_interval.and_then(|interval| interval[1]);
+                most.is_some_and(|most| (most - expected).abs() <= 2e-6 * expected.abs())
+            }
+            (None, Status::NoEquilibrium | Status::Unbounded, _) => true,
+            _ => false,
+        };
+        if !same {
+            let said = format!("{:?} {:?} {:?}", result.status, result.load_factor, result.notes);
+            wrong.push(format!("{seed}: {said}, but {expected:?}\n{text}"));
+        }
+    }
+    println!("{compared} of {count} compared, {refused} no bridges, {} wrong", wrong.len());
+    assert!(wrong.is_empty(), "{} of {count} wrong\n{}", wrong.len(), wrong.join("\n"));
+    assert!(compared * 3 >= count * 2, "{compared} of {count}, {refused} refused");
+}

@@ -1,0 +1,325 @@
+//! Blocks, joints, fill and vehicle of a bridge as a conic program: the greatest λ with N, T, M at every joint and H at
+//! every chord.
+
+use super::bridge::{Axle, Bridge};
+use super::fill::{Point, area_moment};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::SupportedConeT::{NonnegativeConeT, SecondOrderConeT, ZeroConeT};
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
+
+/// A block that can move.
+struct Block {
+    polygon: Vec<Point>,
+}
+
+/// A straight joint between two blocks, `None` is the ground: the second lies to the right of the way between its ends.
+struct Contact {
+    on: [Option<usize>; 2],
+    ends: [Point; 2],
+    friction: f64,
+}
+
+/// All of it.
+#[derive(Default)]
+struct Parts {
+    blocks: Vec<Block>,
+    contacts: Vec<Contact>,
+    /// Upper faces of outermost rings and tops of piers, from left to right; whether fill presses sideways there.
+    faces: Vec<(usize, [Point; 2], bool)>,
+    springings: [f64; 2],
+}
+
+impl Parts {
+    fn block(&mut self, polygon: Vec<Point>) -> usize {
+        self.blocks.push(Block { polygon });
+        self.blocks.len() - 1
+    }
+}
+
+impl Bridge {
+    /// Vertex on the line of joint k of a span at a share of the thickness, with the left springing at x.
+    fn vertex(&self, span: usize, x: f64, k: usize, share: f64) -> Point {
+        let s = &self.spans[span];
+        let radius = (s.span * s.span / 4.0 + s.rise * s.rise) / (2.0 * s.rise);
+        let half = (s.span / 2.0).atan2(radius - s.rise);
+        let from_middle = 1.0 - 2.0 * k as f64 / s.voussoirs as f64;
+        let thickness = s.thickness[0] + (s.thickness[1] - s.thickness[0]) * from_middle.abs();
+        let (angle, r) = (half * from_middle, radius + share * thickness);
+        [x + s.span / 2.0 - r * angle.sin(), s.rise - radius + r * angle.cos()]
+    }
+
+    fn parts(&self) -> Parts {
+        let mut parts = Parts::default();
+        let (mut x, mut before) = (0.0, None);
+        for (index, span) in self.spans.iter().enumerate() {
+            let at = |k: usize, ring: usize| self.vertex(index, x, k, ring as f64 / span.rings as f64);
+            let mut last = Vec::new();
+            let n = span.voussoirs;
+            for r in 0..span.rings {
+                let first = parts.blocks.len();
+                for k in 0..n {
+                    parts.block(vec![at(k, r), at(k + 1, r), at(k + 1, r + 1), at(k, r + 1)]);
+                }
+                for k in 0..n {
+                    let left = if k == 0 { before } else { Some(first + k - 1) };
+                    let ends = self.remaining(index, r, k, [at(k, r), at(k, r + 1)]);
+                    parts.contacts.push(Contact { on: [left, Some(first + k)], ends, friction: self.friction });
+                    if r > 0 {
+                        let ends = [at(k + 1, r), at(k, r)];
+                        let on = [Some(first + k - n), Some(first + k)];
+                        parts.contacts.push(Contact { on, ends, friction: self.ring_friction });
+                    }
+                    if r + 1 == span.rings {
+                        parts.faces.push((first + k, [at(k, r + 1), at(k + 1, r + 1)], true));
+                    }
+                }
+                last.push((first + n - 1, self.remaining(index, r, n, [at(n, r), at(n, r + 1)])));
+            }
+            let end = [at(n, 0), at(n, span.rings)];
+            let next_x = x + span.span + self.piers.get(index).map_or(0.0, |pier| pier.1);
+            before = (index < self.piers.len()).then(|| self.pier(&mut parts, index, end, next_x));
+            for (block, ends) in last {
+                parts.contacts.push(Contact { on: [Some(block), before], ends, friction: self.friction });
+            }
+            parts.springings[1] = end[0][0];
+            x = next_x;
+        }
+        parts
+    }
+
+    /// What lost mortar leaves of a joint.
+    fn remaining(&self, span: usize, ring: usize, joint: usize, [a, b]: [Point; 2]) -> [Point; 2] {
+        let height = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let (mut from, mut to) = (0.0_f64, height);
+        for lost in self.lost.iter().filter(|lost| (lost.0, lost.1, lost.2) == (span, ring, joint)) {
+            if lost.3 { from = from.max(lost.4) } else { to = to.min(height - lost.4) }
+        }
+        [from, to].map(|s| [a[0] + (b[0] - a[0]) * s / height, a[1] + (b[1] - a[1]) * s / height])
+    }
+
+    /// Cap and courses of a pier between the springing face of the span before and that of the span after; the cap.
+    fn pier(&self, parts: &mut Parts, index: usize, [inner, outer]: [Point; 2], next_x: f64) -> usize {
+        let (height, width, foot, courses) = self.piers[index];
+        let (next_inner, next_outer) = (self.vertex(index + 1, next_x, 0, 0.0), self.vertex(index + 1, next_x, 0, 1.0));
+        let cap = parts.block(vec![inner, next_inner, next_outer, outer]);
+        parts.faces.push((cap, [outer, next_outer], false));
+        let middle = (inner[0] + next_inner[0]) / 2.0;
+        let level = |i: usize| {
+            let share = i as f64 / courses as f64;
+            let half = (width + (foot - width) * share) / 2.0;
+            [[middle - half, -height * share], [middle + half, -height * share]]
+        };
+        let mut above = cap;
+        for i in 0..courses {
+            let ([tl, tr], [bl, br]) = (level(i), level(i + 1));
+            let course = parts.block(vec![bl, br, tr, tl]);
+            parts.contacts.push(Contact { on: [Some(course), Some(above)], ends: [tr, tl], friction: self.friction });
+            above = course;
+        }
+        let [left, right] = level(courses);
+        parts.contacts.push(Contact { on: [None, Some(above)], ends: [right, left], friction: self.friction });
+        cap
+    }
+
+    /// Live forces downwards: block, x, force.
+    fn live(&self, parts: &Parts) -> Vec<(usize, f64, f64)> {
+        let at = |face: &[Point; 2], x: f64| {
+            face[0][1] + (face[1][1] - face[0][1]) * (x - face[0][0]) / (face[1][0] - face[0][0])
+        };
+        let mut out = Vec::new();
+        for Axle { at: distance, force, length, wheel } in &self.axles {
+            let x = self.at + distance;
+            let covers = |face: &&(usize, [Point; 2], bool)| face.1[0][0] <= x && x <= face.1[1][0];
+            let Some(under) = parts.faces.iter().find(covers) else { continue };
+            let reach = self.reach([x, at(&under.1, x)]);
+            let carrying = if self.effective { self.width.min(wheel + 2.0 * reach) } else { self.width };
+            let force = force * self.width / carrying;
+            let (from, to) = (x - length / 2.0 - reach, x + length / 2.0 + reach);
+            if to <= from {
+                out.push((under.0, x, force));
+                continue;
+            }
+            for (block, face, _) in &parts.faces {
+                let (low, high) = (face[0][0].max(from), face[1][0].min(to));
+                if high > low {
+                    out.push((*block, (low + high) / 2.0, force * (high - low) / (to - from)));
+                }
+            }
+        }
+        out
+    }
+
+    /// The greatest λ; `None` where there is none, or no greatest one.
+    pub fn load_factor(&self) -> Option<f64> {
+        let parts = self.parts();
+        let (lowest, highest) = match self.springings_only {
+            true => (0.0, parts.springings[1]),
+            false => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        let reactions: Vec<_> = (parts.faces.iter().filter(|face| face.2))
+            .filter_map(|(block, face, _)| {
+                let (low, high) = (face[0][0].max(lowest), face[1][0].min(highest));
+                (low < high).then(|| self.reaction(*face, [low, high]).map(|reaction| (*block, reaction)))?
+            })
+            .collect();
+        let (joints, blocks) = (parts.contacts.len(), parts.blocks.len());
+        let variables = 3 * joints + reactions.len() + 1;
+        let mut rows = Rows::new(variables);
+        // Equilibrium: 3 rows a block, forces on the block = 0.
+        let centres: Vec<[f64; 3]> = parts.blocks.iter().map(|block| area_moment(&block.polygon)).collect();
+        let mut right = vec![[0.0; 3]; blocks];
+        let mut dead = |block: usize, [x, _]: Point, weight: f64| {
+            right[block][1] += weight;
+            right[block][2] += weight * x;
+        };
+        for (block, [area, mx, my]) in centres.iter().enumerate() {
+            dead(block, [mx / area, my / area], 9.81 * self.density * area * self.width);
+        }
+        for (block, face, _) in &parts.faces {
+            let [mass, moment] = self.column(*face, [face[0][0].max(lowest), face[1][0].min(highest)]);
+            if mass > 0.0 {
+                dead(*block, [moment / mass, 0.0], 9.81 * mass);
+            }
+        }
+        let mut columns: Vec<Vec<(usize, [f64; 3])>> = vec![Vec::new(); variables];
+        for (j, contact) in parts.contacts.iter().enumerate() {
+            let [a, b] = contact.ends;
+            let (h, p) = ((b[0] - a[0]).hypot(b[1] - a[1]), [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
+            let t = [(b[0] - a[0]) / h, (b[1] - a[1]) / h];
+            // From the first block to the second.
+            let n = [t[1], -t[0]];
+            let moment = |f: [f64; 2]| p[0] * f[1] - p[1] * f[0];
+            for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                let Some(block) = contact.on[side] else { continue };
+                columns[3 * j].push((block, [sign * n[0], sign * n[1], sign * moment(n)]));
+                columns[3 * j + 1].push((block, [sign * t[0], sign * t[1], sign * moment(t)]));
+                columns[3 * j + 2].push((block, [0.0, 0.0, sign]));
+            }
+        }
+        for (i, (block, reaction)) in reactions.iter().enumerate() {
+            columns[3 * joints + i].push((*block, [reaction.sense, 0.0, -reaction.point[1] * reaction.sense]));
+        }
+        for (block, x, force) in self.live(&parts) {
+            columns[variables - 1].push((block, [0.0, -force, -force * x]));
+        }
+        for (variable, column) in columns.iter().enumerate() {
+            for (block, entries) in column {
+                (0..3).for_each(|d| rows.entry(3 * block + d, variable, entries[d]));
+            }
+        }
+        rows.right = right.iter().flat_map(|r| [r[0], r[1], r[2]]).collect();
+        rows.linear_from = rows.right.len();
+        self.strengths(&parts, &mut rows);
+        for (i, (_, reaction)) in reactions.iter().enumerate() {
+            rows.row(&[(3 * joints + i, 1.0)], reaction.bounds[1]);
+            rows.row(&[(3 * joints + i, -1.0)], -reaction.bounds[0]);
+        }
+        rows.row(&[(variables - 1, -1.0)], 0.0);
+        if let Some(strength) = self.crushing {
+            self.crushing(&parts, strength, &mut rows);
+        }
+        rows.maximise()
+    }
+
+    /// |T| ≤ μ N and |M| ≤ N h/2.
+    fn strengths(&self, parts: &Parts, rows: &mut Rows) {
+        for (j, contact) in parts.contacts.iter().enumerate() {
+            let [a, b] = contact.ends;
+            let h = (b[0] - a[0]).hypot(b[1] - a[1]);
+            for sign in [-1.0, 1.0] {
+                rows.row(&[(3 * j + 1, sign), (3 * j, -contact.friction)], 0.0);
+                rows.row(&[(3 * j + 2, sign), (3 * j, -h / 2.0)], 0.0);
+            }
+        }
+    }
+
+    /// N² ≤ f_c A (N − 2 |M|/h) as cones.
+    fn crushing(&self, parts: &Parts, strength: f64, rows: &mut Rows) {
+        rows.cones_from = rows.right.len();
+        for (j, contact) in parts.contacts.iter().enumerate() {
+            let [a, b] = contact.ends;
+            let h = (b[0] - a[0]).hypot(b[1] - a[1]);
+            let force = strength * h * self.width;
+            // (F + y, F − y, 2 N √…): in units in which F counts as the weights do.
+            let scale = (rows.typical() / force).sqrt().min(1.0);
+            for sign in [-1.0, 1.0] {
+                let y = [(3 * j, -1.0 / scale), (3 * j + 2, -sign * 2.0 / h / scale)];
+                rows.row(&y, force * scale);
+                rows.row(&y.map(|(v, c)| (v, -c)), force * scale);
+                rows.row(&[(3 * j, -2.0)], 0.0);
+                rows.cones += 1;
+            }
+        }
+    }
+}
+
+/// A x + s = right: equations first, then rows, then cones of three.
+struct Rows {
+    variables: usize,
+    entries: Vec<(usize, usize, f64)>,
+    right: Vec<f64>,
+    linear_from: usize,
+    cones_from: usize,
+    cones: usize,
+}
+
+impl Rows {
+    fn new(variables: usize) -> Rows {
+        Rows { variables, entries: Vec::new(), right: Vec::new(), linear_from: 0, cones_from: 0, cones: 0 }
+    }
+
+    fn entry(&mut self, row: usize, variable: usize, value: f64) {
+        self.entries.push((row, variable, value));
+    }
+
+    fn row(&mut self, entries: &[(usize, f64)], right: f64) {
+        let row = self.right.len();
+        entries.iter().for_each(|&(variable, value)| self.entry(row, variable, value));
+        self.right.push(right);
+    }
+
+    /// The greatest dead load of a block.
+    fn typical(&self) -> f64 {
+        self.right[..self.linear_from].iter().fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// Forces in units of the typical load, so that tolerances mean something.
+    fn maximise(&self) -> Option<f64> {
+        let unit = self.typical();
+        let (mut i, mut j, mut v) = (Vec::new(), Vec::new(), Vec::new());
+        let live = self.variables - 1;
+        let most = self
+            .entries
+            .iter()
+            .filter(|e| e.1 == live && e.0 < self.linear_from)
+            .fold(0.0, |m: f64, e| m.max(e.2.abs()));
+        for &(row, variable, value) in &self.entries {
+            i.push(row);
+            j.push(variable);
+            v.push(if variable == live && row < self.linear_from { value / most } else { value });
+        }
+        let b: Vec<f64> = self.right.iter().map(|value| value / unit).collect();
+        let a = CscMatrix::new_from_triplets(b.len(), self.variables, i, j, v);
+        let linear_to = if self.cones > 0 { self.cones_from } else { b.len() };
+        let mut cones = vec![ZeroConeT(self.linear_from), NonnegativeConeT(linear_to - self.linear_from)];
+        cones.extend((0..self.cones).map(|_| SecondOrderConeT(3)));
+        let mut q = vec![0.0; self.variables];
+        q[live] = -1.0;
+        let settings = DefaultSettings::<f64> {
+            verbose: false,
+            max_iter: 300,
+            tol_gap_abs: 1e-10,
+            tol_gap_rel: 1e-10,
+            tol_feas: 1e-10,
+            ..DefaultSettings::default()
+        };
+        let p = CscMatrix::<f64>::zeros((self.variables, self.variables));
+        let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).expect("a program");
+        solver.solve();
+        let solved = matches!(
+            solver.solution.status,
+            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
+        );
+        solved.then(|| solver.solution.x[live] * unit / most)
+    }
+}
