@@ -3,7 +3,7 @@
 use crate::commands;
 use crate::commands::new::Template;
 use crate::commands::options::{Options, Shard};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -68,12 +68,11 @@ enum Command {
         #[arg(long)]
         quiet: bool,
     },
-    /// Write a commented study that runs as it stands
+    /// Write a commented study that runs as it stands, or a law
     New {
         /// What it is about
-        what: Template,
-        /// Its name; the file is NAME.toml \[default: the word itself\]
-        name: Option<String>,
+        #[command(subcommand)]
+        what: New,
     },
     /// Check a study file without computing anything
     Check {
@@ -156,7 +155,7 @@ impl Command {
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
             }
-            Command::New { what, name } => commands::new::new(what, name.as_deref()),
+            Command::New { what } => what.answer(),
             Command::Check { studies, set } => commands::check::check(&studies, &set),
             Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
             Command::Explain { what, export: None } => commands::explain::explain(&what),
@@ -167,6 +166,54 @@ impl Command {
             Command::Completions { shell } => commands::pages::completions(shell, &mut Cli::command()),
             Command::Man => commands::pages::man(Cli::command()),
         }
+    }
+}
+
+#[derive(Subcommand)]
+enum New {
+    /// An arch under a load above quarter span
+    Arch(NewStudy),
+    /// A wall that is pushed or shaken
+    Wall(NewStudy),
+    /// Blocks by their vertices
+    Blocks(NewStudy),
+    /// An arch bridge with fill under a moving axle
+    Bridge(NewStudy),
+    /// One law at one point
+    Point(NewStudy),
+    /// Several laws beside each other
+    Compare(NewStudy),
+    /// Load factors over the rise of an arch, as in a paper
+    Paper(NewStudy),
+    /// A law of joints: its file, its page and its test
+    Law {
+        /// Its tag, which is the name of its file
+        tag: String,
+        /// Folder of the crate that it goes into
+        #[arg(long, default_value = ".")]
+        out: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct NewStudy {
+    /// Its name; the file is NAME.toml \[default: the word itself\]
+    name: Option<String>,
+}
+
+impl New {
+    fn answer(self) -> u8 {
+        let (template, study) = match self {
+            New::Arch(study) => (Template::Arch, study),
+            New::Wall(study) => (Template::Wall, study),
+            New::Blocks(study) => (Template::Blocks, study),
+            New::Bridge(study) => (Template::Bridge, study),
+            New::Point(study) => (Template::Point, study),
+            New::Compare(study) => (Template::Compare, study),
+            New::Paper(study) => (Template::Paper, study),
+            New::Law { tag, out } => return commands::new_law::law(&tag, &out),
+        };
+        commands::new::new(template, study.name.as_deref())
     }
 }
 

@@ -77,8 +77,7 @@ pub fn interruptible<T: Send>(
             drop(alive);
             result
         })?;
-        let ended = |worker: &std::thread::ScopedJoinHandle<'_, T>| worker.is_finished();
-        let watched = watch(py, &events, progress.as_ref(), told, &|| ended(&worker));
+        let watched = watch(py, events, progress.as_ref(), told, &|| worker.is_finished());
         if watched.is_err() {
             told.cancelled.store(true, Ordering::Relaxed);
         }
@@ -91,10 +90,10 @@ pub fn interruptible<T: Send>(
 /// Passes events on until the work has ended.
 fn watch(
     py: Python<'_>,
-    events: &Receiver<Event>,
+    events: Receiver<Event>,
     progress: Option<&Py<PyAny>>,
     told: &Told,
-    ended: &(dyn Fn() -> bool + Sync),
+    ended: &dyn Fn() -> bool,
 ) -> PyResult<()> {
     // A receiver is not shared between threads: it is lent while the lock is released.
     let events = std::sync::Mutex::new(events);

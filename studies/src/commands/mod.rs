@@ -11,6 +11,7 @@ mod folder;
 mod interrupt;
 pub mod merge;
 pub mod new;
+pub mod new_law;
 pub mod options;
 pub mod pages;
 mod progress;
