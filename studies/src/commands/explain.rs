@@ -97,6 +97,13 @@ fn print_card(card: &Card) {
             say(format!("{heading}: {}", all.join(", ")));
         }
     }
+    if let Some(sample) = card.samples.first() {
+        let table = if card.kind == PluginKind::InterfaceLaw { "joints" } else { "materials" };
+        say(format!(
+            "\nan example, [{table}.NAME] of a study:\n\n[{table}.NAME]\nlaw = \"{}\"\n{}\n",
+            card.tag, sample.table
+        ));
+    }
     card.sources.iter().for_each(|source| say(format!("source: {source}")));
     say(format!("file: {}\n\n{}", card.file, card.page));
 }

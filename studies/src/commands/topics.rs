@@ -89,11 +89,10 @@ impl Place<'_> {
 /// Name, unit, meaning and need of a key.
 pub fn describe(key: &Parameter) -> String {
     let unit = match &key.shape {
-        Shape::Number(quantity, _) if !quantity.unit().is_empty() => format!(" [{}]", quantity.unit()),
-        _ => String::new(),
-    };
-    let range = match &key.shape {
-        Shape::Number(_, range) if range.describe() != "a finite number" => format!(", {}", range.describe()),
+        Shape::Number(quantity, range) => {
+            let unit = if quantity.unit().is_empty() { "-" } else { quantity.unit() };
+            format!(" [{unit}], {}", range.describe())
+        }
         Shape::Choice(words) => format!(", one of {}", words.join(", ")),
         _ => String::new(),
     };
@@ -102,7 +101,7 @@ pub fn describe(key: &Parameter) -> String {
         Need::Optional(otherwise) => format!("optional: otherwise {otherwise}"),
         Need::Default(value) => format!("default {value}"),
     };
-    format!("{}{unit}  {}{range} ({need})", key.name, key.doc)
+    format!("{}{unit}  {} ({need})", key.name, key.doc)
 }
 
 /// The keys of a table, or of the tables of a list.
