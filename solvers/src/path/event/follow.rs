@@ -3,7 +3,7 @@
 use super::direction::{Next, next_direction};
 use super::elastic_chain::ElasticChain;
 use super::force_method::{Followed, RECORDED, Sections, by_force_method};
-use super::next_event::{advance, next_event};
+use super::next_event::{MOMENT, SAME, advance, next_event};
 use super::rates::Direction;
 use super::system::Load;
 use super::trace::Trace;
@@ -217,7 +217,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
         f if f < 0.0 => fallen.max(0.0) / -f,
         _ => f64::INFINITY,
     };
-    let (step, hits) = next_event(trace, &direction);
+    let (step, hits) = next_event(trace, &direction, if by_chain { MOMENT } else { SAME });
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
