@@ -9,13 +9,18 @@
 //! the same fold it ends there.
 
 use super::control::Control;
+use super::following::Following;
 use super::inelastic::{plastic_power, update_blocks};
-use super::limit_point_test::{LimitPointTest, limit_point_test};
+use super::limit_point_test::{LimitPointTest, all_rates, limit_point_test};
 use super::measure::motion_size;
-use super::state::Tangent;
+use super::orientation::Orientation;
+use super::state::{State, Tangent};
 use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
 use super::tracer::{Tracer, moved_along};
 use crate::contact::mode::ContactMode;
+
+/// Cosine of the angle to the arriving rate below which another one is the way back.
+const BACK: f64 = -1.0 + 1e-6;
 
 /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
 pub(super) fn yielding_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
@@ -46,25 +51,30 @@ pub(super) fn yielding_blocks_branch(tracer: &mut Tracer, rate: &Tangent, share:
 
 /// Whether the motions of two rates make an acute angle.
 fn forwards(rate: &Tangent, other: &Tangent) -> bool {
-    let pairs = rate.motion.iter().flatten().zip(other.motion.iter().flatten());
-    pairs.map(|(a, b)| a * b).sum::<f64>() > 0.0
+    alignment(rate, other) > 0.0
 }
 
-/// The rate that leads on where `rate` does not, with its modes, if one was found; an error says why
+/// The rate that leads on where that of `following` does not, with its modes, if one was found; an error says why
 /// none does.
 pub(super) fn branch_beyond_fold(
     tracer: &mut Tracer,
-    rate: &Tangent,
+    following: &Following,
     share: f64,
 ) -> Result<Option<(Tangent, Vec<ContactMode>)>, String> {
+    let rate = &following.branch.tangent;
     let own = yielding_branch(tracer, rate, share);
     if !tracer.system.finite() || !tracer.system.piecewise_linear() {
         return Ok(own);
     }
     if let Some((other, modes)) = &own
         && agrees(tracer, other, modes, share)
+        && continues(tracer, following, other, modes)
     {
         return Ok(own);
+    }
+    if let Some(found) = by_enumeration(tracer, following, share) {
+        tracer.system.count("branches", 1);
+        return Ok(Some(found));
     }
     let state = tracer.state.clone();
     match limit_point_test(&mut tracer.system, &state, rate.factor.signum()) {
@@ -89,6 +99,38 @@ pub(super) fn branch_beyond_fold(
             ))
         }
     }
+}
+
+/// Whether a rate with its modes goes on along the branch on which the path has arrived, by their second-order work:
+/// the way back does not.
+fn continues(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    let Some(before) = &following.orientation else { return true };
+    let turned = State { mode: modes.to_vec(), ..tracer.state.clone() };
+    let after = Orientation::along(&mut tracer.system, &turned, rate, following.direction);
+    after.is_none_or(|after| before.is_singular() || after.is_singular() || before.leads_over_kink_to(&after))
+}
+
+/// The one rate among all that start here that goes on along the branch, and is not the way back; `None` where there
+/// are several, or none was found.
+fn by_enumeration(tracer: &mut Tracer, following: &Following, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
+    following.orientation.as_ref().filter(|before| !before.is_singular())?;
+    let state = tracer.state.clone();
+    let rates = all_rates(&mut tracer.system, &state)?;
+    let mut onward = rates.into_iter().filter(|(other, modes)| {
+        alignment(&following.branch.tangent, other) > BACK
+            && continues(tracer, following, other, modes)
+            && agrees(tracer, other, modes, share)
+    });
+    let found = onward.next()?;
+    onward.next().is_none().then_some(found)
+}
+
+/// Cosine of the angle between the motions of two rates.
+fn alignment(rate: &Tangent, other: &Tangent) -> f64 {
+    let dot = |a: &Tangent, b: &Tangent| -> f64 {
+        a.motion.iter().flatten().zip(b.motion.iter().flatten()).map(|(a, b)| a * b).sum()
+    };
+    dot(rate, other) / (dot(rate, rate) * dot(other, other)).sqrt().max(1e-300)
 }
 
 /// Whether a rate asks for the modes that it was computed with.

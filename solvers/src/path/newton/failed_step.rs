@@ -78,7 +78,7 @@ fn blocks_yield(tracer: &mut Tracer, following: &Following, failure: &StepFailur
 /// At the very event: another branch, on which the points at their limit yield.
 fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: &StepFailure) -> Option<AfterFailure> {
     let (tangent, direction) = (&following.branch.tangent, following.direction);
-    let found = match branch_beyond_fold(tracer, tangent, following.limits.first / plan.per_tangent) {
+    let found = match branch_beyond_fold(tracer, following, following.limits.first / plan.per_tangent) {
         Ok(found) => found,
         Err(why) => {
             if following.slope > 0.0 {

@@ -10,14 +10,15 @@ use super::orientation::Orientation;
 use super::peak::{Bracketed, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
 use super::plastic_plateau::note_plateau;
 use super::response::branch_changes;
+use super::slip_history::missed_slip;
 use super::softening::{dissipating_sense, softening_peak};
 use super::stable_branch::{Departure, leave_unstable};
 use super::state::{State, Tangent};
 use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
-use super::tangent::tangent_at;
+use super::tangent::{modes_ahead, tangent_at};
 use super::termination::{ends_in_ray, no_step, stops};
-use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
+use super::tracer::{LoadStepEnding, Tracer, commit, end_path, moved};
 use super::trial::{StepPlan, Trial, attempt, plan};
 use crate::path::energy::load_size;
 use voussoir_core::limit::Status;
@@ -48,6 +49,8 @@ struct Step {
     accuracy: f64,
     /// Whether the load passes a peak in it.
     falls: bool,
+    /// Whether the path folds back sharply in it.
+    folded: bool,
     orientation: Option<Orientation>,
     plan: StepPlan,
 }
@@ -73,26 +76,31 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
         Err(outcome) => return outcome,
     };
     for _ in 0..MOST_STEPS {
-        let ended = match next_step(tracer, &mut following) {
-            StepEnd::Accepted(step) => accept(tracer, &mut following, step),
-            StepEnd::Peak(step) => pass_peak(tracer, &mut following, step),
-            StepEnd::CutBack(length) => {
-                following.length = length;
-                None
-            }
-            StepEnd::Corner(branch) => {
-                let here = tracer.state.clone();
-                following.switch_to(&mut tracer.system, &here, branch);
-                None
-            }
-            StepEnd::Unstable(step) => leave(tracer, &mut following, step),
-            StepEnd::Ended(outcome) => Some(outcome),
-        };
-        if let Some(outcome) = ended {
+        let end = next_step(tracer, &mut following);
+        if let Some(outcome) = go_on(tracer, &mut following, end) {
             return outcome;
         }
     }
-    out_of_steps(tracer, following.limits.linear)
+    out_of_steps(tracer, following.direction, following.limits.linear)
+}
+
+/// Goes on from the end of a step; how the load step ends with it, if so.
+fn go_on(tracer: &mut Tracer, following: &mut Following, end: StepEnd) -> Option<LoadStepEnding> {
+    match end {
+        StepEnd::Accepted(step) => accept(tracer, following, step),
+        StepEnd::Peak(step) => pass_peak(tracer, following, step),
+        StepEnd::CutBack(length) => {
+            following.length = length;
+            None
+        }
+        StepEnd::Corner(branch) => {
+            let here = tracer.state.clone();
+            following.switch_to(&mut tracer.system, &here, branch);
+            None
+        }
+        StepEnd::Unstable(step) => leave(tracer, following, step),
+        StepEnd::Ended(outcome) => Some(outcome),
+    }
 }
 
 /// Tries one step.
@@ -140,6 +148,9 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         return StepEnd::CutBack(following.length * accuracy.clamp(0.25, 0.7));
     }
     following.refinements = 0;
+    if let Some(shorter) = missed_slip(tracer, following, plan, &trial) {
+        return StepEnd::CutBack(shorter);
+    }
     let (direction, rate, next) = (following.direction, &following.branch.tangent, &trial.next);
     let Some(tangent) = tangent_at(&mut tracer.system, &tracer.state, next, &trial.control) else {
         return cut_back(tracer, following, "the state has no rate", rate);
@@ -156,7 +167,9 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         Control::Factor(_) => tangent.scaled(direction),
         _ => dissipating_sense(tracer, next, tangent),
     };
-    let fell = gained * direction < -1e-10 * next.factor.abs().max(unit * 1e-3);
+    let folded = folds_back(tracer, following, &trial, &tangent);
+    let tangent = if folded { tangent.scaled(-1.0) } else { tangent };
+    let fell = gained * direction < -1e-10 * trial.next.factor.abs().max(unit * 1e-3);
     let still = 1e-10 * unit * motion_size(&tracer.system, &tangent);
     // With finite displacements a load that stands still is a limit point: what slides on a plane
     // does so under the same load for ever.
@@ -170,7 +183,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let first = tracer.limit.peak.is_none();
     let grew = following.slope > 0.0 && following.orientation.as_ref().is_none_or(|before| !before.still);
     let peak = falls && !softens && !trial.reaches && (first || (finite && grew));
-    let step = Step { trial, tangent, accuracy, falls, orientation, plan: *plan };
+    let step = Step { trial, tangent, accuracy, falls, folded, orientation, plan: *plan };
     if let Some(other) = off_the_branch(tracer, following, plan, &step) {
         return other;
     }
@@ -181,6 +194,26 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         _ if peak => StepEnd::Peak(step),
         _ => StepEnd::Accepted(step),
     }
+}
+
+/// Whether a step over a sharp fold ended before the fold on the branch beyond it, so that what its strategy measures
+/// grows towards the fold: a rate in that sense soon asks for the modes before it, and by second-order work the path
+/// goes on in the other one.
+fn folds_back(tracer: &mut Tracer, following: &Following, trial: &Trial, tangent: &Tangent) -> bool {
+    let (short, next) = (following.length < PINNED * following.limits.first, &trial.next);
+    if !short || !tracer.system.finite() || next.mode == tracer.state.mode {
+        return false;
+    }
+    let after = Orientation::along(&mut tracer.system, next, tangent, following.direction);
+    let (Some(before), Some(after)) = (&following.orientation, after) else { return false };
+    if [before, &after].iter().any(|side| side.is_singular()) || !before.leads_over_kink_to(&after.reversed()) {
+        return false;
+    }
+    let per_tangent = per_tangent(tracer, tangent, None);
+    let [near, far] = [1.0, 10.0].map(|lengths| moved(next, tangent, lengths * following.length / per_tangent));
+    let reverts = [near, far].iter().any(|ahead| modes_ahead(&mut tracer.system, next, ahead) == tracer.state.mode);
+    tracer.system.count("sharp_folds", u64::from(reverts));
+    reverts
 }
 
 /// Whether the load at the end of a step is above all peaks of its load step: below them what is followed is the
@@ -197,7 +230,11 @@ fn off_the_branch(tracer: &mut Tracer, following: &mut Following, plan: &StepPla
     if before.leads_to(after) || before.is_singular() || after.is_singular() {
         return None;
     }
-    if before.rises == after.rises && following.length < PINNED * following.limits.first {
+    let pinned = following.length < PINNED * following.limits.first;
+    if pinned && step.trial.next.mode != tracer.state.mode && before.leads_over_kink_to(after) {
+        return None;
+    }
+    if before.rises == after.rises && pinned {
         note_bifurcation(tracer, before, after, step.trial.next.factor);
         return None;
     }
@@ -232,13 +269,7 @@ fn leave(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<L
     match leave_unstable(tracer, &state, &orientation.work, false) {
         Departure::Stopped => Some(LoadStepEnding::Ended),
         Departure::Stable if reaches => Some(LoadStepEnding::Reached),
-        Departure::Stable => match Following::begin(tracer, following.load_step, following.target) {
-            Ok(anew) => {
-                *following = anew;
-                None
-            }
-            Err(ending) => Some(ending),
-        },
+        Departure::Stable => begin_anew(tracer, following),
         Departure::Falls if tracer.limit.peak.is_some() => {
             let factor = tracer.state.factor;
             let why = format!(
@@ -257,6 +288,17 @@ fn leave(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<L
     }
 }
 
+/// Follows the load step anew from the present state; how it ends there, if so.
+fn begin_anew(tracer: &mut Tracer, following: &mut Following) -> Option<LoadStepEnding> {
+    match Following::begin(tracer, following.load_step, following.target) {
+        Ok(anew) => {
+            *following = anew;
+            None
+        }
+        Err(ending) => Some(ending),
+    }
+}
+
 /// Shortens a step that converged and is none along the path, or ends the path where it is too short for that.
 fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangent) -> StepEnd {
     tracer.system.count("cutbacks", 1);
@@ -270,23 +312,20 @@ fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangen
 /// Over a peak: along another branch where one rises from it, else on. A settlement that goes no further by itself
 /// snaps, where it is to go to a factor.
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
+    // What an unstable branch carries is no peak of the path under its loads.
+    let stable = following.orientation.as_ref().is_none_or(|before| !before.unstable);
+    if step.folded && !snaps(tracer, following) {
+        if stable {
+            note_peak(tracer, &step.tangent, following.direction);
+        }
+        return accept(tracer, following, step);
+    }
     let Bracketed { state, beyond, kinked } = match locate_peak(tracer, following, following.direction) {
         Some(bracketed) => bracketed,
         None => {
             let why = StepFailure::new("two converged states of one branch do not bracket the peak");
-            return match failed(tracer, following, &step.plan, &why) {
-                StepEnd::CutBack(length) => {
-                    following.length = length;
-                    None
-                }
-                StepEnd::Corner(branch) => {
-                    let here = tracer.state.clone();
-                    following.switch_to(&mut tracer.system, &here, branch);
-                    None
-                }
-                StepEnd::Ended(outcome) => Some(outcome),
-                _ => None,
-            };
+            let end = failed(tracer, following, &step.plan, &why);
+            return go_on(tracer, following, end);
         }
     };
     if kinked && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
@@ -301,8 +340,7 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
     if snaps(tracer, following) && step.orientation.is_some() {
         return snap(tracer, following, state, &beyond);
     }
-    // What an unstable branch carries is no peak of the path under its loads.
-    if following.orientation.as_ref().is_none_or(|before| !before.unstable) {
+    if stable {
         let peak = peak_at(tracer, state, &beyond);
         note_proven_peak(tracer, peak, following.direction);
     }
@@ -329,13 +367,7 @@ fn snap(tracer: &mut Tracer, following: &mut Following, state: State, beyond: &T
     };
     match departure {
         Departure::Stopped => Some(LoadStepEnding::Ended),
-        Departure::Stable => match Following::begin(tracer, following.load_step, following.target) {
-            Ok(anew) => {
-                *following = anew;
-                None
-            }
-            Err(ending) => Some(ending),
-        },
+        Departure::Stable => begin_anew(tracer, following),
         Departure::Falls => {
             note_peak(tracer, beyond, following.direction);
             let factor = tracer.state.factor;
@@ -395,15 +427,17 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
 }
 
 /// The end of a path that takes too many steps.
-fn out_of_steps(tracer: &mut Tracer, linear: bool) -> LoadStepEnding {
+fn out_of_steps(tracer: &mut Tracer, direction: f64, linear: bool) -> LoadStepEnding {
     if linear && tracer.limit.peak.is_some() && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
         return end_path(tracer, Status::LimitPoint, why);
     }
     // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
     let factor = tracer.state.factor;
-    let lowest = tracer.post_peak.trough.as_ref().map_or(factor, |trough| trough.factor.min(factor));
-    let fallen = tracer.limit.peak.as_ref().is_some_and(|peak| lowest <= 0.5 * peak.factor && peak.factor > 0.0);
+    let lower = |a: f64, b: f64| if (a - b) * direction < 0.0 { a } else { b };
+    let lowest = tracer.post_peak.trough.as_ref().map_or(factor, |trough| lower(trough.factor, factor));
+    let halved = |peak: f64| (lowest - 0.5 * peak) * direction <= 0.0 && peak * direction > 0.0;
+    let fallen = tracer.limit.peak.as_ref().is_some_and(|peak| halved(peak.factor));
     end_path(
         tracer,
         if tracer.system.finite() && fallen { Status::Collapse } else { Status::Stalled },

@@ -67,6 +67,8 @@ pub(super) struct Following<'d> {
     pub length: f64,
     /// Times that the step has been refined for its energy.
     pub refinements: u32,
+    /// Whether it has been shortened because a point comes to rest in it.
+    pub rests: bool,
     /// Sense of the factor and second-order work at the last state (finite displacements).
     pub orientation: Option<Orientation>,
     pub tried: Tried,
@@ -129,6 +131,7 @@ impl<'d> Following<'d> {
             previous: None,
             length,
             refinements: 0,
+            rests: false,
             tried: Tried::default(),
         })
     }

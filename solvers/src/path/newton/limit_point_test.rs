@@ -12,7 +12,8 @@ use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::rate::branching::{RisingRate, rising_rate};
-use crate::rate::problem::RateProblem;
+use crate::rate::enumerate::enumerate_modes;
+use crate::rate::problem::{Rate, RateProblem};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
@@ -27,6 +28,8 @@ const RESIDUAL: f64 = 1e-9;
 const REGULARISATION: f64 = 1e-11;
 /// Linear programs of a search.
 const MOST: u64 = 20_000;
+/// Combinations of modes that are gone through.
+const MOST_COMBINATIONS: usize = 3000;
 
 /// The active set of a state.
 struct ActiveSet {
@@ -67,25 +70,58 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
             LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
         }
         RisingRate::Found(gaps, modes) => {
-            let mut x = responses[2 * gaps.len()].clone();
-            for (by, gap) in responses.iter().zip(gaps.iter().flatten()) {
-                x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
-            }
-            x.push(direction);
-            let mut all = active.modes.clone();
-            for (c, mode) in active.contacts.iter().zip(modes) {
-                // A corner has one mode, whichever two of its facets flow.
-                let law = system.law(*c);
-                all[*c] = match mode {
-                    ContactMode::Corner(i, j) => {
-                        law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode)
-                    }
-                    other => other,
-                };
-            }
-            LimitPointTest::Tangent(tangent_from(system, &x, state, &hessian), all)
+            let x = unknowns_of(&responses, &gaps, 1.0, direction);
+            let modes = modes_of(system, &active, modes);
+            LimitPointTest::Tangent(tangent_from(system, &x, state, &hessian), modes)
         }
     }
+}
+
+/// All rates that start at a converged state, with their modes: the factor rises, stands still or falls on them. `None`
+/// where there are too many combinations of modes, or their stiffness was not found.
+pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(Tangent, Vec<ContactMode>)>> {
+    let active = active_set(system, state);
+    system.count("factorisations", 1);
+    let gradient = system.gradient(state);
+    let hessian = system.hessian(state, &gradient);
+    let responses = responses_of(system, &active, hessian.rows(&system.unknowns), 1.0)?;
+    let problem = rate_problem(system, &active, &responses);
+    if problem.points.is_empty() || problem.combinations() > MOST_COMBINATIONS {
+        return None;
+    }
+    let mut trials = 0;
+    let rates = enumerate_modes(&problem, &mut trials);
+    drop(problem);
+    system.count("rate_combinations", trials);
+    let tangent = |rate: Rate| {
+        let x = unknowns_of(&responses, &rate.gaps, rate.factor, 1.0);
+        (tangent_from(system, &x, state, &hessian), modes_of(system, &active, rate.modes))
+    };
+    Some(rates.into_iter().map(tangent).collect())
+}
+
+/// The unknowns of a rate by its gap rates over the active set and λ̇ in the sense `direction`.
+fn unknowns_of(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64, direction: f64) -> Vec<f64> {
+    let mut x: Vec<f64> = responses[2 * gaps.len()].iter().map(|x| factor * x).collect();
+    for (by, gap) in responses.iter().zip(gaps.iter().flatten()) {
+        x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
+    }
+    x.push(factor * direction);
+    x
+}
+
+/// Modes of all points by those of the active set.
+fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) -> Vec<ContactMode> {
+    let mut all = active.modes.clone();
+    for (c, mode) in active.contacts.iter().zip(modes) {
+        // A corner has one mode, whichever two of its facets flow.
+        let law = system.law(*c);
+        all[*c] = match mode {
+            ContactMode::Corner(i, j) => law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode),
+            other => other,
+        };
+    }
+    all
 }
 
 fn active_set(system: &StepSystem, state: &State) -> ActiveSet {

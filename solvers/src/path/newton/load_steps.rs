@@ -153,12 +153,12 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         counters.entry(name.into()).or_default();
     }
     let mut notes = tracer.record.notes;
-    let r = &tracer.record.state;
-    let (balance, size) = (r.work - r.stored - r.dissipated, r.work.abs() + r.stored.abs() + r.dissipated.abs());
-    if size > 1e-12 * tracer.system.units().force * tracer.system.units().displacement {
+    let (balance, stored) = (&tracer.record.balance, tracer.record.state.stored);
+    let size = balance.scale(stored);
+    if size > 1e-12 * tracer.system.units().energy() {
         notes.push(format!(
-            "energy balance at the last state: work − stored − dissipated = {:.3e} of their sum (trapezoidal rule over the steps)",
-            balance / size
+            "energy of the last stage: work − stored − dissipated = {:.3e} of Σ|work| + |stored| + dissipated (trapezoidal rule over the steps)",
+            balance.left() / size
         ));
     }
     if tracer.ending.status != Status::NoEquilibrium

@@ -38,6 +38,7 @@ mod recorded;
 mod relaxation;
 mod response;
 mod second_order;
+mod slip_history;
 mod softening;
 mod stable_branch;
 mod state;

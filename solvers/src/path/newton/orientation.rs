@@ -61,6 +61,17 @@ impl Orientation {
         if self.work.symmetric && next.work.symmetric { from == to } else { from % 2 == to % 2 }
     }
 
+    /// The same over a kink, where contact modes change: det K × sign λ̇ stays.
+    pub fn leads_over_kink_to(&self, next: &Orientation) -> bool {
+        let falls = |side: &Orientation| side.work.turned + usize::from(!side.rises);
+        falls(self) % 2 == falls(next) % 2
+    }
+
+    /// Of the same state with its tangent in the other sense.
+    pub fn reversed(&self) -> Orientation {
+        Orientation { rises: !self.rises, unstable: false, ..self.clone() }
+    }
+
     /// Whether an eigenvalue is rounding of the equations' own size, and its sign too.
     pub fn is_singular(&self) -> bool {
         self.still || self.work.nearest <= SINGULAR

@@ -41,12 +41,15 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
         Orientation::along(&mut tracer.system, &high, &beyond, direction)
             .map(|high| Orientation { rises: false, ..high }),
     ];
+    let kinked = low.mode != high.mode;
     let one_branch = match &oriented {
         // Where the eigenvalue passes through nothing its sign is rounding.
-        [Some(low), Some(high)] => low.leads_to(high) || [low, high].iter().any(|side| side.is_singular()),
+        [Some(low), Some(high)] => {
+            let leads = if kinked { low.leads_over_kink_to(high) } else { low.leads_to(high) };
+            leads || [low, high].iter().any(|side| side.is_singular())
+        }
         _ => following.orientation.is_none(),
     };
-    let kinked = low.mode != high.mode;
     let continuous = apart <= (CONTINUOUS + 2.0 * share) * step;
     (one_branch && continuous).then_some(Bracketed { state: low, beyond, kinked })
 }
