@@ -81,7 +81,10 @@ fn print_card(card: &Card) {
     }
     for parameter in card.parameters {
         let unit = match &parameter.shape {
-            Shape::Number(quantity, _) if !quantity.unit().is_empty() => format!(" [{}]", quantity.unit()),
+            Shape::Number(quantity, range) => {
+                let unit = if quantity.unit().is_empty() { "-" } else { quantity.unit() };
+                format!(" [{unit}], {}", range.describe())
+            }
             _ => String::new(),
         };
         let need = match parameter.need {
@@ -99,6 +102,13 @@ fn print_card(card: &Card) {
         if !all.is_empty() {
             say(format!("{heading}: {}", all.join(", ")));
         }
+    }
+    if let Some(sample) = card.samples.first() {
+        let table = if card.kind == PluginKind::InterfaceLaw { "joints" } else { "materials" };
+        say(format!(
+            "\nan example, [{table}.NAME] of a study:\n\n[{table}.NAME]\nlaw = \"{}\"\n{}\n",
+            card.tag, sample.table
+        ));
     }
     card.sources.iter().for_each(|source| say(format!("source: {source}")));
     say(format!("file: {}\n\n{}", card.file, card.page));
