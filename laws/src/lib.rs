@@ -3,16 +3,21 @@
 
 mod meridian;
 mod parameters;
+mod principal;
 
 pub mod backing;
 pub mod cohesive;
 pub mod coulomb;
 pub mod coulomb_associated;
+pub mod coulomb_directional;
+pub mod coulomb_wearing;
 pub mod drucker_prager_cap;
 pub mod drucker_prager_softening;
 pub mod elastic;
 pub mod fill_pressure;
 pub mod mohr_coulomb;
+pub mod mohr_coulomb_solid;
 pub mod orthotropic_elastic;
+pub mod rankine;
 pub mod rigid;
 pub mod unilateral;

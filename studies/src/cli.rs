@@ -80,6 +80,11 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    /// Write the files of something new
+    New {
+        #[command(subcommand)]
+        what: New,
+    },
     /// List plug-ins
     List {
         /// laws, materials, scenes, solvers, kinds, writers …; all where it is left out
@@ -94,6 +99,18 @@ enum Command {
         /// Cases worked on side by side
         #[arg(long, default_value_t = 1)]
         jobs: usize,
+    },
+}
+
+#[derive(Subcommand)]
+enum New {
+    /// A law of joints: its file, its page and its test
+    Law {
+        /// Its tag, which is the name of its file
+        tag: String,
+        /// Folder of the crate that it goes into
+        #[arg(long, default_value = ".")]
+        out: PathBuf,
     },
 }
 
@@ -118,6 +135,7 @@ pub fn main() -> ExitCode {
         Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
         Command::Explain { what, export: None } => commands::explain::explain(&what),
         Command::Conform { tags, out } => commands::conform::conform_tags(&tags, out.as_deref()),
+        Command::New { what: New::Law { tag, out } } => commands::new::law(&tag, &out),
         Command::List { kind } => commands::explain::list(kind.as_deref()),
         Command::Schema => commands::explain::schema(),
         Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),

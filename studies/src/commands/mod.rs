@@ -6,6 +6,7 @@ pub mod conform;
 pub mod explain;
 pub mod files;
 mod folder;
+pub mod new;
 mod progress;
 pub mod run;
 pub mod verify;

@@ -258,7 +258,12 @@ impl<'a> Checker<'a> {
         };
         if !tags.contains(&tag) {
             let message = format!("there is no {what} \"{tag}\"");
-            let help = suggest(tag, tags, "choices");
+            let mut help = suggest(tag, tags, "choices");
+            let plugin = PluginKind::ALL.iter().any(|kind| kind.describe() == what);
+            if plugin && voussoir_core::plugin::nearest(tag, tags.iter().copied()).is_none() {
+                help +=
+                    "; one of another crate is there only in a program that names that crate (docs/adding_a_law.md)";
+            }
             self.wrong_with_help(&value.origin, &join(key, tag_key), message, help);
             return None;
         }

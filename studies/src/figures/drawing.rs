@@ -65,7 +65,7 @@ pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
         legend.push((Symbol::Settlement, "support that moves".into()));
     }
     if let Some(mechanism) = &result.mechanism {
-        legend.extend(mark(&mut canvas, assembly, mechanism, false, |_, point| point));
+        legend.extend(mark(&mut canvas, assembly, (result, mechanism), false, |_, point| point));
     }
     loads.label(&mut canvas);
     let mut caption = loads.sentences().to_vec();

@@ -3,6 +3,7 @@
 use super::chart::chart_svg;
 use super::format::format_number;
 use super::series::{Marker, Series, Spot};
+use super::words::title_of_key;
 use crate::results::StudyResults;
 use serde_json::Value as Json;
 
@@ -32,8 +33,8 @@ pub fn envelope_chart(study: &str, results: &StudyResults) -> Option<String> {
     series.retain(|line| !line.points.is_empty());
     let x_label = worsts.first().and_then(|worst| worst["parameter"].as_str()).unwrap_or("place");
     let title = format!("{study}: load factor at collapse over the place of the load");
-    let label = if x_label.ends_with(".at") { "x of the vehicle's origin [m]" } else { x_label };
-    (!series.is_empty()).then(|| chart_svg(&title, label, "load factor at collapse [-]", &series, &[]))
+    let label = if x_label.ends_with(".at") { "x of the vehicle's origin [m]".into() } else { title_of_key(x_label) };
+    (!series.is_empty()).then(|| chart_svg(&title, &label, "load factor at collapse [-]", &series, &[]))
 }
 
 /// Vehicle, way, variant and swept values of an entry.

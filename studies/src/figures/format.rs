@@ -1,7 +1,8 @@
 //! How numbers, units and results are written in words, for figures, tables and reports alike.
 
+use super::hinges::{DrawnHinge, drawn_hinges};
 use crate::results::CaseResult;
-use voussoir_core::certificate::{Hinge, Mechanism, MechanismKind};
+use voussoir_core::certificate::{Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
@@ -123,20 +124,7 @@ pub fn kind_words(kind: MechanismKind) -> &'static str {
 
 /// Joints of hinges: neighbours that count as one hinge stand together, `4 8+9+10 14`.
 pub fn hinge_list(mechanism: &Mechanism) -> Vec<String> {
-    let mut groups: Vec<String> = Vec::new();
-    let mut last: Option<&Hinge> = None;
-    for hinge in &mechanism.hinges {
-        let one = last.is_some_and(|last| {
-            let alike = last.side.is_some() && last.side == hinge.side && last.rotation * hinge.rotation > 0.0;
-            alike && hinge.joint == last.joint + 1
-        });
-        match groups.last_mut().filter(|_| one) {
-            Some(group) => *group += &format!("+{}", hinge.joint),
-            None => groups.push(hinge.joint.to_string()),
-        }
-        last = Some(hinge);
-    }
-    groups
+    drawn_hinges(&mechanism.hinges).iter().map(DrawnHinge::label).collect()
 }
 
 /// Unit of a study file's key, from the cards of all plug-ins by the key's last name; `None` where

@@ -81,8 +81,10 @@ pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
         return None;
     }
     let cell = |i: usize, j: usize, variant: usize| &comparison.rows[i * ny + j].cells[variant];
+    let loads = map.contours == comparison.reference;
+    let value = |cell: &ComparisonCell| if loads { cell.load_factor } else { cell.ratio };
     let ratios: Vec<Vec<Option<f64>>> =
-        (0..nx).map(|i| (0..ny).map(|j| cell(i, j, ratio_of).ratio).collect()).collect();
+        (0..nx).map(|i| (0..ny).map(|j| value(cell(i, j, ratio_of))).collect()).collect();
     let (mut kinds, mut counts): (Vec<String>, Vec<usize>) = (Vec::new(), Vec::new());
     for i in 0..nx {
         for j in 0..ny {
@@ -94,10 +96,13 @@ pub fn map_svg(study: &str, comparison: &Comparison) -> Option<String> {
         }
     }
     let (left, plot_width, plot_height, width) = (90.0, 640.0, 460.0, 780.0);
-    let title = format!(
-        "{study}: load of \"{}\" over that of \"{}\" (contours); mechanisms of \"{}\" (colours)",
-        map.contours, comparison.reference, map.regions
-    );
+    let title = match loads {
+        true => format!("{study}: load factor (contours) and mechanisms (colours) of \"{}\"", map.contours),
+        false => format!(
+            "{study}: load of \"{}\" over that of \"{}\" (contours); mechanisms of \"{}\" (colours)",
+            map.contours, comparison.reference, map.regions
+        ),
+    };
     let titles = wrapped(&title, 16.0, width - 40.0);
     let top = 22.0 + 23.0 * titles.len() as f64;
     let bottom = top + plot_height;

@@ -4,21 +4,23 @@ use super::displaced::displaced;
 use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
 use super::hinge_closure::close_hinges;
+use super::hinges::named_hinges;
 use super::svg_canvas::SvgCanvas;
 use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use crate::results::inelastic_state::CRUSHED;
-use crate::results::{CaseResult, MotionEntry};
-use voussoir_core::certificate::{jumps, largest_jump};
+use crate::results::{CaseResult, DisplacementEntry, MotionEntry};
+use voussoir_core::certificate::{Mechanism, MechanismKind, jumps, largest_jump};
 use voussoir_core::elastic::Mesh;
+use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
 
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
 pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
-    let (mechanism, motion) = (result.mechanism.as_ref()?, result.proof.motion.as_ref()?);
-    let moved_on = moved_on(assembly, result, motion);
-    let (placements, scale) = displaced(assembly, moved_on.as_deref().unwrap_or(motion))?;
-    let placements = close_hinges(assembly, mechanism, placements);
+    let shown = Shown::of(assembly, result)?;
+    let mechanism = &shown.mechanism;
+    let (placements, scale) = displaced(assembly, &shown.motion)?;
+    let placements = if shown.stands { placements } else { close_hinges(assembly, mechanism, placements) };
     let moved: Vec<Vec<Vec2>> = assembly
         .bodies
         .iter()
@@ -29,7 +31,10 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     let (low, high) = extent(assembly, &further);
     let titles = [
         case_title(study, result),
-        format!("mechanism: {}", kind_words(mechanism.kind).trim_end_matches(" mechanism")),
+        match shown.stands {
+            true => format!("displaced: {} hinges open", named_hinges(&mechanism.hinges).len()),
+            false => format!("mechanism: {}", kind_words(mechanism.kind).trim_end_matches(" mechanism")),
+        },
     ];
     let mut canvas = SvgCanvas::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
     let width = outline_width(&canvas, assembly);
@@ -51,19 +56,56 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
         let text = format!("elements that have yielded (mean equivalent plastic strain above {CRUSHED:.0e})");
         legend.push((Symbol::Yielded, text));
     }
-    legend.extend(mark(&mut canvas, assembly, mechanism, true, |joint, point| placements[joint.minus].of(point)));
+    legend.extend(mark(&mut canvas, assembly, (result, mechanism), true, |joint, point| {
+        placements[joint.minus].of(point)
+    }));
     let scale = format_short(scale, 3);
-    let caption = [match moved_on {
-        Some(_) => format!(
+    let caption = [match (shown.stands, shown.moved_on) {
+        (true, _) => format!("The blocks at the end of the path; displacements times {scale}."),
+        (_, true) => format!(
             "The blocks at the end of the path, moved on by the mechanism until the first open joint closes; displacements \
              times {scale}."
         ),
-        None => format!(
+        _ => format!(
             "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {scale}. \
              Only directions and ratios mean something, not the size."
         ),
     }];
     Some(canvas.finish(&legend, &caption))
+}
+
+/// What is drawn: a mechanism as it begins to move, or a scene that stands with the hinges that are open.
+struct Shown {
+    mechanism: Mechanism,
+    motion: Vec<MotionEntry>,
+    /// Whether the motion is that of a path's end and the mechanism together.
+    moved_on: bool,
+    stands: bool,
+}
+
+impl Shown {
+    fn of(assembly: &Assembly, result: &CaseResult) -> Option<Self> {
+        if result.status == Status::Stands {
+            return Shown::standing(result);
+        }
+        let (mechanism, motion) = (result.mechanism.clone()?, result.proof.motion.as_ref()?);
+        let further = moved_on(assembly, result, motion);
+        let moved_on = further.is_some();
+        Some(Shown { mechanism, motion: further.unwrap_or_else(|| motion.clone()), moved_on, stands: false })
+    }
+
+    /// The end of a path that stands with open hinges, such as after a settlement.
+    fn standing(result: &CaseResult) -> Option<Self> {
+        let open = result.stages.last().map(|stage| stage.hinges.as_slice()).filter(|hinges| !hinges.is_empty())?;
+        let named = named_hinges(open);
+        let hinges: Vec<_> = named.iter().flat_map(|hinge| hinge.joints.iter().map(|own| (*own).clone())).collect();
+        let displaced = result.path.displacements.as_ref()?;
+        let entry = |at: &DisplacementEntry| MotionEntry { body: at.body.clone(), velocity: at.displacement };
+        let (kind, hinge_count) = (MechanismKind::Rocking, named.len());
+        let (sliding, crushing) = (Vec::new(), Vec::new());
+        let mechanism = Mechanism { kind, hinge_count, unique: None, hinges, sliding, crushing };
+        Some(Shown { mechanism, motion: displaced.iter().map(entry).collect(), moved_on: false, stands: true })
+    }
 }
 
 /// Jumps below this share of the greatest are deformation.

@@ -12,6 +12,7 @@ pub mod envelope;
 mod fill;
 pub mod format;
 pub mod hinge_closure;
+pub mod hinges;
 pub mod loads;
 pub mod map;
 pub mod mechanism;

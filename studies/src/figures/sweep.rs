@@ -1,9 +1,9 @@
 //! The chart of a study with one swept number: the load against it.
 
 use super::chart::chart;
-use super::format::{format_short, kind_words, unit_load};
+use super::format::{format_short, kind_words, unit_load, unit_of_key};
 use super::series::{ChartStyle, Marker, Series, Spot};
-use super::words::title_of_key;
+use super::words::{title_of_key, words_of_key};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;
@@ -32,17 +32,59 @@ pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
     Some((title_of_key(key), values))
 }
 
+/// More lines than this are not drawn in one chart.
+const LINES: usize = 8;
+
+/// Of a study with two swept numbers: the axis of the one with more values, and for each case the line that it
+/// belongs to, named by the other. `None` where there would be too many lines.
+fn two_axes(study: &StudyOutput) -> Option<(String, Vec<f64>, Vec<String>)> {
+    let [first, second] = study.sweep_keys.as_slice() else { return None };
+    let cases = &study.results.cases;
+    let of =
+        |key: &str| -> Option<Vec<f64>> { cases.iter().map(|case| case.label.parameters.get(key)?.as_f64()).collect() };
+    let different = |values: &[f64]| {
+        let mut values = values.to_vec();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values.len()
+    };
+    let (a, b) = (of(first)?, of(second)?);
+    let (key, values, other, others) =
+        if different(&a) >= different(&b) { (first, a, second, b) } else { (second, b, first, a) };
+    let line = |(case, value): (&CaseResult, &f64)| {
+        let unit = unit_of_key(other).map_or(String::new(), |unit| format!(" {unit}"));
+        let swept = format!("{} {}{unit}", words_of_key(other), format_short(*value, 5));
+        case.label.variant.as_ref().map_or(swept.clone(), |variant| format!("{variant}, {swept}"))
+    };
+    let lines: Vec<String> = cases.iter().zip(&others).map(line).collect();
+    let count = lines.iter().collect::<std::collections::BTreeSet<_>>().len();
+    (count <= LINES && different(&values) > 1).then(|| (title_of_key(key), values, lines))
+}
+
 /// The chart of a study, if it has one: the load where all cases have the same at factor 1, else
 /// the load factor.
 pub fn study_chart(study: &StudyOutput) -> Option<String> {
-    let (label, values) = sweep_axis(study)?;
+    let named: Vec<CaseResult>;
+    let (cases, (label, values)) = match two_axes(study) {
+        // Lines are told apart as variants are.
+        Some((label, values, lines)) => {
+            let name = |(case, line): (&CaseResult, String)| {
+                let mut case = case.clone();
+                case.label.variant = Some(line);
+                case
+            };
+            named = study.results.cases.iter().zip(lines).map(name).collect();
+            (&named, (label, values))
+        }
+        None => (&study.results.cases, sweep_axis(study)?),
+    };
     let units: Vec<Option<f64>> = study.scenes.iter().map(|scene| unit_load(scene.stages)).collect();
     let unit = units
         .first()
         .copied()
         .flatten()
         .filter(|_| units.len() == values.len() && units.windows(2).all(|w| w[0] == w[1]));
-    let cases: Vec<_> = study.results.cases.iter().zip(values).collect();
+    let cases: Vec<_> = cases.iter().zip(values).collect();
     sweep_chart(study.name, &cases, &label, unit)
 }
 

@@ -1,7 +1,9 @@
 //! Marks for joints: hinges, sliding, crushing; and the symbols of a legend.
 
+use super::hinges::{drawn_hinges, labels};
 use super::svg_canvas::{LegendSymbol, SvgCanvas};
 use super::text_layout::{Area, Spot};
+use crate::results::CaseResult;
 use voussoir_core::certificate::{CRUSHES, Mechanism};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint};
@@ -164,7 +166,7 @@ fn on_canvas(canvas: &SvgCanvas, direction: Vec2) -> Spot {
 pub fn mark(
     canvas: &mut SvgCanvas,
     assembly: &Assembly,
-    mechanism: &Mechanism,
+    (result, mechanism): (&CaseResult, &Mechanism),
     senses: bool,
     place: impl Fn(&Joint, Vec2) -> Vec2,
 ) -> Vec<(Symbol, String)> {
@@ -184,16 +186,24 @@ pub fn mark(
         // n is right of t; on the canvas (y down) plus lies where `across` is positive.
         sliding(canvas, spot, t, length, slide.slip.signum());
     }
-    let spots: Vec<(Spot, Spot, String, f64)> = mechanism
-        .hinges
+    let drawn = drawn_hinges(&mechanism.hinges);
+    let spots: Vec<(Spot, Spot, String, f64)> = drawn
         .iter()
-        .filter_map(|hinge| {
-            let joint = joint_of(hinge.joint)?;
-            let point = Vec2::from(hinge.point);
+        .zip(labels(assembly, result, &drawn))
+        .filter_map(|(hinge, label)| {
+            let main = hinge.main();
+            let joint = joint_of(main.joint)?;
+            let point = Vec2::from(main.point);
             let outward = on_canvas(canvas, point - joint.middle());
-            Some((canvas.at(place(joint, point)), outward, hinge.joint.to_string(), hinge.rotation))
+            Some((canvas.at(place(joint, point)), outward, label, main.rotation))
         })
         .collect();
+    // The other joints of a hinge open a little.
+    for hinge in drawn.iter().flat_map(|hinge| hinge.joints.iter().filter(|own| **own != hinge.main())) {
+        if let Some(joint) = joint_of(hinge.joint) {
+            canvas.circle(canvas.at(place(joint, Vec2::from(hinge.point))), 2.5, MOTION, MOTION, 1.0);
+        }
+    }
     let reach = if senses { 14.0 } else { 7.0 };
     for (spot, _, _, rotation) in &spots {
         hinge(canvas, *spot);
@@ -208,7 +218,12 @@ pub fn mark(
         }
     }
     if !spots.is_empty() {
-        let numbered = if spots.len() <= NUMBERED { "with its joint's number" } else { "too many to number" };
+        let numbered = match spots.len() {
+            count if count > NUMBERED => "too many to number",
+            _ if spots.iter().any(|(_, _, label, _)| label.contains(',')) => "with its joints, in order of formation",
+            _ if drawn.iter().any(|hinge| hinge.joints.len() > 1) => "with its joints; small: opens a little",
+            _ => "with its joint's number",
+        };
         let symbol = if senses && spots.len() <= NUMBERED { Symbol::TurningHinge } else { Symbol::Hinge };
         let sense =
             if symbol == Symbol::TurningHinge { "; arrow: how its plus side turns (right on arches)" } else { "" };

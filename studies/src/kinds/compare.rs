@@ -43,10 +43,10 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// Mistakes that every kind that compares looks for: fewer than two variants, names of none.
-pub(super) fn check_variants(kind: &str, outline: &Outline, keys: &[&str]) -> Vec<Diagnostic> {
+/// Mistakes that every kind that compares looks for: fewer variants than it needs, names of none.
+pub(super) fn check_variants(kind: &str, outline: &Outline, keys: &[&str], least: usize) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
-    if outline.variants.len() < 2 {
+    if outline.variants.len() < least {
         let message =
             format!("\"{kind}\" sets variants beside each other, but the study has {}", outline.variants.len());
         diagnostics.push(
@@ -69,7 +69,9 @@ pub(super) fn check_variants(kind: &str, outline: &Outline, keys: &[&str]) -> Ve
 
 /// The variants beside each other; `reference` is the index of the one that others are divided by.
 pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: usize) -> Option<Comparison> {
-    let variants = &study.outline.variants;
+    // A study without variants is one by itself.
+    let alone = [study.name.clone()];
+    let variants = if study.outline.variants.is_empty() { &alone[..] } else { &study.outline.variants };
     let rows = study.cases.len().checked_div(variants.len())?;
     let answered = |id: usize| cases.iter().find(|case| case.label.id == id);
     let row = |row: usize| {
@@ -97,7 +99,7 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
     };
     Some(Comparison {
         reference: variants.get(reference)?.clone(),
-        variants: variants.clone(),
+        variants: variants.to_vec(),
         rows: (0..rows).map(row).collect(),
         map: None,
     })
@@ -114,7 +116,7 @@ impl StudyKind for Compare {
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        check_variants("compare", outline, &["reference"])
+        check_variants("compare", outline, &["reference"], 2)
     }
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {

@@ -4,7 +4,7 @@
 use super::compare::{REFERENCE, beside_each_other, check_variants};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::figures::format::key_with_unit;
+use crate::figures::words::title_of_key;
 use crate::results::{CaseResult, Comparison, MapAxes};
 use crate::study::{Outline, Study, StudySource};
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
@@ -24,8 +24,8 @@ pub const KEYS: &[Parameter] = &[
         "the first that is not the reference",
     ),
     text("regions", "name of the variant whose kinds of mechanism are coloured", "the reference"),
-    text("x_label", "name of the first axis of the sweep in the figure", "its key"),
-    text("y_label", "name of the second axis of the sweep in the figure", "its key"),
+    text("x_label", "name of the first axis of the sweep in the figure", "its key in words"),
+    text("y_label", "name of the second axis of the sweep in the figure", "its key in words"),
 ];
 
 voussoir_core::inventory::submit! { KindEntry { tag: "map", kind: &Map } }
@@ -34,7 +34,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::StudyKind,
         tag: "map",
-        summary: "several laws and solvers (variants) over two swept numbers: regions of mechanisms, contours of ratios",
+        summary: "one or several laws (variants) over two swept numbers: regions of mechanisms, contours of loads or ratios",
         parameters: KEYS,
         file: file!(),
         page: include_str!("map.md"),
@@ -60,7 +60,7 @@ impl StudyKind for Map {
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        let mut diagnostics = check_variants("map", outline, &["reference", "contours", "regions"]);
+        let mut diagnostics = check_variants("map", outline, &["reference", "contours", "regions"], 0);
         if outline.axes.len() != 2 {
             let message = format!("\"map\" needs two axes, but [sweep] has {}", outline.axes.len());
             diagnostics
@@ -85,15 +85,17 @@ impl StudyKind for Map {
 fn map_of(study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
     let outline = &study.outline;
     let reference = outline.variant("reference").unwrap_or(0);
-    let other = usize::from(reference == 0);
+    // Of one law alone loads are drawn, not ratios.
+    let other = if outline.variants.len() < 2 { 0 } else { usize::from(reference == 0) };
     let mut comparison = beside_each_other(study, cases, reference)?;
     let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
     let (x, y) = (x?, y?);
     let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
         Some(text) => text.to_string(),
-        None => key_with_unit(key),
+        None => title_of_key(key),
     };
-    let name = |key: &str, otherwise: usize| outline.variants[outline.variant(key).unwrap_or(otherwise)].clone();
+    let names = comparison.variants.clone();
+    let name = |key: &str, otherwise: usize| names[outline.variant(key).unwrap_or(otherwise)].clone();
     if let (Some(x_values), Some(y_values)) = (values(study, &x), values(study, &y)) {
         comparison.map = Some(MapAxes {
             x_label: label("x_label", &x),

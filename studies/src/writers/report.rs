@@ -10,7 +10,7 @@ use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, kind_words,
-    open_bounds, status_meaning, status_word, unit_load,
+    open_bounds, parameters_text, status_meaning, status_word, unit_load,
 };
 use crate::figures::sweep::study_chart;
 use crate::figures::words::title_of_key;
@@ -129,8 +129,12 @@ fn summary(study: &StudyOutput) -> String {
         if factors.len() > 1 {
             let (low, high) =
                 factors.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &f| (l.min(f), h.max(f)));
-            text +=
-                &format!(" Load factors at collapse run from {} to {}.", format_number(low, 4), format_number(high, 4));
+            text += &format!(
+                " <strong>Least: {}</strong>. Load factors at collapse run from {} to {}.",
+                escape(&least(study).unwrap_or_default()),
+                format_number(low, 4),
+                format_number(high, 4)
+            );
         }
     }
     let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.label.id).collect();
@@ -143,6 +147,18 @@ fn summary(study: &StudyOutput) -> String {
         )
     };
     text + "</p>\n"
+}
+
+/// The least load factor with the case it belongs to: `382.1 kN at rise = 5.69 m`.
+fn least(study: &StudyOutput) -> Option<String> {
+    let cases = study.results.cases.iter().enumerate().filter(|(_, case)| case.status == Status::Collapse);
+    let factors = cases.filter_map(|(place, case)| Some((place, case, case.load_factor?)));
+    let (place, case, factor) = factors.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    let unit = study.scene(place).and_then(|(_, stages)| unit_load(stages));
+    let load = unit.map_or_else(|| format!("λ = {}", format_number(factor, 4)), |unit| format_force(factor * unit));
+    let where_found: Vec<String> =
+        case.label.variant.iter().cloned().chain([parameters_text(case)]).filter(|words| !words.is_empty()).collect();
+    Some(if where_found.is_empty() { load } else { format!("{load} at {}", where_found.join(", ")) })
 }
 
 /// What the certificates of these cases have checked, no more.

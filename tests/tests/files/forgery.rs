@@ -291,3 +291,31 @@ fn compare_results() {
     );
     forged("compare", &text);
 }
+
+/// A bridge whose fill weighs, spreads and resists, with partial factors: alone, and as the worst of all places.
+#[test]
+fn bridge_and_envelope_results() {
+    let bridge = "name = \"bridge\"\n[scene]\nscene = \"bridge\"\nwidth = 3.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
+        spans = [{ profile = { shape = \"segmental\", span = 3.0, rise = 0.75 }, thickness = 0.25, voussoirs = 9 }]\n\
+        [scene.fill]\ncover = 0.3\ndensity = 1800.0\nfriction_angle = 30.0\n\
+        dispersion = { law = \"boussinesq\", angle = 30.0 }\nresistance = { law = \"fill_pressure\" }\n\
+        [materials.stone]\nlaw = \"rigid\"\ndensity = 2200.0\n[joints.dry]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\n\
+        compressive_strength = 3e6\n[factors]\ncompressive_strength = 1.5\nloads = { live = 1.3 }\n\
+        [[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
+        loads = [{ kind = \"vehicle\", vehicle = \"cs454_single\", at = 0.8 }]\n";
+    forged("bridge", bridge);
+    let moved = "kind = \"envelope\"\nenvelope = { parameter = \"stages.1.loads.0.at\", from = 0.3, to = 1.5, scan = 3, \
+                 tolerance = 0.3, directions = \"forward\" }\n";
+    forged("envelope", &format!("{moved}{bridge}"));
+}
+
+/// The best value of a parameter.
+#[test]
+fn optimise_results() {
+    let text = format!(
+        "kind = \"optimise\"\noptimise = {{ parameter = \"joints.dry.friction\", from = 0.3, to = 0.6, goal = \"maximise\", \
+         scan = 3, tolerance = 0.3 }}\n{}",
+        Arch { joint: friction(0.6), ..Arch::default() }.study()
+    );
+    forged("optimise", &text);
+}

@@ -163,6 +163,7 @@ fn the_line_search_saves_cut_backs() {
         // Steps are cut for their energy only.
         assert!(result.counters["cutbacks"] <= 20, "{:?}", result.counters);
         assert!(result.counters["line_searched_steps"] > 0, "{:?}", result.counters);
-        assert!(result.counters["newton_iterations"] <= 1600, "{:?}", result.counters);
+        // Steps are as many as the history of slip needs; each takes few iterations.
+        assert!(result.counters["newton_iterations"] <= 5 * result.counters["steps"], "{:?}", result.counters);
     }
 }

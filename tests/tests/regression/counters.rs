@@ -69,18 +69,19 @@ fn newton_steps_hardly_grow_with_the_ring() {
     }
 }
 
-/// An event costs three solutions (two rows of a point, one refinement), now and then those of another
-/// point, on a factorisation that serves dozens, however many joints there are.
+/// On elastic voussoirs the whole system is asked at the beginning and at the end only; an event of the chain of joints
+/// costs two steps of refinement at most, and one factorisation of all joints serves dozens.
 #[test]
-fn an_event_costs_a_few_solutions() {
+fn an_event_of_elastic_voussoirs_costs_little() {
     for voussoirs in [13, 40] {
         let mesh = "elements = [1, 4]\norder = 2".into();
         let ring = Arch { material: elastic(5e9, 0.3), mesh, solver: "event_path", ..peers_ring(voussoirs) };
         let counters = answered(&ring.study()).counters;
         let directions = counters["rate_problems"];
-        assert_eq!(counters["rate_problems_by_redundants"], 0);
-        assert!(2 * counters["solves"] <= 7 * directions, "{voussoirs}: {counters:?}");
-        assert!(counters["factorisations"] <= 1 + directions / 25, "{voussoirs}: {counters:?}");
+        assert!(counters["rate_problems_by_redundants"] + 5 >= directions, "{voussoirs}: {counters:?}");
+        assert!(counters["solves"] <= 2 * directions, "{voussoirs}: {counters:?}");
+        assert!(5 * counters["rate_trials"] <= 6 * directions + 50, "{voussoirs}: {counters:?}");
+        assert!(counters["factorisations"] <= 4 + directions / 25, "{voussoirs}: {counters:?}");
     }
 }
 

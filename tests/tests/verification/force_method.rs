@@ -1,28 +1,30 @@
-//! `event_path` by the force method against itself on the whole system: the same scene, in which one block
-//! has a flexibility of nothing, so that statics alone is not enough for the solver.
+//! `event_path` by the force method, and on elastic voussoirs by the chain of their joints, against itself on the whole
+//! system: the same scene with something in it that does nothing, but with which the solver knows no short way.
 
-use nalgebra::DMatrix;
-use std::sync::Arc as Shared;
 use voussoir::core::limit::Status;
-use voussoir::core::path::{PathAnswer, PathProblem, PathSolver};
+use voussoir::core::model::geometry::Vec2;
+use voussoir::core::path::{Attachment, Contact, PathAnswer, PathProblem, PathSolver, PointLaw, Sliding};
 use voussoir::solvers::path::event::EventPath;
 use voussoir_tests::seen::Seen;
-use voussoir_tests::{Arch, Wall, answered, assert_close, compliant, first_case, small_displacements};
+use voussoir_tests::{Arch, Wall, answered, assert_close, compliant, elastic, first_case, small_displacements};
 
-/// Gives the first free block a flexibility of nothing.
-fn with_a_block_of_no_flexibility(mut problem: PathProblem) -> PathProblem {
-    let block = problem.bodies.iter().position(|b| !b.held).unwrap();
-    let mut points = Vec::new();
-    for contact in &mut problem.contacts {
-        for side in [&mut contact.minus, &mut contact.plus] {
-            if side.body == block {
-                side.slot = Some(points.len());
-                points.push(contact.position);
-            }
-        }
-    }
-    problem.bodies[block].flexibility = Some(Shared::new(DMatrix::zeros(2 * points.len(), 2 * points.len())));
-    problem.bodies[block].points = points;
+/// Lets the ground touch itself.
+fn with_a_joint_of_the_ground(mut problem: PathProblem) -> PathProblem {
+    let body = problem.bodies.iter().position(|b| b.held).unwrap();
+    let ground = Attachment { body, slot: None };
+    problem.contacts.push(Contact {
+        joint: problem.contacts.last().unwrap().joint,
+        position: Vec2::zeros(),
+        normal: Vec2::new(0.0, 1.0),
+        tangent: Vec2::new(-1.0, 0.0),
+        minus: ground,
+        plus: ground,
+        area: 1.0,
+        gap: 0.0,
+        law: PointLaw::Bonded,
+        compliance: [1e-9; 2],
+        sliding: Sliding::middle(0.0),
+    });
     problem
 }
 
@@ -42,7 +44,7 @@ fn same_path(study: &str) -> (Status, Option<f64>) {
     let case = first_case(study);
     let problem = || PathProblem::new(&case.assembly, &case.stages).unwrap();
     let (few, seen) = followed(&problem());
-    let (whole, other) = followed(&with_a_block_of_no_flexibility(problem()));
+    let (whole, other) = followed(&with_a_joint_of_the_ground(problem()));
     let count = |answer: &PathAnswer, name: &str| answer.counters[name];
     assert_eq!(count(&whole, "rate_problems_by_redundants"), 0);
     let (by_redundants, all) = (count(&few, "rate_problems_by_redundants"), count(&few, "rate_problems"));
@@ -143,4 +145,31 @@ fn walls_of_a_few_bricks() {
         let study = Wall { brick: [0.4, 0.2], joint: on_springs(law), ..Wall::in_bond(3, 2) }.study();
         same_path(&study);
     }
+}
+
+/// Elastic voussoirs: each joint feels its neighbours.
+#[test]
+fn chains_of_elastic_voussoirs() {
+    let mut collapses = 0;
+    for law in LAWS {
+        for (voussoirs, rise, span_fraction) in [(13, 2.99, 0.25), (12, 2.0, 0.5)] {
+            let arch = Arch { joint: law.into(), voussoirs, rise, span_fraction, ends: "jointed", ..Arch::default() };
+            let rigid = answered(&Arch { solver: "auto", ..arch.clone() }.study());
+            let mesh = "elements = [1, 3]\norder = 2".into();
+            let (status, factor) = same_path(&Arch { material: elastic(5e9, 0.3), mesh, ..arch }.study());
+            if law.contains("associated") && status == Status::Collapse {
+                assert_close(factor.unwrap(), rigid.load_factor.unwrap(), 1e-9);
+                collapses += 1;
+            }
+        }
+    }
+    assert!(collapses > 0);
+}
+
+/// Voussoirs far shorter than high, many of which open together.
+#[test]
+fn slender_voussoirs() {
+    let mesh = "elements = [1, 4]\norder = 2".into();
+    let arch = Arch { voussoirs: 60, ends: "jointed", material: elastic(5e9, 0.3), mesh, ..Arch::default() };
+    same_path(&arch.study());
 }

@@ -15,6 +15,7 @@ mod extreme_strengths;
 mod finite;
 mod flow_rule;
 mod force_method;
+mod new_laws;
 mod newton;
 mod optimise;
 mod orthotropic;

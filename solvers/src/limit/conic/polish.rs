@@ -3,6 +3,10 @@
 //! Stationarity −e_θ + Eᵀ q + Σ y_i ∇c_i(x) = 0, equilibrium E x = b, c_i(x) = 0 for active i.
 //! Degenerate optima make the system singular but consistent, so it is regularised by ±δ and
 //! iterated, which converges to the solution nearest to where it starts.
+//!
+//! Rows enter and leave all at once first, by the signs of slacks and multipliers. Where that does not settle, as on rings
+//! of so many joints that the neighbours of a hinge are closed but for 1e-9, single rows are exchanged as in the
+//! dual simplex method: the most violated row enters, and the one leaves whose multiplier vanishes first.
 
 use super::interior_point::Pair;
 use super::system::System;
@@ -11,6 +15,14 @@ use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Regularisation; the second is tried where the first leaves no pivot.
 const DELTAS: [f64; 2] = [1e-8, 1e-6];
+/// Error at which the active rows are settled.
+const SETTLED: f64 = 1e-13;
+/// Error down to which a slow gain counts.
+const SLOW: f64 = 1e-12;
+/// Error from which rows are exchanged one by one.
+const UNSETTLED: f64 = 1e-11;
+/// Rows exchanged one by one, at the most.
+const EXCHANGES: usize = 40;
 
 /// A polished pair.
 pub struct Polished {
@@ -75,7 +87,7 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
         (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
     let mut active: Vec<bool> =
         items.iter().map(|&item| multiplier(approximate, item) > -value(system, item, &approximate.x)).collect();
-    let mut best: Option<Polished> = None;
+    let mut best: Option<(Polished, Vec<Item>)> = None;
     let (mut factorisations, mut iterations) = (0, 0);
     for _ in 0..6 {
         let chosen: Vec<Item> = items.iter().zip(&active).filter(|(_, a)| **a).map(|(item, _)| *item).collect();
@@ -84,30 +96,97 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
         factorisations += work.0;
         iterations += work.1;
         let pair = newton.pair;
-        let scale = pair.rows.iter().chain(&pair.blocks).fold(1.0f64, |m, y| m.max(y.abs()));
+        let scale = greatest_multiplier(&pair);
         let mut error = work.2;
         let mut changed = false;
         for (item, active) in items.iter().zip(&mut active) {
             let (y, c) = (multiplier(&pair, *item), value(system, *item, &pair.x));
-            if *active && y < -1e-13 * scale {
+            if *active && y < -SETTLED * scale {
                 error = error.max(-y / scale);
                 *active = false;
                 changed = true;
-            } else if !*active && c > 1e-13 {
+            } else if !*active && c > SETTLED {
                 error = error.max(c);
                 *active = true;
                 changed = true;
             }
         }
-        if best.as_ref().is_none_or(|b| error < b.error) {
+        if best.as_ref().is_none_or(|(b, _)| error < b.error) {
             let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
-            best = Some(Polished { pair, error, unique, factorisations, iterations });
+            best = Some((Polished { pair, error, unique, factorisations, iterations }, chosen));
         }
-        if !changed || best.as_ref().is_some_and(|b| b.error < 1e-13) {
+        if !changed || best.as_ref().is_some_and(|(b, _)| b.error < SETTLED) {
             break;
         }
     }
-    best.map(|b| Polished { factorisations, iterations, ..b })
+    let (mut best, chosen) = best?;
+    if best.error > UNSETTLED
+        && let Some(exchanged) = exchanged(system, &best.pair, &chosen, delta)
+    {
+        factorisations += exchanged.factorisations;
+        iterations += exchanged.iterations;
+        if exchanged.error < best.error {
+            best = exchanged;
+        }
+    }
+    Some(Polished { factorisations, iterations, ..best })
+}
+
+fn greatest_multiplier(pair: &Pair) -> f64 {
+    pair.rows.iter().chain(&pair.blocks).fold(1.0f64, |m, y| m.max(y.abs()))
+}
+
+/// Exchanges single rows, from those of the active ones that carry, until no row is violated. `None` where that does not
+/// come to an end.
+fn exchanged(system: &System, start: &Pair, active: &[Item], delta: f64) -> Option<Polished> {
+    let scale = greatest_multiplier(start);
+    let mut chosen: Vec<Item> =
+        active.iter().copied().filter(|item| multiplier(start, *item) > 1e-10 * scale).collect();
+    let items: Vec<Item> =
+        (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
+    let (mut pair, mut factorisations, mut iterations) = (start.clone(), 0, 0);
+    for _ in 0..EXCHANGES {
+        let within: Vec<bool> = items.iter().map(|item| chosen.contains(item)).collect();
+        let mut newton = Newton { system, active: &chosen, pair: clipped(&pair, &items, &within), delta };
+        let work = newton.run()?;
+        factorisations += work.0;
+        iterations += work.1;
+        pair = newton.pair;
+        let scale = greatest_multiplier(&pair);
+        let least = chosen.iter().copied().min_by(|a, b| multiplier(&pair, *a).total_cmp(&multiplier(&pair, *b)))?;
+        let negative = (-multiplier(&pair, least) / scale).max(0.0);
+        if negative > SETTLED {
+            chosen.retain(|item| *item != least);
+            continue;
+        }
+        let outside = items.iter().zip(&within).filter(|(_, within)| !**within).map(|(item, _)| *item);
+        let violated = outside.max_by(|a, b| value(system, *a, &pair.x).total_cmp(&value(system, *b, &pair.x)))?;
+        let violation = value(system, violated, &pair.x).max(0.0);
+        if violation <= SETTLED {
+            let error = work.2.max(negative).max(violation);
+            let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
+            return Some(Polished { pair, error, unique, factorisations, iterations });
+        }
+        let leaving = leaving(system, &pair, &chosen, violated, delta)?;
+        factorisations += 1;
+        chosen.retain(|item| *item != leaving);
+        chosen.push(violated);
+    }
+    None
+}
+
+/// The active row whose multiplier vanishes first where that of the entering row grows: what enters is a sum of
+/// equations and active rows, and as it is pressed they are relieved.
+fn leaving(system: &System, pair: &Pair, chosen: &[Item], entering: Item, delta: f64) -> Option<Item> {
+    let rows = gradients(system, chosen, &pair.x);
+    let (n, e) = (system.variables, system.equations.len());
+    let factorised = SparseLdlt::new(n + e + rows.len(), n, &saddle(system, &rows, delta))?;
+    let mut right = vec![0.0; n + e + rows.len()];
+    gradients(system, &[entering], &pair.x)[0].iter().for_each(|&(j, v)| right[j] = v);
+    let shares = factorised.solve(&right)?;
+    let relieved = chosen.iter().zip(&shares[n + e..]).filter(|(_, share)| **share > 1e-9);
+    let steps = relieved.map(|(item, share)| (*item, multiplier(pair, *item).max(0.0) / share));
+    steps.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(item, _)| item)
 }
 
 /// The pair with the multipliers of inactive rows set to zero.
@@ -166,7 +245,8 @@ impl Newton<'_> {
             let gradients = self.gradients();
             let residual = self.residual(&gradients);
             let error = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            if error < 0.5 * best.0 {
+            // Far from rounding a slow gain is one too: near-degenerate systems converge by a share of the regularisation.
+            if error < if best.0 > SLOW { 0.9 } else { 0.5 } * best.0 {
                 without_gain = 0;
             } else {
                 without_gain += 1;
@@ -174,7 +254,7 @@ impl Newton<'_> {
             if error < best.0 {
                 best = (error, self.pair.clone());
             }
-            if error <= 1e-16 || iterations >= 40 || without_gain >= 3 {
+            if error <= 1e-16 || iterations >= 100 || without_gain >= 3 {
                 break;
             }
             if factorised.is_none() || (curved && iterations < 12) {

@@ -15,6 +15,9 @@ use voussoir_core::plugin::{Capability, Card, PluginKind};
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;
 
+/// Strength in units of the loads from which a program that was not solved is tried in the unit of the strength.
+const STRONG: f64 = 1e2;
+
 /// Limit analysis of any scene.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -106,6 +109,20 @@ impl ConicEngine<'_> {
         }
     }
 
+    /// The program of the greatest factor with a force scale \[N\], and the factor that one unit of θ stands for.
+    fn program(&self, fixed: &Wrenches, varying: &Wrenches, cap: f64, force: f64) -> (System, f64) {
+        let unit = force / force_unit(self.problem, varying);
+        let loads = Loads {
+            constant: Some(fixed),
+            varying: (varying, unit),
+            free: None,
+            cap: cap.is_finite().then_some(cap / unit),
+            strengths: true,
+            force,
+        };
+        (System::new(self.problem, &loads), unit)
+    }
+
     /// A finite optimum, capped or a collapse.
     fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> Greatest {
         if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
@@ -158,21 +175,21 @@ impl Engine for ConicEngine<'_> {
 
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
         let force = force_scale(self.problem, fixed, varying);
-        let unit = force / force_unit(self.problem, varying);
-        let system = System::new(
-            self.problem,
-            &Loads {
-                constant: Some(fixed),
-                varying: (varying, unit),
-                free: None,
-                cap: cap.is_finite().then_some(cap / unit),
-                strengths: true,
-                force,
-            },
-        );
+        let (system, unit) = self.program(fixed, varying, cap, force);
         let optimum = self.optimum(&system);
+        if let Optimum::Found { pair, unique } = optimum {
+            return self.finite(&system, &pair, unique, varying, unit);
+        }
+        // Where strengths alone hold the load, as in flat arches of strong stone, it is as great as they are: in the unit of
+        // the loads that stand it would be too great for the interior point.
+        let weakest = system.blocks.iter().map(|block| block.strength.total * force).fold(f64::INFINITY, f64::min);
+        if weakest.is_finite() && weakest > force * STRONG {
+            let (system, unit) = self.program(fixed, varying, cap, weakest);
+            if let Optimum::Found { pair, unique } = self.optimum(&system) {
+                return self.finite(&system, &pair, unique, varying, unit);
+            }
+        }
         let failed = match optimum {
-            Optimum::Found { pair, unique } => return self.finite(&system, &pair, unique, varying, unit),
             // A pair without a polish is believed only where no ray says otherwise.
             Optimum::Unsettled(pair) => {
                 return match self.share(varying, None, false) {
@@ -180,8 +197,8 @@ impl Engine for ConicEngine<'_> {
                     _ => self.finite(&system, &pair, false, varying, unit),
                 };
             }
-            Optimum::Unbounded => String::from("no ray confirms that the factor has no bound"),
             Optimum::Failed(why) => why,
+            Optimum::Found { .. } | Optimum::Unbounded => String::from("no ray confirms that the factor has no bound"),
         };
         // Not bounded, or not solved: a ray settles it.
         match self.share(varying, None, false) {

@@ -1,6 +1,7 @@
 //! The direction of the next piece of the path: the rate problem over the active set on one factorisation for many
 //! events, or an active set on the whole system.
 
+use super::elastic_chain::by_elastic_chain;
 use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
 use super::rates::{Direction, Rates, direction_of, leaving, motion_alone, residual};
@@ -46,10 +47,15 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
     let points = &trace.state.points;
     let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
     // Where there are few combinations and several solutions are possible, all are examined.
-    if (trace.associated || combinations(trace, &active) > EXAMINED)
-        && let Some(direction) = by_newcomers(trace, load, &active)
-    {
-        return Next::Go(direction);
+    if trace.associated || combinations(trace, &active) > EXAMINED {
+        let modes = present_modes(trace);
+        if let Some((modes, rates)) = by_elastic_chain(trace, load, &active, modes) {
+            trace.log.counts.by_force_method += 1;
+            return Next::Go(take(trace, modes, rates, load));
+        }
+        if let Some(direction) = by_newcomers(trace, load, &active) {
+            return Next::Go(direction);
+        }
     }
     if (active.len() > MANY || trace.factors.present.is_none())
         && let Some(direction) = on_whole_system(trace, load, &active)

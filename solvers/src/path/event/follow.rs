@@ -1,7 +1,8 @@
 //! Following the path: from load step to load step and from event to event, and how it ends.
 
 use super::direction::{Next, next_direction};
-use super::force_method::{Followed, Sections, by_force_method};
+use super::elastic_chain::ElasticChain;
+use super::force_method::{Followed, RECORDED, Sections, by_force_method};
 use super::next_event::{advance, next_event};
 use super::rates::Direction;
 use super::system::Load;
@@ -44,6 +45,49 @@ struct Run {
     /// Rate problems that are put to the whole system before the force method is tried again, and how many next time.
     rests: u32,
     patience: u32,
+    unrecorded: Unrecorded,
+}
+
+/// What happened since the last record.
+#[derive(Default)]
+struct Unrecorded {
+    events: u64,
+    /// Work by the trapezoidal rule and displacement at the load, in scaled units.
+    work: f64,
+    moved: f64,
+    /// λ at the last record.
+    factor: f64,
+}
+
+impl Unrecorded {
+    /// A step along a direction from a factor to the present one.
+    fn add(&mut self, trace: &Trace, direction: &Direction, load: &Load, (step, before, sense): (f64, f64, f64)) {
+        if self.events == 0 {
+            *self = Unrecorded { factor: before, ..Unrecorded::default() };
+        }
+        let forces = 2 * trace.system.contacts;
+        let dot = |own: &mut dyn Iterator<Item = &f64>, rates: &[f64]| -> f64 {
+            own.zip(rates).map(|(own, rate)| own * rate).sum()
+        };
+        // By reciprocity of the blocks: what the load opens is what contact forces move at the load.
+        let rate = dot(&mut load.wrench.iter().flatten(), &direction.x[forces..])
+            + dot(&mut load.gap.iter().flatten(), &direction.x[..forces]);
+        let moved = sense * rate * step;
+        self.events += 1;
+        self.work += 0.5 * (before + trace.state.factor) * moved;
+        self.moved += moved;
+    }
+
+    /// Records the present state.
+    fn record(&mut self, trace: &mut Trace) -> bool {
+        let trapezoid = 0.5 * (self.factor + trace.state.factor) * self.moved;
+        if self.events > 1 {
+            trace.state.energy.work +=
+                (self.work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
+        }
+        self.events = 0;
+        trace.record()
+    }
 }
 
 /// A path with what only its end needs.
@@ -98,8 +142,11 @@ fn proven(state: &PathState) -> ProvenPeak {
 
 /// Follows all load steps of a problem.
 pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
-    let trace = Trace::new(problem, settings, observer);
-    let sections = Sections::new(&trace.system, problem);
+    let mut trace = Trace::new(problem, settings, observer);
+    let sections = Sections::new(&trace.system, problem, false);
+    if sections.is_none() {
+        trace.factors.chain = ElasticChain::new(&trace.system, problem);
+    }
     let mut follower = Follower { trace, sections, limits: LimitPoints::default() };
     for load_step in 0..problem.load_steps.len() {
         let mut run = begin(&mut follower, load_step);
@@ -113,6 +160,9 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
                 Err(end) => break Some(end),
             }
         };
+        if run.unrecorded.events > 0 && !run.unrecorded.record(&mut follower.trace) {
+            return finish(follower, End::Stalled("stopped by its observer".into()), run.sense);
+        }
         if let Some(end) = ended {
             return finish(follower, end, run.sense);
         }
@@ -141,9 +191,13 @@ fn begin(follower: &mut Follower, load_step: usize) -> Run {
     if let Some(factors) = &mut trace.factors.present {
         factors.forget_load();
     }
+    if let Some(chain) = &mut trace.factors.chain {
+        chain.forget_load();
+    }
     trace.factors.refine_columns = false;
     let most_events = 400 + 40 * trace.system.contacts;
-    Run { load, sense, start: present.start, target, events: 0, most_events, rests: 0, patience: 1 }
+    let unrecorded = Unrecorded::default();
+    Run { load, sense, start: present.start, target, events: 0, most_events, rests: 0, patience: 1, unrecorded }
 }
 
 /// Goes on to the next event, or through many by the force method; whether the load step goes on. An error is the end.
@@ -165,8 +219,10 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
             run.sense,
         ));
     }
+    let by_chain = follower.trace.log.counts.by_force_method;
     let direction = direction(follower, run)?;
     let trace = &mut follower.trace;
+    let by_chain = trace.log.counts.by_force_method > by_chain;
     let left = (run.target - trace.state.factor) * run.sense;
     let fallen = (trace.state.factor - run.start) * run.sense;
     let bound = match direction.factor {
@@ -180,11 +236,15 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if step.is_infinite() {
         return Err(End::Ray(Box::new(direction), Box::new(run.load.clone())));
     }
+    let before = trace.state.factor;
     advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
+    run.unrecorded.add(trace, &direction, &run.load, (step, before, run.sense));
     if whole && direction.factor > 0.0 {
         trace.state.factor = run.target;
     }
-    if !trace.record() {
+    // Of many events of the chain as few are recorded as of the force method.
+    let all = !by_chain || whole || follower.limits.greatest.is_some();
+    if (all || run.unrecorded.events * RECORDED >= trace.log.counts.rate_problems) && !run.unrecorded.record(trace) {
         return Err(End::Stalled("stopped by its observer".into()));
     }
     follower.limits.falls_to(trace.state.factor, run.sense);

@@ -6,6 +6,7 @@
 #![doc = include_str!("event_path.md")]
 
 mod direction;
+mod elastic_chain;
 mod energy;
 mod factorisation;
 mod follow;

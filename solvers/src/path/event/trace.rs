@@ -1,6 +1,7 @@
 //! What a path is made of: the problem in its units, the present state, the factorisation that serves many events,
 //! and what was noted on the way.
 
+use super::elastic_chain::ElasticChain;
 use super::energy::{energies, rigid};
 use super::factorisation::FactorisedModes;
 use super::point::Point;
@@ -38,6 +39,8 @@ pub struct Factors {
     pub present: Option<FactorisedModes>,
     /// Whether responses are refined one by one: close to a collapse.
     pub refine_columns: bool,
+    /// Elastic joints in a chain, where they form one.
+    pub chain: Option<ElasticChain>,
 }
 
 /// What happened, and what it took.

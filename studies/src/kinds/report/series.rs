@@ -1,8 +1,10 @@
 //! Series: which results of which study they are made of.
 
 use super::value::Value;
+use crate::figures::hinges::{DrawnHinge, named_hinges};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json};
+use voussoir_core::certificate::{Hinge, Side};
 
 /// `[report.series.NAME]`, read.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -171,24 +173,15 @@ fn last(entry: &Json, column: &str) -> Value {
     }
 }
 
-/// A joint that turns by less than this share of the greatest rotation is no hinge to an engineer.
-const LITTLE: f64 = 0.2;
-
-/// Sides of hinges as an engineer draws them, in order: neighbouring joints that open on one side are one hinge.
+/// Sides of hinges as an engineer draws them, in order.
 fn sides(hinges: &[Json]) -> Value {
-    // Joint, side and rotation of the last joint of each hinge, with the rotation of all its joints.
-    let mut groups: Vec<(i64, &str, f64)> = Vec::new();
-    for hinge in hinges {
-        let (joint, side) = (hinge["joint"].as_i64().unwrap_or(-9), hinge["side"].as_str().unwrap_or_default());
-        let turn = hinge["rotation"].as_f64().unwrap_or(0.0);
-        match groups.last_mut().filter(|last| last.0 + 1 == joint && last.1 == side && last.2 * turn > 0.0) {
-            Some(last) => *last = (joint, side, last.2 + turn),
-            None => groups.push((joint, side, turn)),
-        }
-    }
-    let greatest = groups.iter().map(|group| group.2.abs()).fold(0.0, f64::max);
-    let kept = groups.iter().filter(|group| group.2.abs() >= LITTLE * greatest);
-    Value::List(kept.map(|group| Value::Word(group.1.into())).collect())
+    let hinges: Vec<Hinge> = hinges.iter().filter_map(|hinge| Hinge::deserialize(hinge).ok()).collect();
+    let side = |hinge: &DrawnHinge| match hinge.main().side {
+        Some(Side::Intrados) => "intrados",
+        Some(Side::Extrados) => "extrados",
+        None => "none",
+    };
+    Value::List(named_hinges(&hinges).iter().map(|hinge| Value::Word(side(hinge).into())).collect())
 }
 
 fn follow(value: &Json, path: &[&str]) -> Value {

@@ -148,7 +148,7 @@ impl Equations {
 }
 
 /// Rows and columns scaled to one, full pivoting, one step of refinement.
-fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+pub fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let n = matrix.nrows();
     if n == 0 {
         return Some(DVector::zeros(0));

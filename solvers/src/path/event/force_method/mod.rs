@@ -27,5 +27,6 @@ mod run;
 mod section;
 mod state;
 
-pub use run::{Followed, by_force_method};
-pub use section::Sections;
+pub use equations::solved;
+pub use run::{Followed, RECORDED, by_force_method};
+pub use section::{Section, Sections};

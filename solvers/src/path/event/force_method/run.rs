@@ -17,7 +17,7 @@ const MOMENT: f64 = 1e-11;
 /// Rounds of the active set, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [40, 12];
 /// Events that are all recorded; of more, so many each time their number grows e-fold.
-const RECORDED: u64 = 64;
+pub const RECORDED: u64 = 64;
 
 /// How it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

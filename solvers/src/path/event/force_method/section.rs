@@ -1,6 +1,6 @@
 //! The assembly as sections between bodies: which section forces statics leaves open.
 
-use crate::path::event::system::{Load, System};
+use crate::path::event::system::System;
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3xX, Vector3};
 use std::collections::BTreeMap;
 use voussoir_core::path::PathProblem;
@@ -68,9 +68,9 @@ fn row_of(system: &System, row: usize, body: usize) -> Vector3<f64> {
 }
 
 impl Sections {
-    /// Groups the contact points. `None` where a contact force has no compliance of its own alone, where a
-    /// body hangs on nothing, or where there are too many cycles.
-    pub fn new(system: &System, problem: &PathProblem) -> Option<Self> {
+    /// Groups the contact points. `None` where a contact force has no compliance of its own, or, unless points may be
+    /// `coupled`, not of its own alone, where a body hangs on nothing, or where there are too many cycles.
+    pub fn new(system: &System, problem: &PathProblem, coupled: bool) -> Option<Self> {
         let mut poles = vec![[0.0; 2]; system.bodies];
         for (free, body) in system.free.iter().zip(&problem.bodies) {
             if let Some(free) = free {
@@ -98,7 +98,7 @@ impl Sections {
             let mut places = Vec::with_capacity(contacts.len());
             for &c in &contacts {
                 of[c] = all.len();
-                places.push(Place::new(system, c, bodies, centre, &poles)?);
+                places.push(Place::new(system, c, (bodies, centre), &poles, coupled)?);
             }
             let lever =
                 places.iter().flat_map(|p| [p.rows[(0, 2)], p.rows[(1, 2)]]).fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -167,10 +167,9 @@ impl Sections {
         Some(())
     }
 
-    /// Resultant of each section per unit of a load, about the origin, without redundants.
-    pub fn resultants(&self, load: &Load) -> Vec<Vector3<f64>> {
-        let mut beyond: Vec<Vector3<f64>> = load
-            .wrench
+    /// Resultant of each section by forces on the bodies, about the origin, without redundants.
+    pub fn resultants(&self, wrench: &[[f64; 3]]) -> Vec<Vector3<f64>> {
+        let mut beyond: Vec<Vector3<f64>> = wrench
             .iter()
             .zip(&self.poles)
             .map(|(w, p)| Vector3::new(w[0], w[1], w[2] - p[1] * w[0] + p[0] * w[1]))
@@ -217,18 +216,19 @@ impl Place {
     fn new(
         system: &System,
         contact: usize,
-        bodies: [Option<usize>; 2],
-        centre: [f64; 2],
+        (bodies, centre): ([Option<usize>; 2], [f64; 2]),
         poles: &[[f64; 2]],
+        coupled: bool,
     ) -> Option<Self> {
         let mut compliance: Matrix2<f64> = Matrix2::zeros();
         let mut rows = Matrix2x3::zeros();
         for i in 0..2 {
             for &(j, v) in system.flexibility.row(2 * contact + i) {
-                if j / 2 != contact {
-                    return None;
+                match j / 2 == contact {
+                    true => compliance[(i, j % 2)] += v,
+                    false if coupled => {}
+                    false => return None,
                 }
-                compliance[(i, j % 2)] += v;
             }
             // By the second body, or against the first.
             let about = |body: usize| {

@@ -43,7 +43,7 @@ impl<'s> Run<'s> {
         if load.opens {
             return None;
         }
-        let resultants = sections.resultants(load);
+        let resultants = sections.resultants(&load.wrench);
         Some(Run {
             sections,
             joints: sections.all.iter().zip(&resultants).map(|(section, l)| Joint::new(section, l)).collect(),

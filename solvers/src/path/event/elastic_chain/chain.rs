@@ -1,0 +1,313 @@
+//! What all joints of the chain do for the redundants and the load, while points change their modes.
+
+use super::dense::add_product;
+use super::factors::{Factor, Factors};
+use super::joint::joints;
+use super::redundants::{MOST_WEAK, Open, closing};
+use crate::contact::mode::ContactMode;
+use crate::path::event::force_method::Sections;
+use crate::path::event::rates::Rates;
+use crate::path::event::system::{Load, System};
+use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
+use voussoir_core::path::PathProblem;
+
+/// Changes of modes after which everything is factorised anew.
+const CHANGES: usize = 200;
+/// Changes at once from which on that is cheaper.
+const AT_ONCE: usize = 24;
+
+/// A chain of joints in the present modes.
+pub struct ElasticChain {
+    sections: Sections,
+    factors: Factors,
+    /// Joint and place in it of every contact point.
+    places: Vec<(usize, usize)>,
+    modes: Vec<ContactMode>,
+    /// R about the centre of every joint from (X, s).
+    statics: Vec<Matrix3xX<f64>>,
+    /// What every joint does by (X, s) and the twists of weak joints.
+    responses: Vec<DMatrix<f64>>,
+    /// Joints with a twist of their own, in the order of its columns.
+    weak: Vec<usize>,
+    /// The load step whose load the responses are of.
+    load_step: Option<usize>,
+    /// Whether it is factorised.
+    ready: bool,
+    /// Changes of modes since.
+    changes: usize,
+    /// How often everything was factorised.
+    pub factorisations: u64,
+}
+
+/// What the joints do.
+pub struct ChainRates {
+    /// Forces and twist of every joint.
+    own: Vec<Vec<f64>>,
+    /// Factors of the columns of the responses.
+    share: DVector<f64>,
+}
+
+impl ElasticChain {
+    /// Of the joints of a problem. `None` where they do not form chains.
+    pub fn new(system: &System, problem: &PathProblem) -> Option<Self> {
+        let sections = Sections::new(system, problem, true)?;
+        let (joints, places) = joints(system, &sections)?;
+        Some(ElasticChain {
+            sections,
+            factors: Factors { all: joints.into_iter().map(Factor::new).collect() },
+            places,
+            modes: Vec::new(),
+            statics: Vec::new(),
+            responses: Vec::new(),
+            weak: Vec::new(),
+            load_step: None,
+            ready: false,
+            changes: 0,
+            factorisations: 0,
+        })
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.factors.all.len()
+    }
+
+    /// Another load comes.
+    pub fn forget_load(&mut self) {
+        self.load_step = None;
+    }
+
+    /// Gives the points these modes. `None` where the equations are singular.
+    pub fn set_modes(&mut self, system: &System, (step, load): (usize, &Load), modes: &[ContactMode]) -> Option<()> {
+        if self.load_step != Some(step) {
+            let resultants = self.sections.resultants(&load.wrench);
+            let section = |f: &Factor| self.sections.all[f.joint.section].statics(&resultants[f.joint.section]);
+            self.statics = self.factors.all.iter().map(section).collect();
+            (self.load_step, self.ready) = (Some(step), false);
+        }
+        if !self.ready {
+            return self.factorise(system, load, modes);
+        }
+        let changed: Vec<usize> = (0..modes.len()).filter(|c| modes[*c] != self.modes[*c]).collect();
+        if changed.len() > AT_ONCE || self.changes + changed.len() > CHANGES {
+            return self.factorise(system, load, modes);
+        }
+        for c in changed {
+            if self.set_mode(system, load, c, modes[c]).is_none() {
+                return self.factorise(system, load, modes);
+            }
+        }
+        Some(())
+    }
+
+    /// Factorises everything in given modes. `None` where that is singular.
+    pub fn factorise(&mut self, system: &System, load: &Load, modes: &[ContactMode]) -> Option<()> {
+        self.factorisations += 1;
+        (self.changes, self.ready) = (0, false);
+        self.modes = modes.to_vec();
+        for factor in &mut self.factors.all {
+            factor.rows = factor.joint.rows(system, modes)?;
+            factor.weak = factor.joint.is_weak(modes);
+        }
+        self.weak = (0..self.joints()).filter(|e| self.factors.all[*e].weak).collect();
+        if self.weak.len() > MOST_WEAK {
+            return None;
+        }
+        self.factors.factorise()?;
+        let n = 3 * self.sections.cycles + 1;
+        let columns = n + 3 * self.weak.len();
+        let mut right = Vec::with_capacity(self.joints());
+        for (e, (factor, statics)) in self.factors.all.iter().zip(&self.statics).enumerate() {
+            let m = 2 * factor.joint.contacts.len();
+            let mut own = DMatrix::zeros(m + 3, columns);
+            for (p, (c, rows)) in factor.joint.contacts.iter().zip(&factor.rows).enumerate() {
+                let gap = load.gap[*c];
+                (0..2).for_each(|i| own[(2 * p + i, n - 1)] = -(rows[i][2] * gap[0] + rows[i][3] * gap[1]));
+            }
+            own.view_mut((m, 0), (3, n)).copy_from(statics);
+            if let Some(w) = self.weak.iter().position(|w| *w == e) {
+                (0..3).for_each(|i| own[(m + i, n + 3 * w + i)] = -factor.joint.spring[i]);
+            }
+            right.push(own);
+        }
+        self.responses = self.factors.solve(right.clone());
+        self.refine_responses(right);
+        self.ready = true;
+        Some(())
+    }
+
+    /// One step of refinement of all responses.
+    fn refine_responses(&mut self, mut right: Vec<DMatrix<f64>>) {
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let m = 2 * factor.joint.contacts.len();
+            for j in 0..right[e].ncols() {
+                let column = |e: usize| column(&self.responses[e], j);
+                let (own, gap) = (column(e), factor.joint.gaps(e, &column));
+                for (p, rows) in factor.rows.iter().enumerate() {
+                    for (i, row) in rows.iter().enumerate() {
+                        let (force, gap) = (&own[2 * p..2 * p + 2], &gap[2 * p..2 * p + 2]);
+                        right[e][(2 * p + i, j)] -=
+                            row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1];
+                    }
+                }
+                for i in 0..3 {
+                    let twist = if factor.weak { factor.joint.spring[i] * own[m + i] } else { 0.0 };
+                    right[e][(m + i, j)] -= factor.joint.resultant(i, own) - twist;
+                }
+            }
+        }
+        let added = self.factors.solve(right);
+        self.responses.iter_mut().zip(&added).for_each(|(response, added)| *response += added);
+    }
+
+    fn set_mode(&mut self, system: &System, load: &Load, c: usize, mode: ContactMode) -> Option<()> {
+        let (e, p) = self.places[c];
+        self.changes += 1;
+        self.modes[c] = mode;
+        if !self.factors.all[e].weak && self.factors.all[e].joint.is_weak(&self.modes) {
+            self.set_weak(e)?;
+        }
+        let rows = system.rows(c, mode)?;
+        self.factors.set_rows(e, p, rows)?;
+        let columns = self.responses[e].ncols();
+        let mut left = DMatrix::zeros(2, columns);
+        for j in 0..columns {
+            let mut gap = self.factors.all[e].joint.gap(e, p, &|e: usize| column(&self.responses[e], j));
+            if j == 3 * self.sections.cycles {
+                (0..2).for_each(|i| gap[i] += load.gap[c][i]);
+            }
+            let force = [self.responses[e][(2 * p, j)], self.responses[e][(2 * p + 1, j)]];
+            for (i, row) in rows.iter().enumerate() {
+                left[(i, j)] = -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]);
+            }
+        }
+        self.respond(e, 2 * p, &left);
+        if matches!(mode, ContactMode::Open | ContactMode::Corner(..)) {
+            (0..columns).for_each(|j| (0..2).for_each(|i| self.responses[e][(2 * p + i, j)] = 0.0));
+        }
+        Some(())
+    }
+
+    /// Adds what right-hand sides of some rows of a joint give to all columns.
+    fn respond(&mut self, e: usize, first: usize, left: &DMatrix<f64>) {
+        let window = self.factors.respond(e, first, left.nrows());
+        for (response, columns) in self.responses[window.first..].iter_mut().zip(&window.columns) {
+            let height = response.nrows();
+            for (response, left) in response.as_mut_slice().chunks_exact_mut(height).zip(left.column_iter()) {
+                add_product(response, columns, &left.iter().copied().collect::<Vec<_>>());
+            }
+        }
+    }
+
+    /// Gives a joint a twist of its own.
+    fn set_weak(&mut self, e: usize) -> Option<()> {
+        if self.weak.len() == MOST_WEAK {
+            return None;
+        }
+        self.factors.set_weak(e)?;
+        let (m, spring) = (2 * self.factors.all[e].joint.contacts.len(), self.factors.all[e].joint.spring);
+        let columns = self.responses[e].ncols();
+        let mut left = DMatrix::zeros(3, columns + 3);
+        for i in 0..3 {
+            (0..columns).for_each(|j| left[(i, j)] = spring[i] * self.responses[e][(m + i, j)]);
+            left[(i, columns + i)] = -spring[i];
+        }
+        for response in &mut self.responses {
+            *response = std::mem::replace(response, DMatrix::zeros(0, 0)).insert_columns(columns, 3, 0.0);
+        }
+        self.respond(e, m, &left);
+        self.weak.push(e);
+        Some(())
+    }
+
+    /// What the joints do in the present modes with λ̇ = 1. `None` near a mechanism.
+    pub fn rates(&self) -> Option<ChainRates> {
+        let share = self.closing(&Open::Load)?;
+        let own = self.responses.iter().map(|b| combined(b, &share)).collect();
+        Some(ChainRates { own, share })
+    }
+
+    fn closing(&self, open: &Open) -> Option<DVector<f64>> {
+        closing(&self.sections, &self.factors.all, &self.responses, &self.weak, open)
+    }
+
+    /// Rates as those of the whole system, with the worst relative residual and what they leave of the equations of
+    /// every joint; gaps of points that stick are zero.
+    pub fn examined(&self, system: &System, load: &Load, rates: &ChainRates) -> (Rates, Vec<DMatrix<f64>>) {
+        let x = self.unknowns(system, &rates.own);
+        let size = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let (forces, motions) = x.split_at(2 * system.contacts);
+        let forces = size(forces).max(load.size).max(f64::MIN_POSITIVE);
+        let motions = size(motions).max(forces);
+        let (mut gaps, mut worst) = (vec![[0.0; 2]; system.contacts], 0.0f64);
+        let mut left = Vec::with_capacity(rates.own.len());
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let (joint, own) = (&factor.joint, &rates.own[e]);
+            let m = 2 * joint.contacts.len();
+            let mut gap = joint.gaps(e, &|e: usize| rates.own[e].as_slice());
+            gap.iter_mut().zip(joint.contacts.iter().flat_map(|c| load.gap[*c])).for_each(|(g, load)| *g += load);
+            let statics = self.statics[e].ncols();
+            let mut all = vec![0.0; m + 3];
+            for (p, (c, rows)) in joint.contacts.iter().zip(&factor.rows).enumerate() {
+                let (force, gap) = ([own[2 * p], own[2 * p + 1]], [gap[2 * p], gap[2 * p + 1]]);
+                for (i, row) in rows.iter().enumerate() {
+                    let (by_force, by_gap) = (row[0] * force[0] + row[1] * force[1], row[2] * gap[0] + row[3] * gap[1]);
+                    worst = worst.max(by_force.abs() / forces).max(by_gap.abs() / motions);
+                    all[2 * p + i] = -(by_force + by_gap);
+                }
+                if self.modes[*c] != ContactMode::Stick {
+                    gaps[*c] = gap;
+                }
+            }
+            for i in 0..3 {
+                let given: f64 = (0..statics).map(|j| self.statics[e][(i, j)] * rates.share[j]).sum();
+                all[m + i] = given - joint.resultant(i, own);
+                worst = worst.max(all[m + i].abs() / forces);
+            }
+            left.push(DMatrix::from_vec(m + 3, 1, all));
+        }
+        (Rates { x, factor: 1.0, gaps, worst, refinements: 0 }, left)
+    }
+
+    /// With what takes away what is left of the equations. `None` near a mechanism.
+    pub fn refined(&self, rates: &ChainRates, left: Vec<DMatrix<f64>>) -> Option<ChainRates> {
+        let added = self.factors.solve(left);
+        let share = self.closing(&Open::Refined(&rates.own, &added))?;
+        let all = rates.own.iter().zip(&added).zip(&self.responses);
+        let sum = |((own, added), b): ((&Vec<f64>, &DMatrix<f64>), &DMatrix<f64>)| {
+            let mut sum: Vec<f64> = own.iter().zip(added).map(|(a, b)| a + b).collect();
+            add_product(&mut sum, b, share.as_slice());
+            sum
+        };
+        Some(ChainRates { own: all.map(sum).collect(), share: &rates.share + &share })
+    }
+
+    /// All unknowns of the system from what the joints do.
+    fn unknowns(&self, system: &System, own: &[Vec<f64>]) -> Vec<f64> {
+        let mut x = vec![0.0; system.size()];
+        let mut twists = vec![Vector3::zeros(); own.len()];
+        for (factor, own) in self.factors.all.iter().zip(own) {
+            let m = 2 * factor.joint.contacts.len();
+            for (p, c) in factor.joint.contacts.iter().enumerate() {
+                x[2 * c..2 * c + 2].copy_from_slice(&own[2 * p..2 * p + 2]);
+            }
+            twists[factor.joint.section] = Vector3::new(own[m], own[m + 1], own[m + 2]);
+        }
+        for (b, motion) in self.sections.motions(&twists).into_iter().enumerate() {
+            x[2 * system.contacts + 3 * b..][..3].copy_from_slice(&motion);
+        }
+        x
+    }
+}
+
+/// One column.
+fn column(columns: &DMatrix<f64>, j: usize) -> &[f64] {
+    &columns.as_slice()[columns.nrows() * j..columns.nrows() * (j + 1)]
+}
+
+/// Columns times factors.
+fn combined(columns: &DMatrix<f64>, factors: &DVector<f64>) -> Vec<f64> {
+    let mut sum = vec![0.0; columns.nrows()];
+    add_product(&mut sum, columns, factors.as_slice());
+    sum
+}

@@ -1,0 +1,104 @@
+//! The rate problem on the chain: modes change until no point leaves its own.
+
+use super::chain::{ChainRates, ElasticChain};
+use crate::contact::mode::ContactMode;
+use crate::path::event::rates::{Rates, leaving};
+use crate::path::event::system::{Load, System};
+use crate::path::event::trace::Trace;
+use nalgebra::DMatrix;
+
+/// Rounds of the active set, and those in which all points change at once.
+const ROUNDS: [usize; 2] = [40, 12];
+/// Residuals: up to which rates need no refinement, up to which they are believed, and from which on everything is
+/// factorised anew.
+const RESIDUAL: [f64; 3] = [2e-15, 1e-12, 1e-11];
+/// Residual of gaps beside the rates of forces up to which rates need no refinement either: the error of the forces.
+const ERROR: f64 = 2e-12;
+/// Steps of refinement.
+const REFINEMENTS: usize = 3;
+
+/// Modes of all points from a guess, and the rates in them with λ̇ = 1. `None` where the whole system is to be asked.
+pub fn by_elastic_chain(
+    trace: &mut Trace,
+    load: &Load,
+    active: &[usize],
+    mut modes: Vec<ContactMode>,
+) -> Option<(Vec<ContactMode>, Rates)> {
+    // From nothing every point is in the active set; a moving support is followed with its own care.
+    if load.settles || trace.state.x.iter().all(|v| *v == 0.0) {
+        return None;
+    }
+    let mut chain = trace.factors.chain.take()?;
+    let before = chain.factorisations;
+    let rates = decided(&mut chain, trace, load, active, &mut modes);
+    trace.log.counts.factorisations += chain.factorisations - before;
+    trace.factors.chain = Some(chain);
+    rates.map(|rates| (modes, rates))
+}
+
+fn decided(
+    chain: &mut ElasticChain,
+    trace: &mut Trace,
+    load: &Load,
+    active: &[usize],
+    modes: &mut [ContactMode],
+) -> Option<Rates> {
+    let at = (trace.state.load_step, load);
+    for round in 0..ROUNDS[0] {
+        trace.log.counts.rates.trials += 1;
+        let (system, points) = (&trace.system, trace.state.points.as_slice());
+        chain.set_modes(system, at, modes)?;
+        let own = chain.rates()?;
+        let (rates, left) = chain.examined(system, load, &own);
+        let mut moved = leaving((system, points), (&rates, load), active, modes)?;
+        if moved.is_empty() {
+            if rates.nears_mechanism(2 * system.contacts) {
+                return None;
+            }
+            let rates = refined(chain, (system, load), modes, (own, rates, left))?;
+            trace.log.counts.solves += rates.refinements;
+            return Some(rates);
+        }
+        if round >= ROUNDS[1] {
+            moved.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            moved.truncate(1);
+        }
+        for (_, c, to) in moved {
+            modes[c] = to;
+        }
+    }
+    None
+}
+
+/// Rates refined against the equations of all joints. `None` where they are not believed.
+fn refined(
+    chain: &mut ElasticChain,
+    (system, load): (&System, &Load),
+    modes: &[ContactMode],
+    (mut own, mut rates, mut left): (ChainRates, Rates, Vec<DMatrix<f64>>),
+) -> Option<Rates> {
+    if rates.worst > RESIDUAL[2] {
+        chain.factorise(system, load, modes)?;
+        own = chain.rates()?;
+        (rates, left) = chain.examined(system, load, &own);
+    }
+    let mut refinements = 0;
+    let size = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (forces, motions) = rates.x.split_at(2 * system.contacts);
+    let enough = RESIDUAL[0].max(ERROR * size(forces) / size(motions).max(size(forces)).max(f64::MIN_POSITIVE));
+    while refinements < REFINEMENTS as u64 && rates.worst > enough {
+        refinements += 1;
+        let better = chain.refined(&own, left)?;
+        let (now, still) = chain.examined(system, load, &better);
+        if now.worst >= rates.worst {
+            break;
+        }
+        let rounding = now.worst > 0.5 * rates.worst;
+        (own, rates, left) = (better, now, still);
+        if rounding {
+            break;
+        }
+    }
+    rates.refinements = refinements;
+    (rates.worst <= RESIDUAL[1]).then_some(rates)
+}

@@ -1,0 +1,77 @@
+//! The few equations that are left of a rate problem: compatibility of the cycles, and the twists of weak joints.
+
+use super::factors::Factor;
+use crate::path::event::force_method::{Sections, solved};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// Joints with a twist of their own above which the whole system is asked.
+pub const MOST_WEAK: usize = 24;
+
+/// Twist of a joint in a column of its unknowns.
+fn twist(factor: &Factor, columns: &DMatrix<f64>, column: usize) -> Vector3<f64> {
+    let m = 2 * factor.joint.contacts.len();
+    Vector3::from_fn(|i, _| columns[(m + i, column)])
+}
+
+/// What the redundants close: the rates for λ̇ = 1, or what a step of refinement leaves.
+pub enum Open<'a> {
+    /// The load alone.
+    Load,
+    /// Rates of the joints, and what right-hand sides of their own equations add to them.
+    Refined(&'a [Vec<f64>], &'a [DMatrix<f64>]),
+}
+
+/// Factors of the columns of all responses that close the cycles and give weak joints their twists: redundants, then
+/// λ̇, then twists of the `weak` joints. `None` near a mechanism.
+pub fn closing(
+    sections: &Sections,
+    factors: &[Factor],
+    responses: &[DMatrix<f64>],
+    weak: &[usize],
+    open: &Open,
+) -> Option<DVector<f64>> {
+    let n = 3 * sections.cycles;
+    let size = n + 3 * weak.len();
+    let column = |j: usize| if j < n { j } else { j + 1 };
+    let mut matrix: DMatrix<f64> = DMatrix::zeros(size, size);
+    let mut right: DVector<f64> = DVector::zeros(size);
+    for (e, factor) in factors.iter().enumerate() {
+        let section = &sections.all[factor.joint.section];
+        let to_origin: Matrix3<f64> = section.to_centre.transpose();
+        let m = 2 * factor.joint.contacts.len();
+        let (constant, before) = match open {
+            Open::Load => (twist(factor, &responses[e], n), Vector3::zeros()),
+            Open::Refined(own, added) => {
+                (twist(factor, &added[e], 0), Vector3::new(own[e][m], own[e][m + 1], own[e][m + 2]))
+            }
+        };
+        if section.shares.iter().any(|s| *s != 0.0) {
+            let by_column: Vec<Vector3<f64>> =
+                (0..size).map(|j| to_origin * twist(factor, &responses[e], column(j))).collect();
+            let constant = to_origin * (constant + before);
+            for (k, share) in section.shares.iter().enumerate().filter(|s| *s.1 != 0.0) {
+                for i in 0..3 {
+                    by_column.iter().enumerate().for_each(|(j, v)| matrix[(3 * k + i, j)] += share * v[i]);
+                    right[3 * k + i] -= share * constant[i];
+                }
+            }
+        }
+        if let Some(w) = weak.iter().position(|w| *w == e) {
+            let at = n + 3 * w;
+            for i in 0..3 {
+                for j in 0..size {
+                    matrix[(at + i, j)] = twist(factor, &responses[e], column(j))[i];
+                }
+                matrix[(at + i, at + i)] -= 1.0;
+                right[at + i] = -constant[i];
+            }
+        }
+    }
+    let solved = solved(matrix, &right)?;
+    let load = if matches!(open, Open::Load) { 1.0 } else { 0.0 };
+    Some(DVector::from_fn(size + 1, |j, _| match j.cmp(&n) {
+        std::cmp::Ordering::Less => solved[j],
+        std::cmp::Ordering::Equal => load,
+        std::cmp::Ordering::Greater => solved[j - 1],
+    }))
+}

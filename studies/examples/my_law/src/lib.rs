@@ -1,0 +1,3 @@
+//! Laws of this crate; file = tag.
+
+pub mod keyed;

@@ -1,0 +1,162 @@
+//! Runs that are killed, whose study is edited, whose disk is full, or that are not alone: run by hand,
+//! `cargo test --release -p voussoir --test interruptions -- --ignored`. What came out stands in docs/verifying.md.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const CASES: usize = 600;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("interruptions_{name}"));
+    drop(std::fs::remove_dir_all(&folder));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn study(friction: f64) -> String {
+    format!(
+        "name = \"ring\"\n[scene]\nscene = \"arch\"\nprofile = {{ shape = \"segmental\", span = 9.42, rise = 2.99 }}\n\
+         thickness = 0.6\nwidth = 5.81\nvoussoirs = 41\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n\
+         [materials.stone]\nlaw = \"rigid\"\ndensity = 2200.0\n[joints.dry]\nlaw = \"coulomb_associated\"\n\
+         friction = {friction:?}\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\n\
+         until = \"collapse\"\nloads = [{{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }}]\n\
+         [sweep]\n\"scene.profile.rise\" = {{ from = 2.6, to = 3.3, count = {CASES} }}\n[output]\nfigures = false\n"
+    )
+}
+
+fn start(at: &Path, out: &str) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_voussoir"))
+        .args(["run", "a.toml", "--out", out, "--quiet", "--resume"])
+        .current_dir(at)
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts")
+}
+
+fn ended(mut run: Child) -> Option<i32> {
+    run.wait().expect("it ends").code()
+}
+
+/// Results without the time they took; all ids once, in order.
+fn timeless(dir: &Path) -> Value {
+    let text = std::fs::read_to_string(dir.join("results.json")).expect("results");
+    let mut results: Value = serde_json::from_str(&text).expect("JSON");
+    let cases = results["cases"].as_array_mut().expect("cases");
+    assert_eq!(cases.len(), CASES);
+    for (id, case) in cases.iter_mut().enumerate() {
+        assert_eq!(case["id"], id);
+        case["seconds"] = 0.0.into();
+    }
+    results
+}
+
+/// Numbers from a linear congruential generator (Knuth's constants).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, most: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % most
+    }
+}
+
+/// What something gives, and how long it took \[ms\].
+fn timed<T>(what: impl FnOnce() -> T) -> (T, u64) {
+    let start = Instant::now();
+    let result = what();
+    (result, start.elapsed().as_millis() as u64)
+}
+
+fn reference(at: &Path, friction: f64, out: &str) -> Value {
+    std::fs::write(at.join("a.toml"), study(friction)).expect("written");
+    assert_eq!(ended(start(at, out)), Some(0));
+    timeless(&at.join(out))
+}
+
+/// Killed twenty times anywhere in a sweep, the study edited between some of the kills: the results are those of the
+/// study as it stands at last.
+#[test]
+#[ignore = "by hand: twenty kills of a run"]
+fn killed_twenty_times_with_the_study_edited_in_between() {
+    let at = folder("killed");
+    let (one, other) = (reference(&at, 0.6, "one"), reference(&at, 0.45, "other"));
+    let mut random = Random(14);
+    for round in 0..20 {
+        let friction = if round % 5 == 3 { 0.45 } else { 0.6 };
+        std::fs::write(at.join("a.toml"), study(friction)).expect("written");
+        let mut run = start(&at, "out");
+        let target = random.below(CASES as u64) as usize;
+        let stored = || std::fs::read_to_string(at.join("out/unfinished.jsonl")).unwrap_or_default().lines().count();
+        // From the first case of this run on at least: what was stored before is there from the start.
+        let before = stored();
+        while stored() < target.max(before + 1) && run.try_wait().expect("a state").is_none() {
+            sleep(Duration::from_millis(1));
+        }
+        sleep(Duration::from_micros(random.below(5000)));
+        drop(run.kill());
+        let code = run.wait().expect("it ends").code();
+        println!("round {round}: friction {friction}, ended {code:?}, {before}, then {} cases stored", stored());
+    }
+    for (friction, expected) in [(0.6, &one), (0.45, &other)] {
+        std::fs::write(at.join("a.toml"), study(friction)).expect("written");
+        assert_eq!(ended(start(&at, "out")), Some(0));
+        assert_eq!(&timeless(&at.join("out")), expected, "{friction}");
+    }
+}
+
+/// Two runs at once, one or both of them killed, over and over: one writes, the other is refused, and nothing is mixed.
+#[test]
+#[ignore = "by hand: pairs of runs"]
+fn two_runs_at_once() {
+    let at = folder("two");
+    let (expected, whole) = timed(|| reference(&at, 0.6, "whole"));
+    let mut random = Random(18);
+    for round in 0..10 {
+        let (mut a, mut b) = (start(&at, "out"), start(&at, "out"));
+        sleep(Duration::from_millis(random.below(whole)));
+        drop(if round % 2 == 0 { a.kill() } else { b.kill() });
+        if round % 3 == 0 {
+            drop(a.kill());
+            drop(b.kill());
+        }
+        let codes = (ended(a), ended(b));
+        println!("round {round}: {codes:?}");
+        assert!([codes.0, codes.1].iter().all(|code| matches!(code, None | Some(0 | 3))), "{codes:?}");
+    }
+    assert_eq!(ended(start(&at, "out")), Some(0));
+    assert_eq!(timeless(&at.join("out")), expected);
+}
+
+/// A disk that is full (a small file system at `VOUSSOIR_SMALL_DISK`): exit code 3, nothing half written, and with room the
+/// run goes on.
+#[test]
+#[ignore = "by hand: needs a small file system"]
+fn a_full_disk() {
+    let small = std::env::var("VOUSSOIR_SMALL_DISK").expect("the folder of a small file system");
+    let at = folder("full");
+    let expected = reference(&at, 0.6, "whole");
+    let out = Path::new(&small).join("out");
+    let name = out.to_str().expect("a path");
+    let ballast = Path::new(&small).join("ballast");
+    std::fs::write(&ballast, vec![0; 128 * 1024]).expect("room for the ballast");
+    for round in 0..3 {
+        let code = ended(start(&at, name));
+        println!("round {round}: {code:?}, results: {}", out.join("results.json").exists());
+        assert_eq!(code, Some(3));
+        assert!(!out.join("results.json").exists(), "half a file");
+    }
+    std::fs::remove_file(&ballast).expect("removed");
+    let left = ended(start(&at, name));
+    println!("without the ballast: {left:?}");
+    // What was stored there is good: with all the room in the world it is gone on with.
+    let copy = at.join("copy");
+    std::fs::create_dir_all(&copy).expect("a folder");
+    for entry in std::fs::read_dir(&out).expect("a folder").flatten().filter(|entry| entry.path().is_file()) {
+        std::fs::copy(entry.path(), copy.join(entry.file_name())).expect("copied");
+    }
+    assert_eq!(ended(start(&at, "copy")), Some(0));
+    assert_eq!(timeless(&copy), expected);
+}
