@@ -2,6 +2,7 @@
 
 use super::hinges::{DrawnHinge, drawn_hinges};
 use crate::results::CaseResult;
+use crate::study::study_keys;
 use voussoir_core::certificate::{Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
@@ -152,7 +153,8 @@ pub fn unit_of_key(key: &str) -> Option<&'static str> {
         here.or_else(|| parameters.iter().find_map(|p| in_shape(&p.shape, name)))
     }
     let name = key.rsplit('.').next()?;
-    cards().iter().find_map(|card| in_table(card.parameters, name)).filter(|unit| !unit.is_empty())
+    let known = cards().iter().find_map(|card| in_table(card.parameters, name));
+    known.or_else(|| in_table(study_keys(), name)).filter(|unit| !unit.is_empty())
 }
 
 /// `key [unit]`, or the key where no unit is known.

@@ -33,7 +33,7 @@ pub fn words_of_key(key: &str) -> String {
     let words = summary[..end].trim();
     let name = key.rsplit('.').find(|name| name.parse::<usize>().is_err()).unwrap_or(key).replace('_', " ");
     // "bonded: the faces move …" explains the choices, not the key.
-    if words.is_empty() || words.len() > 60 || summary[end..].starts_with(':') {
+    if words.is_empty() || words.starts_with("x ") || words.len() > 60 || summary[end..].starts_with(':') {
         return name;
     }
     // "of the fill" says of what, not what.

@@ -7,6 +7,7 @@ pub mod drive;
 pub mod output;
 pub mod result;
 pub mod study;
+mod surface;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;

@@ -79,7 +79,8 @@ fn gather(rows: &mut Vec<(String, String)>, key: &str, before: &str, value: &Jso
         Json::Null => {}
         Json::Array(items) if items.is_empty() => {}
         value => {
-            if ["name"].contains(&key.rsplit('.').next().unwrap_or_default()) {
+            // Both stand before the words already.
+            if ["name", "kind"].contains(&key.rsplit('.').next().unwrap_or_default()) {
                 return;
             }
             rows.push((format!("{before}{}", words(key)), shown(key, value)));
@@ -102,7 +103,7 @@ fn words(key: &str) -> String {
 fn shown(key: &str, value: &Json) -> String {
     let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
     match value {
-        Json::Number(_) => format!("{}{unit}", value.as_f64().map_or_else(String::new, |x| format_short(x, 7))),
+        Json::Number(_) => quantity(value.as_f64().unwrap_or(f64::NAN), unit.trim()),
         Json::Array(items) => {
             let listed: Vec<String> = items.iter().take(LISTED).map(|item| shown("", item)).collect();
             let more = items.len().saturating_sub(LISTED);
@@ -113,6 +114,16 @@ fn shown(key: &str, value: &Json) -> String {
         Json::Bool(truth) => if *truth { "yes" } else { "no" }.into(),
         other => other.to_string(),
     }
+}
+
+/// A number with its unit; stresses in the unit in which they are short.
+fn quantity(x: f64, unit: &str) -> String {
+    let (x, unit) = match unit {
+        "Pa" if x.abs() >= 1e9 => (x / 1e9, "GPa"),
+        "Pa" if x.abs() >= 1e5 => (x / 1e6, "MPa"),
+        unit => (x, unit),
+    };
+    format!("{} {unit}", format_short(x, 7)).trim_end().to_string()
 }
 
 /// Axes of the sweep with their values, and the variants.

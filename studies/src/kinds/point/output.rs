@@ -3,6 +3,7 @@
 use super::drive::drive_point;
 use super::result::{PathStatus, PointResult};
 use super::study::PointStudy;
+use super::surface::yield_surface;
 use crate::figures::chart::chart_svg;
 use crate::figures::format::{format_number, format_value, key_with_unit};
 use crate::figures::series::Series;
@@ -188,7 +189,7 @@ fn scaled(label: &str) -> (String, f64) {
 pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
     let mut labels = [String::new(), String::new()];
     let mut notes = Vec::new();
-    let series: Vec<Series> = results
+    let mut series: Vec<Series> = results
         .iter()
         .map(|result| (&study.cases[result.id], result))
         .map(|(case, result)| {
@@ -205,8 +206,37 @@ pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
             Series { name: name(result), points, ..Series::default() }
         })
         .collect();
+    series.extend(surfaces(study, results));
     let title = format!("{}: {} over {}", study.name, labels[1], labels[0]);
     chart_svg(&title, &labels[0], &labels[1], &series, &notes)
+}
+
+/// In the plane of p and q: the yield surface of each variant's law.
+fn surfaces(study: &PointStudy, results: &[PointResult]) -> Vec<Series> {
+    let in_plane = |result: &&PointResult| study.cases[result.id].plot == ["p", "q"];
+    let greatest = |word: &str| {
+        let of = |result: &PointResult| {
+            let place = column(result, word)?;
+            Some(result.rows.iter().map(|row| row[place]).fold(0.0, f64::max))
+        };
+        results.iter().filter_map(of).fold(0.0, f64::max)
+    };
+    let mut seen = Vec::new();
+    let firsts = results.iter().filter(in_plane).filter(|result| {
+        let new = !seen.contains(&result.variant);
+        seen.push(result.variant.clone());
+        new
+    });
+    let far = [1.2 * greatest("p"), 1.2 * greatest("q")];
+    firsts
+        .map(|result| {
+            let points = yield_surface(&study.cases[result.id].law, far);
+            let points: Vec<(f64, f64)> = points.into_iter().map(|(p, q)| (p * 1e-6, q * 1e-6)).collect();
+            let name = result.variant.as_ref().map_or(String::new(), |variant| format!(", {variant}"));
+            Series { name: format!("yield surface{name}"), points, spots: Some(Vec::new()), ..Series::default() }
+        })
+        .filter(|series| !series.points.is_empty())
+        .collect()
 }
 
 /// One row per case: how it ended, and the plotted quantity's least, greatest and last value.
