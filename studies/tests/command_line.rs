@@ -173,6 +173,51 @@ fn points_are_driven() {
     assert!(said.contains("cannot be reached"), "{said}");
 }
 
+/// Words that a user may ask for are known, and a wrong one gets the nearest; completions and the manual page name every
+/// command.
+#[test]
+fn words_completions_and_manual() {
+    let said = |arguments: &[&str]| {
+        let output = voussoir(arguments);
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    for (word, known) in [
+        ("profiles", "three_centred"),
+        ("segmental", "rise [m]"),
+        ("loads", "span_fraction"),
+        ("stages", "until"),
+        ("settlement", "rotation"),
+        ("sweep", "zip"),
+        ("variants", "outermost"),
+        ("units", "kN/m3"),
+        ("results", "resolved.toml"),
+        ("status", "no_equilibrium"),
+        ("auto", "limit_chain"),
+        ("thickness", "[m]"),
+    ] {
+        let text = said(&["explain", word]);
+        assert!(text.contains(known), "{word}: {text}");
+    }
+    let wrong = voussoir(&["explain", "setlement"]);
+    assert!(code(&wrong) == 2 && String::from_utf8_lossy(&wrong.stderr).contains("did you mean \"settlement\"?"));
+    let manual = said(&["man"]);
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(said(&["completions", shell]).contains("merge"), "{shell}");
+    }
+    for command in ["run", "merge", "new", "explain", "verify", "schema"] {
+        assert!(manual.contains(&format!("COMMAND {}", command.to_uppercase())), "{command}");
+    }
+    let folder = empty_folder("new_study");
+    let new = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).current_dir(&folder).output().expect("it starts")
+    };
+    assert_eq!(code(&new(&["new", "wall", "my wall"])), 0);
+    assert!(text(&folder.join("my wall.toml")).starts_with("name = \"my wall\""));
+    assert_eq!(code(&new(&["new", "wall", "my wall"])), 2);
+    assert_eq!(code(&new(&["new", "wall", "../x"])), 2);
+}
+
 /// `conform` says 0 for a law that conforms, 2 for an unknown tag with the nearest right one; `new law` writes into a crate, once.
 #[test]
 fn a_law_is_checked_and_a_new_one_is_written() {

@@ -122,6 +122,10 @@ impl StudyKind for Optimise {
         results
     }
 
+    fn makes_cases(&self) -> bool {
+        true
+    }
+
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
         if let Some(case) = study.cases.get(label.id) {
             return Some(Cow::Borrowed(case));
