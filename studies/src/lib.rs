@@ -63,7 +63,7 @@ pub use voussoir_core as core;
 pub use voussoir_laws as laws;
 pub use voussoir_solvers as solvers;
 
-/// The README's Rust compiles, and says what it says.
+/// The page's Rust compiles, and gives the numbers that it shows.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-pub struct Readme;
+#[doc = include_str!("../../docs/library.md")]
+pub struct Page;

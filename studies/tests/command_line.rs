@@ -148,7 +148,9 @@ fn points_are_driven() {
     let out_text = out.to_str().expect("a path");
     let case = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name).display().to_string();
     let names = ["cap_uniaxial", "cap_triaxial", "cap_compaction"].map(|name| format!("point_{name}.toml"));
-    for name in names.iter().map(String::as_str).chain(["point_softening.toml", "point_cohesive.toml"]) {
+    for name in
+        names.iter().map(String::as_str).chain(["point_softening.toml", "point_cohesive.toml", "point_wearing.toml"])
+    {
         let output = voussoir(&["run", &case(name), "--out", out_text, "--quiet"]);
         assert_eq!(code(&output), 0, "{name}: {}", String::from_utf8_lossy(&output.stderr));
         assert_eq!(code(&voussoir(&["check", &case(name)])), 0, "{name}");

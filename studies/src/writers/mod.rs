@@ -3,6 +3,7 @@
 //! A writer is one file here: a type with [`Writer`], its card, and a [`WriterEntry`] submitted
 //! to the registry.
 
+mod assumptions;
 pub mod comparison;
 pub mod csv;
 pub mod csv_table;

@@ -1,5 +1,6 @@
 //! The inputs of a study for a page: geometry, materials, joints, loads, stages and solver in words, with units.
 
+use super::assumptions::{assumptions, sources};
 use crate::figures::format::{escape, format_short, format_value, unit_of_key};
 use crate::figures::words::words_of_key;
 use crate::study::{Case, Study};
@@ -10,12 +11,13 @@ use std::fmt::Write;
 const LISTED: usize = 8;
 
 /// Headings of the record with the tables of a study file that stand under them.
-const SECTIONS: [(&str, &str); 6] = [
+const SECTIONS: [(&str, &str); 7] = [
     ("Geometry", "scene"),
     ("Materials", "materials"),
     ("Joints", "joints"),
     ("Vehicles", "vehicles"),
     ("Stages and loads", "stages"),
+    ("Partial factors on these values", "factors"),
     ("Solver", "solver"),
 ];
 
@@ -32,6 +34,8 @@ pub fn record(study: &Study) -> String {
         text += &section(heading, &rows_of(table, value, case));
     }
     text += &section("What varies", &varied(study));
+    text += &section("Assumptions", &assumptions(case));
+    text += &section("Sources", &sources(case));
     text + "</div>\n"
 }
 

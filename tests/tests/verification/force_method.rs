@@ -147,12 +147,13 @@ fn walls_of_a_few_bricks() {
     }
 }
 
-/// Elastic voussoirs: each joint feels its neighbours.
+/// Elastic voussoirs: each joint feels its neighbours. Loads off the middle: which half of a symmetric arch is first is
+/// rounding, on the whole system too.
 #[test]
 fn chains_of_elastic_voussoirs() {
     let mut collapses = 0;
     for law in LAWS {
-        for (voussoirs, rise, span_fraction) in [(13, 2.99, 0.25), (12, 2.0, 0.5)] {
+        for (voussoirs, rise, span_fraction) in [(13, 2.99, 0.25), (12, 2.0, 0.45)] {
             let arch = Arch { joint: law.into(), voussoirs, rise, span_fraction, ends: "jointed", ..Arch::default() };
             let rigid = answered(&Arch { solver: "auto", ..arch.clone() }.study());
             let mesh = "elements = [1, 3]\norder = 2".into();

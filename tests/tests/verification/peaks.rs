@@ -125,3 +125,16 @@ fn peaks_do_not_depend_on_the_strategy_or_the_side() {
         }
     }
 }
+
+/// A small wall on which the load dips at .42419 and rises again to μ, where limit analysis has it: both are in the
+/// result of the exact path, the dip with its fall.
+#[test]
+fn a_load_that_dips_and_rises_again_has_its_first_limit_point_beside_the_greatest() {
+    let result = answered(&format!("{}\n[solver]\nsolver = \"event_path\"\n", include_str!("peaks/3.toml")));
+    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+    assert!(result.certificate.passed, "{:?}", result.certificate);
+    assert_close(result.load_factor.expect("a load"), 1.0981594815099547, 1e-9);
+    assert_close(result.path.first_limit_point.expect("a dip"), 0.4241877893, 1e-9);
+    let [dip] = &result.path.limit_points[..] else { panic!("{:?}", result.path.limit_points) };
+    assert!(dip.stage == "live" && dip.fall > 0.0 && dip.fall < dip.factor, "{dip:?}");
+}

@@ -145,8 +145,7 @@ fn peaks_of_settled_arches_and_piers_are_those_of_the_energy() {
     let tally = family();
     assert!(tally.scenes < 50 || tally.bifurcating >= 10, "{} bifurcate", tally.bifurcating);
     assert!(tally.wrong.is_empty(), "{} wrong:\n{}", tally.wrong.len(), tally.wrong.join("\n"));
-    // 117 and 153 take more than 5000 steps after a peak that is not the greatest.
-    assert!(tally.stalled.len() <= 2, "{} stalled:\n{}", tally.stalled.len(), tally.stalled.join("\n"));
+    assert!(tally.stalled.is_empty(), "{} stalled:\n{}", tally.stalled.len(), tally.stalled.join("\n"));
     assert!(tally.unstable.is_empty(), "{}", tally.unstable.join("\n"));
 }
 
@@ -164,6 +163,22 @@ fn a_small_imperfection_changes_little() {
     }
 }
 
+/// Two arches whose paths fold sharply on their unstable branches, where a joint closes as the load point comes back: the
+/// path goes on from each fold, does not go to and fro between them, and finds all peaks that the energy has.
+#[test]
+fn a_path_goes_on_over_sharp_folds() {
+    let known: [(usize, &[f64]); 2] =
+        [(117, &[73.07374, 82.10837, 763.90797]), (153, &[2.23509, 27.42496, 39.77710, 47.67336])];
+    for (k, peaks) in known {
+        let result = answered(&scene(k).study(FINITE));
+        let found: Vec<f64> = result.path.limit_points.iter().map(|peak| peak.factor).collect();
+        assert!(result.certificate.passed && found.len() < 10, "{k}: {:?} {found:?}", result.notes);
+        for peak in peaks {
+            assert!(found.iter().any(|f| (f - peak).abs() < 1e-6 * peak), "{k}: {peak} is none of {found:?}");
+        }
+    }
+}
+
 /// Peaks that steps once passed over, or took from another branch: (scene, peaks that are right).
 const ONCE_WRONG: [(usize, &[f64]); 5] = [
     (157, &[833.42927]),
@@ -173,17 +188,12 @@ const ONCE_WRONG: [(usize, &[f64]); 5] = [
     (282, &[685.94575]),
 ];
 
-/// Five of 160 scenes of the family: each has the peak that the energy has, but for one at the most whose steps do not
-/// reach the end of the path.
+/// Five of 160 scenes of the family: each has the peak that the energy has.
 #[test]
 fn peaks_that_steps_passed_over() {
-    let mut stalled = Vec::new();
     for (k, right) in ONCE_WRONG {
-        let Some(factor) = answered(&scene(k).study(FINITE)).load_factor else {
-            stalled.push(k);
-            continue;
-        };
+        let result = answered(&scene(k).study(FINITE));
+        let Some(factor) = result.load_factor else { panic!("{k}: {:?}", result.notes) };
         assert!(right.iter().any(|peak| near(factor, *peak)), "{k}: {factor} is none of {right:?}");
     }
-    assert!(stalled.len() <= 1, "{stalled:?}");
 }

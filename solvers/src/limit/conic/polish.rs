@@ -17,8 +17,6 @@ use voussoir_core::linear::{Entries, SparseLdlt};
 const DELTAS: [f64; 2] = [1e-8, 1e-6];
 /// Error at which the active rows are settled.
 const SETTLED: f64 = 1e-13;
-/// Error down to which a slow gain counts.
-const SLOW: f64 = 1e-12;
 /// Error from which rows are exchanged one by one.
 const UNSETTLED: f64 = 1e-11;
 /// Rows exchanged one by one, at the most.
@@ -245,8 +243,7 @@ impl Newton<'_> {
             let gradients = self.gradients();
             let residual = self.residual(&gradients);
             let error = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            // Far from rounding a slow gain is one too: near-degenerate systems converge by a share of the regularisation.
-            if error < if best.0 > SLOW { 0.9 } else { 0.5 } * best.0 {
+            if error < 0.5 * best.0 {
                 without_gain = 0;
             } else {
                 without_gain += 1;
@@ -254,7 +251,7 @@ impl Newton<'_> {
             if error < best.0 {
                 best = (error, self.pair.clone());
             }
-            if error <= 1e-16 || iterations >= 100 || without_gain >= 3 {
+            if error <= 1e-16 || iterations >= 40 || without_gain >= 3 {
                 break;
             }
             if factorised.is_none() || (curved && iterations < 12) {

@@ -3,7 +3,7 @@
 use super::direction::{Next, next_direction};
 use super::elastic_chain::ElasticChain;
 use super::force_method::{Followed, RECORDED, Sections, by_force_method};
-use super::next_event::{advance, next_event};
+use super::next_event::{MOMENT, SAME, advance, next_event};
 use super::rates::Direction;
 use super::system::Load;
 use super::trace::Trace;
@@ -11,7 +11,7 @@ use super::unique::unique;
 use crate::path::outcome::{Outcome, PathRecord};
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak};
 
 /// Rate problems put to the whole system, at most, before the force method is tried again.
 const MOST_RESTS: u32 = 32;
@@ -106,17 +106,24 @@ struct LimitPoints {
     last: f64,
     /// Whether λ has not grown since.
     falling: bool,
-    /// How many.
-    count: u64,
+    /// All, in order.
+    proven: Vec<ProvenPeak>,
 }
 
 impl LimitPoints {
     /// Notes one.
     fn add(&mut self, state: PathState, sense: f64) {
         (self.last, self.falling) = (state.displacement, true);
-        self.count += 1;
+        self.proven.push(proven(&state));
         if self.greatest.as_ref().is_none_or(|greatest| (state.factor - greatest.factor) * sense > 0.0) {
             self.greatest = Some(state);
+        }
+    }
+
+    /// Takes note of how far λ has fallen after the last.
+    fn falls_to(&mut self, factor: f64, sense: f64) {
+        if let Some(last) = self.proven.last_mut().filter(|last| (last.lowest - factor) * sense > 0.0) {
+            last.lowest = factor;
         }
     }
 
@@ -125,6 +132,12 @@ impl LimitPoints {
         let above = |greatest: &PathState| (factor - greatest.factor) * sense > SAME_FACTOR * greatest.factor.abs();
         self.greatest.as_ref().is_none_or(above)
     }
+}
+
+/// A limit point at a state.
+fn proven(state: &PathState) -> ProvenPeak {
+    let PathState { load_step, factor, displacement, .. } = *state;
+    ProvenPeak { load_step, factor, displacement, lowest: factor }
 }
 
 /// Follows all load steps of a problem.
@@ -217,7 +230,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
         f if f < 0.0 => fallen.max(0.0) / -f,
         _ => f64::INFINITY,
     };
-    let (step, hits) = next_event(trace, &direction);
+    let (step, hits) = next_event(trace, &direction, if by_chain { MOMENT } else { SAME });
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
@@ -234,6 +247,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if (all || run.unrecorded.events * RECORDED >= trace.log.counts.rate_problems) && !run.unrecorded.record(trace) {
         return Err(End::Stalled("stopped by its observer".into()));
     }
+    follower.limits.falls_to(trace.state.factor, run.sense);
     if whole && direction.factor < 0.0 {
         trace.log.notes.push("beyond the limit point λ fell back to where the loads began".into());
         return Err(End::LimitPoint);
@@ -368,7 +382,7 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
             trace
                 .log
                 .notes
-                .push(format!("the load rose above all limit points again ({} of them)", follower.limits.count));
+                .push(format!("the load rose above all limit points again ({} of them)", follower.limits.proven.len()));
             Outcome::at(Status::Collapse, Some(trace.state.factor))
         }
         (Some(_), _) => {
@@ -386,7 +400,7 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
 
 /// The answer at the present state, or at the limit point with the present state as its last one.
 fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
-    let Follower { trace, limits, .. } = follower;
+    let Follower { trace, mut limits, .. } = follower;
     let present = trace.present();
     let problem = trace.problem;
     let log = trace.log;
@@ -412,6 +426,10 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     if outcome.status == Status::LimitPoint {
         outcome.factor = Some(state.factor);
     }
-    let (load_step, events, notes) = (state.load_step, log.events, log.notes);
-    outcome.unconfirmed(PathRecord { load_step, state, last, events, counters, notes, ..PathRecord::default() })
+    if outcome.status == Status::LimitPoint && limits.proven.is_empty() {
+        limits.proven.push(proven(&state));
+    }
+    let (load_step, limit_points, events, notes) = (state.load_step, limits.proven, log.events, log.notes);
+    let record = PathRecord { load_step, state, last, limit_points, events, counters, notes, ..PathRecord::default() };
+    outcome.unconfirmed(record)
 }

@@ -9,11 +9,14 @@ use voussoir_core::law::FacetMode;
 use voussoir_core::path::{ContactEvent, PathEvent};
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
-const SAME: f64 = 1e-12;
+pub const SAME: f64 = 1e-12;
+/// The same where redundants give the rates: they are rounded by all sections of their cycle, which must not tell the
+/// two halves of a symmetric arch apart.
+pub const MOMENT: f64 = 1e-11;
 
 /// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
-/// closing) of which points they are.
-pub fn next_event(trace: &Trace, direction: &Direction) -> (f64, Vec<(usize, usize)>) {
+/// closing) of which points they are; slacks and gaps below `same` are events of one moment.
+pub fn next_event(trace: &Trace, direction: &Direction, same: f64) -> (f64, Vec<(usize, usize)>) {
     // A rate that is rounding brings no event.
     let size = direction.x[..2 * trace.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let gap_size = direction.gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -22,7 +25,7 @@ pub fn next_event(trace: &Trace, direction: &Direction) -> (f64, Vec<(usize, usi
     let mut step = f64::INFINITY;
     let mut hits: Vec<(f64, f64, usize, usize)> = Vec::new();
     let mut meet = |when: f64, speed: f64, c: usize, what: usize| {
-        if (when - step) * speed <= SAME {
+        if (when - step) * speed <= same {
             hits.push((when, speed, c, what));
         }
         step = step.min(when);
@@ -47,8 +50,8 @@ pub fn next_event(trace: &Trace, direction: &Direction) -> (f64, Vec<(usize, usi
             }
         }
     }
-    let same = |e: &&(f64, f64, usize, usize)| (e.0 - step) * e.1 <= SAME;
-    (step, hits.iter().filter(same).map(|e| (e.2, e.3)).collect())
+    let now = |e: &&(f64, f64, usize, usize)| (e.0 - step) * e.1 <= same;
+    (step, hits.iter().filter(now).map(|e| (e.2, e.3)).collect())
 }
 
 /// Rate of the opening above the dilated surface.

@@ -1,4 +1,5 @@
-//! Whether a step up to the first peak is short enough for the history of slip (finite displacements, laws of facets).
+//! Whether a step up to the first peak is short enough for the history of slip (finite displacements, flow that is not
+//! associated).
 //!
 //! A step is implicit: what slides at its end has slid by what its gap says, whenever it began. Two things it misses:
 //!
@@ -39,7 +40,8 @@ pub(super) fn missed_slip(
 ) -> Option<f64> {
     // After a peak friction may let the path cycle in small loops: following them closely leads nowhere.
     let short = following.length <= SHORTEST * following.limits.first;
-    if !tracer.system.finite() || tracer.limit.peak.is_some() || short {
+    let matters = tracer.system.finite() && !tracer.system.monotone();
+    if !matters || tracer.limit.peak.is_some() || short {
         return None;
     }
     let missed = at_rest(&tracer.system, &tracer.state, (&following.branch.tangent, plan.step), &trial.next) / MISSED;

@@ -13,7 +13,7 @@ const ROUNDS: [usize; 2] = [40, 12];
 /// factorised anew.
 const RESIDUAL: [f64; 3] = [2e-15, 1e-12, 1e-11];
 /// Residual of gaps beside the rates of forces up to which rates need no refinement either: the error of the forces.
-const ERROR: f64 = 2e-12;
+const ERROR: f64 = 2e-13;
 /// Steps of refinement.
 const REFINEMENTS: usize = 3;
 

@@ -4,16 +4,13 @@ use super::equations::Solution;
 use super::examine::{Change, examine};
 use super::section::Sections;
 use super::state::{Hit, Run};
-use crate::path::event::next_event::{arrive, stepped};
+use crate::path::event::next_event::{MOMENT, arrive, stepped};
 use crate::path::event::system::Load;
 use crate::path::event::trace::Trace;
 use nalgebra::{DVector, Vector3};
 
 /// Points of the active set from which flow that is not associated is not examined for other rates.
 const UNEXAMINED: usize = 7;
-/// Slacks and gaps below this (in scaled units) are events of the same moment: a redundant is rounded by all
-/// sections of its cycle, which must not tell the two halves of a symmetric arch apart.
-const MOMENT: f64 = 1e-11;
 /// Rounds of the active set, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [40, 12];
 /// Events that are all recorded; of more, so many each time their number grows e-fold.
