@@ -105,8 +105,9 @@ impl LoadedStudy for Study {
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
         let stored = request.stored.as_ref().map(|stored| self.own_cases(stored)).unwrap_or_default();
         let is_wanted = |id: &usize| request.wanted.binary_search(id).is_ok();
+        let searches = kind(&self.kind).is_some_and(|kind| kind.searches());
         let kept = |case: &CaseResult| match is_wanted(&case.label.id) {
-            true => request.resume && case.status != Status::Stalled,
+            true => request.resume && !searches && case.status != Status::Stalled,
             false => request.keep,
         };
         let mut done: BTreeMap<usize, CaseResult> = stored.into_iter().filter(|(_, case)| kept(case)).collect();

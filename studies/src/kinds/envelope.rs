@@ -116,6 +116,10 @@ impl StudyKind for Envelope {
         range_mistakes("envelope", request.range, &request.keys(), outline)
     }
 
+    fn searches(&self) -> bool {
+        true
+    }
+
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = Request::of(&study.outline) else { return results };

@@ -39,6 +39,11 @@ pub trait StudyKind: Sync {
         solve_cases(study, wanted, jobs, observer)
     }
 
+    /// Whether it makes further cases: they belong to a whole search, so that a run that is resumed searches again.
+    fn searches(&self) -> bool {
+        false
+    }
+
     /// The case that a result belongs to: one of the study's, or one that this kind has made, which the result's
     /// parameters describe. Without the solver, so that `verify` and writers can ask.
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
