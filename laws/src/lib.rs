@@ -6,6 +6,7 @@ mod parameters;
 mod principal;
 
 pub mod backing;
+pub mod barton_bandis;
 pub mod cohesive;
 pub mod coulomb;
 pub mod coulomb_associated;

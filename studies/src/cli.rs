@@ -1,7 +1,9 @@
 //! The command line: what can be asked for, and which command answers.
 
 use crate::commands;
-use clap::{Parser, Subcommand};
+use crate::commands::new::Template;
+use crate::commands::options::{Options, Shard};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -38,6 +40,39 @@ enum Command {
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
+        /// Solve one part of the study, say 2/8 on the second of eight machines; `merge` puts the parts together
+        #[arg(long, value_name = "M/N", conflicts_with_all = ["case", "open"])]
+        shard: Option<Shard>,
+        /// Print each answered case as a line of JSON, and nothing else on standard output
+        #[arg(long)]
+        json: bool,
+        /// Print id, hash and parameters of each case as a line of JSON, and solve nothing
+        #[arg(long)]
+        list: bool,
+        /// Open the report in a browser when it is written
+        #[arg(long)]
+        open: bool,
+    },
+    /// Put the parts of a study together that were solved with `run --shard`
+    Merge {
+        /// Folders with parts, or parts
+        #[arg(required = true, value_name = "DIR")]
+        dirs: Vec<PathBuf>,
+        /// Where the results go \[default: the folder, where only one is given\]
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Cases checked side by side
+        #[arg(long, default_value_t = 1)]
+        jobs: usize,
+        /// Print nothing but errors
+        #[arg(long)]
+        quiet: bool,
+    },
+    /// Write a commented study that runs as it stands, or a law
+    New {
+        /// What it is about
+        #[command(subcommand)]
+        what: New,
     },
     /// Check a study file without computing anything
     Check {
@@ -64,9 +99,9 @@ enum Command {
         #[arg(long)]
         quiet: bool,
     },
-    /// Explain a plug-in, or how a study will be solved
+    /// Explain a plug-in, a key, a word, or how a study will be solved
     Explain {
-        /// Tag of a plug-in, or a study file
+        /// Tag of a plug-in, key of a study file, a word such as `units`, or a study file
         what: String,
         /// Print the study's first case in another form instead: every block by its vertices
         #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
@@ -79,11 +114,6 @@ enum Command {
         /// Folder for studies that show what was found
         #[arg(long)]
         out: Option<PathBuf>,
-    },
-    /// Write the files of something new
-    New {
-        #[command(subcommand)]
-        what: New,
     },
     /// List plug-ins
     List {
@@ -100,10 +130,61 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         jobs: usize,
     },
+    /// Print the completions of a shell
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page (`voussoir man | man -l -`)
+    Man,
+}
+
+impl Command {
+    /// The exit code of what was asked for; `arguments` are those after the program's name.
+    fn answer(self, arguments: &[String]) -> u8 {
+        match self {
+            Command::Run { studies, out, set, jobs, case, resume, quiet, shard, json, list, open } => {
+                let again = commands::run::going_on(arguments);
+                let options = Options { out, set, jobs, case, resume, quiet, shard, json, list, open, again };
+                commands::run::run(&studies, &options)
+            }
+            Command::Point { studies, out, set, quiet } => {
+                let options = Options { out, set, jobs: 1, quiet, ..Default::default() };
+                commands::run::run(&studies, &options)
+            }
+            Command::Merge { dirs, out, jobs, quiet } => {
+                commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
+            }
+            Command::New { what } => what.answer(),
+            Command::Check { studies, set } => commands::check::check(&studies, &set),
+            Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
+            Command::Explain { what, export: None } => commands::explain::explain(&what),
+            Command::Conform { tags, out } => commands::conform::conform_tags(&tags, out.as_deref()),
+            Command::List { kind } => commands::explain::list(kind.as_deref()),
+            Command::Schema => commands::explain::schema(),
+            Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),
+            Command::Completions { shell } => commands::pages::completions(shell, &mut Cli::command()),
+            Command::Man => commands::pages::man(Cli::command()),
+        }
+    }
 }
 
 #[derive(Subcommand)]
 enum New {
+    /// An arch under a load above quarter span
+    Arch(NewStudy),
+    /// A wall that is pushed or shaken
+    Wall(NewStudy),
+    /// Blocks by their vertices
+    Blocks(NewStudy),
+    /// An arch bridge with fill under a moving axle
+    Bridge(NewStudy),
+    /// One law at one point
+    Point(NewStudy),
+    /// Several laws beside each other
+    Compare(NewStudy),
+    /// Load factors over the rise of an arch, as in a paper
+    Paper(NewStudy),
     /// A law of joints: its file, its page and its test
     Law {
         /// Its tag, which is the name of its file
@@ -114,31 +195,47 @@ enum New {
     },
 }
 
+#[derive(Args)]
+struct NewStudy {
+    /// Its name; the file is NAME.toml \[default: the word itself\]
+    name: Option<String>,
+}
+
+impl New {
+    fn answer(self) -> u8 {
+        let (template, study) = match self {
+            New::Arch(study) => (Template::Arch, study),
+            New::Wall(study) => (Template::Wall, study),
+            New::Blocks(study) => (Template::Blocks, study),
+            New::Bridge(study) => (Template::Bridge, study),
+            New::Point(study) => (Template::Point, study),
+            New::Compare(study) => (Template::Compare, study),
+            New::Paper(study) => (Template::Paper, study),
+            New::Law { tag, out } => return commands::new_law::law(&tag, &out),
+        };
+        commands::new::new(template, study.name.as_deref())
+    }
+}
+
 /// Does what the arguments of the process ask for; 0 all cases answered and certified, 1 some case not,
 /// 2 wrong input, 3 cannot read or write.
 pub fn main() -> ExitCode {
+    match main_from(std::env::args_os().skip(1)) {
+        Ok(code) => ExitCode::from(code),
+        // Asked for help or version, or not understood: said, and ended as clap does.
+        Err(said) => said.exit(),
+    }
+}
+
+/// The same for given arguments, without the program's name; an error is what clap has to say instead.
+pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<u8, clap::Error> {
+    let arguments: Vec<std::ffi::OsString> = arguments.into_iter().collect();
     let wrong = voussoir_core::plugin::audit();
     if !wrong.is_empty() {
         wrong.iter().for_each(|why| eprintln!("voussoir: registry: {why}"));
-        return ExitCode::from(commands::NO_ACCESS);
+        return Ok(commands::NO_ACCESS);
     }
-    let code = match Cli::parse().command {
-        Command::Run { studies, out, set, jobs, case, resume, quiet } => {
-            let options = commands::run::Options { out, set, jobs, case, resume, quiet };
-            commands::run::run(&studies, &options)
-        }
-        Command::Check { studies, set } => commands::check::check(&studies, &set),
-        Command::Point { studies, out, set, quiet } => {
-            let options = commands::run::Options { out, set, jobs: 1, case: None, resume: false, quiet };
-            commands::run::run(&studies, &options)
-        }
-        Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
-        Command::Explain { what, export: None } => commands::explain::explain(&what),
-        Command::Conform { tags, out } => commands::conform::conform_tags(&tags, out.as_deref()),
-        Command::New { what: New::Law { tag, out } } => commands::new::law(&tag, &out),
-        Command::List { kind } => commands::explain::list(kind.as_deref()),
-        Command::Schema => commands::explain::schema(),
-        Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),
-    };
-    ExitCode::from(code)
+    let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let cli = Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments))?;
+    Ok(cli.command.answer(&words))
 }

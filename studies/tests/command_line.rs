@@ -170,3 +170,72 @@ fn points_are_driven() {
     assert_eq!(code(&output), 1, "{said}{}", String::from_utf8_lossy(&output.stderr));
     assert!(said.contains("cannot be reached"), "{said}");
 }
+
+/// Words that a user may ask for are known, and a wrong one gets the nearest; completions and the manual page name every
+/// command.
+#[test]
+fn words_completions_and_manual() {
+    let said = |arguments: &[&str]| {
+        let output = voussoir(arguments);
+        assert_eq!(code(&output), 0, "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    for (word, known) in [
+        ("profiles", "three_centred"),
+        ("segmental", "rise [m]"),
+        ("loads", "span_fraction"),
+        ("stages", "until"),
+        ("settlement", "rotation"),
+        ("sweep", "zip"),
+        ("variants", "outermost"),
+        ("units", "kN/m3"),
+        ("results", "resolved.toml"),
+        ("status", "no_equilibrium"),
+        ("auto", "limit_chain"),
+        ("thickness", "[m]"),
+    ] {
+        let text = said(&["explain", word]);
+        assert!(text.contains(known), "{word}: {text}");
+    }
+    let wrong = voussoir(&["explain", "setlement"]);
+    assert!(code(&wrong) == 2 && String::from_utf8_lossy(&wrong.stderr).contains("did you mean \"settlement\"?"));
+    let manual = said(&["man"]);
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(said(&["completions", shell]).contains("merge"), "{shell}");
+    }
+    for command in ["run", "merge", "new", "explain", "verify", "schema"] {
+        assert!(manual.contains(&format!("COMMAND {}", command.to_uppercase())), "{command}");
+    }
+    let folder = empty_folder("new_study");
+    let new = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).current_dir(&folder).output().expect("it starts")
+    };
+    assert_eq!(code(&new(&["new", "wall", "my wall"])), 0);
+    assert!(text(&folder.join("my wall.toml")).starts_with("name = \"my wall\""));
+    assert_eq!(code(&new(&["new", "wall", "my wall"])), 2);
+    assert_eq!(code(&new(&["new", "wall", "../x"])), 2);
+}
+
+/// `conform` says 0 for a law that conforms, 2 for an unknown tag with the nearest right one; `new law` writes into a crate, once.
+#[test]
+fn a_law_is_checked_and_a_new_one_is_written() {
+    let output = voussoir(&["conform", "coulomb", "elastic"]);
+    assert_eq!(code(&output), 0);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("2 law(s) conform"));
+    let output = voussoir(&["conform", "coulom"]);
+    assert_eq!(code(&output), 2);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("did you mean \"coulomb\"?"));
+    let krate = std::env::temp_dir().join(format!("voussoir-new-law-{}", std::process::id()));
+    std::fs::create_dir_all(&krate).expect("a folder");
+    std::fs::write(krate.join("Cargo.toml"), "[package]\nname = \"own-laws\"\n").expect("a file");
+    let into = krate.to_str().expect("a path");
+    assert_eq!(code(&voussoir(&["new", "law", "shear_pins", "--out", into])), 0);
+    let law = std::fs::read_to_string(krate.join("src/shear_pins.rs")).expect("the law");
+    assert!(law.contains("pub struct ShearPins") && law.contains("tag: \"shear_pins\"") && !law.contains("eyed"));
+    let test = std::fs::read_to_string(krate.join("tests/shear_pins.rs")).expect("its test");
+    assert!(test.contains("use own_laws as _;"));
+    assert_eq!(code(&voussoir(&["new", "law", "shear_pins", "--out", into])), 2, "nothing is overwritten");
+    assert_eq!(code(&voussoir(&["new", "law", "coulomb", "--out", into])), 2, "there is one");
+    assert_eq!(code(&voussoir(&["new", "law", "Shear-Pins", "--out", into])), 2, "no name of a file");
+    std::fs::remove_dir_all(&krate).expect("removed");
+}

@@ -1,10 +1,10 @@
 //! `voussoir list`, `explain` and `schema`.
 
 use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
-use super::files;
+use super::{files, topics};
 use crate::kinds::json_schema::json_schema;
 use std::path::Path;
-use voussoir_core::plugin::{Card, Need, PluginKind, Shape, cards, cards_of, describe, nearest};
+use voussoir_core::plugin::{Card, PluginKind, cards, cards_of, describe, nearest};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> u8 {
@@ -64,13 +64,19 @@ pub fn explain(what: &str) -> u8 {
         };
     }
     let found: Vec<&Card> = cards().into_iter().filter(|card| card.tag == what).collect();
-    if found.is_empty() {
-        let near = nearest(what, cards().into_iter().map(|card| card.tag));
+    let known = topics::explain(what);
+    if found.is_empty() && known.is_empty() {
+        let tags = cards().into_iter().map(|card| card.tag.to_string());
+        let words: Vec<String> = tags.chain(topics::words()).collect();
+        let near = nearest(what, words.iter().map(String::as_str));
         let advice = near.map_or("see `voussoir list`".into(), |tag| format!("did you mean \"{tag}\"?"));
-        eprintln!("no plug-in is called \"{what}\"; {advice}");
+        eprintln!("no plug-in, key or word is called \"{what}\"; {advice}");
         return if what.contains('/') { NO_ACCESS } else { WRONG_INPUT };
     }
     found.iter().for_each(|card| print_card(card));
+    if !known.is_empty() {
+        say(known.trim_end());
+    }
     FINE
 }
 
@@ -80,16 +86,7 @@ fn print_card(card: &Card) {
         say("keys:");
     }
     for parameter in card.parameters {
-        let unit = match &parameter.shape {
-            Shape::Number(quantity, _) if !quantity.unit().is_empty() => format!(" [{}]", quantity.unit()),
-            _ => String::new(),
-        };
-        let need = match parameter.need {
-            Need::Required => "required".to_string(),
-            Need::Optional(otherwise) => format!("optional: otherwise {otherwise}"),
-            Need::Default(value) => format!("default {value}"),
-        };
-        say(format!("  {}{unit}  {} ({need})", parameter.name, parameter.doc));
+        say(format!("  {}", topics::describe(parameter)));
     }
     for (heading, all) in [
         ("offers", card.provides.iter().map(|capability| capability.words.to_string()).collect::<Vec<_>>()),
@@ -99,6 +96,13 @@ fn print_card(card: &Card) {
         if !all.is_empty() {
             say(format!("{heading}: {}", all.join(", ")));
         }
+    }
+    if let Some(sample) = card.samples.first() {
+        let table = if card.kind == PluginKind::InterfaceLaw { "joints" } else { "materials" };
+        say(format!(
+            "\nan example, [{table}.NAME] of a study:\n\n[{table}.NAME]\nlaw = \"{}\"\n{}\n",
+            card.tag, sample.table
+        ));
     }
     card.sources.iter().for_each(|source| say(format!("source: {source}")));
     say(format!("file: {}\n\n{}", card.file, card.page));

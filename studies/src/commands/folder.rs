@@ -2,7 +2,7 @@
 
 use super::codes::NO_ACCESS;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Cases that are finished, a line of JSON each, while a run is under way.
@@ -103,6 +103,13 @@ impl ResultFolder {
 
     /// Writes a file whole or not at all; folders on the way are made.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), u8> {
+        let mut file = self.aside(name)?;
+        let written = file.write_all(bytes);
+        file.done(written)
+    }
+
+    /// Begins a file that gets its name when it is done; folders on the way are made.
+    pub fn aside(&self, name: &str) -> Result<Aside, u8> {
         let place = self.path.join(name);
         let mut folder = self.path.clone();
         for part in Path::new(name).parent().into_iter().flat_map(Path::components) {
@@ -115,18 +122,17 @@ impl ResultFolder {
         }
         no_link(&place)?;
         let aside = self.path.join(format!("{name}.tmp"));
-        let attempt = || -> std::io::Result<()> {
-            // Left behind by a run that was killed; a link is removed, not followed.
-            drop(fs::remove_file(&aside));
-            let mut file = OpenOptions::new().write(true).create_new(true).open(&aside)?;
-            file.write_all(bytes)?;
-            file.sync_data()?;
-            fs::rename(&aside, &place)
-        };
-        attempt().map_err(|error| {
-            drop(fs::remove_file(&aside));
-            refused(&place, error)
-        })
+        // Left behind by a run that was killed; a link is removed, not followed.
+        drop(fs::remove_file(&aside));
+        match OpenOptions::new().write(true).create_new(true).open(&aside) {
+            Ok(file) => Ok(Aside { file: BufWriter::new(file), aside, place }),
+            Err(error) => Err(refused(&place, error)),
+        }
+    }
+
+    /// Removes a file that a run before this one has left.
+    pub fn remove(&self, name: &str) {
+        drop(fs::remove_file(self.path.join(name)));
     }
 
     /// Opens the journal; what a run before it left stays if `keep`. `None` where it cannot be written: that costs
@@ -143,7 +149,7 @@ impl ResultFolder {
     /// Removes what earlier runs have left: the journal, and files that writers name as they please but did not
     /// write this time.
     pub fn remove_left_over(&self, written: &[(String, Vec<u8>)]) {
-        drop(fs::remove_file(self.path.join(JOURNAL)));
+        self.remove(JOURNAL);
         let top = ["results.csv", "curve.csv", "comparison.csv", "report.html"].map(String::from);
         let filled = FILLED.into_iter().flat_map(|folder| {
             let names = entries(&self.path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
@@ -155,6 +161,45 @@ impl ResultFolder {
             }
         }
         FILLED.iter().for_each(|folder| drop(fs::remove_dir(self.path.join(folder))));
+    }
+}
+
+/// A file under another name until it is whole.
+pub struct Aside {
+    file: BufWriter<File>,
+    aside: PathBuf,
+    place: PathBuf,
+}
+
+impl Write for Aside {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Aside {
+    /// Gives the file its name if all was `written`, else removes it and says why.
+    pub fn done(mut self, written: std::io::Result<()>) -> Result<(), u8> {
+        let attempt = written.and_then(|()| self.file.flush()).and_then(|()| {
+            self.file.get_ref().sync_data()?;
+            fs::rename(&self.aside, &self.place)
+        });
+        attempt.map_err(|error| {
+            drop(fs::remove_file(&self.aside));
+            refused(&self.place, error)
+        })
+    }
+}
+
+impl ResultFolder {
+    /// Removes what earlier runs have drawn or tabulated, but for results.json and results.csv.
+    pub fn remove_drawn(&self) {
+        let csv = ("results.csv".to_string(), Vec::new());
+        self.remove_left_over(&[csv]);
     }
 }
 

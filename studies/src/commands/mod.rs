@@ -1,14 +1,25 @@
 //! What each command prints, reads and writes, and its exit code. Nothing else in this crate prints.
 
+mod by_case;
+mod case_lines;
 pub mod check;
 mod codes;
 pub mod conform;
 pub mod explain;
 pub mod files;
 mod folder;
+mod interrupt;
+pub mod merge;
 pub mod new;
+pub mod new_law;
+pub mod options;
+pub mod pages;
 mod progress;
 pub mod run;
+pub mod shard;
+mod stream;
+mod today;
+mod topics;
 pub mod verify;
 
 pub use codes::NO_ACCESS;

@@ -1,75 +1,111 @@
-//! `voussoir new law`: the files of a law, from those of an example that is compiled and tested.
+//! `voussoir new`: commented studies that run as they stand.
 
 use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
-use std::path::Path;
-use voussoir_core::plugin::{PluginKind, card};
+use std::io::{ErrorKind, Write};
 
-/// The example's law, its page, and its test.
-const LAW: &str = include_str!("../../examples/my_law/src/keyed.rs");
-const PAGE: &str = include_str!("../../examples/my_law/src/keyed.md");
-const TEST: &str = include_str!("../../examples/my_law/tests/keyed.rs");
+/// What a new study is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Template {
+    /// An arch under a load above quarter span
+    Arch,
+    /// A wall that is tilted or shaken
+    Wall,
+    /// Blocks by their vertices
+    Blocks,
+    /// An arch bridge with fill under a moving axle
+    Bridge,
+    /// One law at one point
+    Point,
+    /// Several laws beside each other
+    Compare,
+    /// Load factors over the rise of an arch, as in a paper
+    Paper,
+}
 
-/// Why a word cannot be the tag of a new law.
-fn unfit(tag: &str) -> Option<String> {
-    let word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    if !tag.starts_with(|c: char| c.is_ascii_lowercase()) || !tag.chars().all(word) {
-        return Some("a tag is the name of a file: small letters, digits and _, a letter first".into());
+impl Template {
+    /// All of them.
+    #[cfg(test)]
+    const ALL: [Template; 7] = [
+        Template::Arch,
+        Template::Wall,
+        Template::Blocks,
+        Template::Bridge,
+        Template::Point,
+        Template::Compare,
+        Template::Paper,
+    ];
+
+    /// Its word, which is the study's name too.
+    fn word(self) -> &'static str {
+        match self {
+            Template::Arch => "arch",
+            Template::Wall => "wall",
+            Template::Blocks => "blocks",
+            Template::Bridge => "bridge",
+            Template::Point => "point",
+            Template::Compare => "compare",
+            Template::Paper => "paper",
+        }
     }
-    let taken = card(PluginKind::InterfaceLaw, tag)?;
-    Some(format!("there is such a law already: {}", taken.file))
+
+    /// The study file.
+    pub fn text(self) -> &'static str {
+        match self {
+            Template::Arch => include_str!("new/arch.toml"),
+            Template::Wall => include_str!("new/wall.toml"),
+            Template::Blocks => include_str!("new/blocks.toml"),
+            Template::Bridge => include_str!("new/bridge.toml"),
+            Template::Point => include_str!("new/point.toml"),
+            Template::Compare => include_str!("new/compare.toml"),
+            Template::Paper => include_str!("new/paper.toml"),
+        }
+    }
 }
 
-/// `shear_keys` as `ShearKeys`.
-fn type_name(tag: &str) -> String {
-    let capital =
-        |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
-    tag.split('_').map(capital).collect()
-}
-
-/// Writes a law of joints, its page and its test into a crate; nothing that is there is overwritten.
-pub fn law(tag: &str, into: &Path) -> u8 {
-    if let Some(why) = unfit(tag) {
-        eprintln!("voussoir new law {tag}: {why}");
+/// Writes a new study into the folder where the command is given; a file that is there stays.
+pub fn new(what: Template, name: Option<&str>) -> u8 {
+    let word = what.word();
+    let name = name.map_or(word, |name| name.strip_suffix(".toml").unwrap_or(name));
+    if name.is_empty() || name.contains(['/', '\\', '"', ':', '*', '?', '<', '>', '|']) || name.starts_with('.') {
+        eprintln!("voussoir new: \"{name}\" is no name of a study: use letters, digits, blanks, - and _");
         return WRONG_INPUT;
     }
-    let manifest = into.join("Cargo.toml");
-    let text = match std::fs::read_to_string(&manifest) {
-        Ok(text) => text,
+    let text = what.text().replacen(&format!("name = \"{word}\""), &format!("name = \"{name}\""), 1);
+    let file = format!("{name}.toml");
+    let written = std::fs::OpenOptions::new().write(true).create_new(true).open(&file);
+    match written.and_then(|mut out| out.write_all(text.as_bytes())) {
+        Ok(()) => {
+            say(format!("{file} is written; run it with\n  voussoir run {file}"));
+            FINE
+        }
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            eprintln!("voussoir new: {file} is there and stays as it is; give another name: voussoir new {word} NAME");
+            WRONG_INPUT
+        }
         Err(error) => {
-            eprintln!("voussoir: {}: {error}; --out names the folder of a crate", manifest.display());
-            return NO_ACCESS;
+            eprintln!("voussoir new: cannot write {file}: {error}");
+            NO_ACCESS
         }
-    };
-    let table: Option<toml::Table> = text.parse().ok();
-    let Some(name) = table.as_ref().and_then(|table| table.get("package")?.get("name")?.as_str()) else {
-        eprintln!("{}: names no package", manifest.display());
-        return WRONG_INPUT;
-    };
-    let own = |text: &str| {
-        text.replace("Keyed", &type_name(tag)).replace("keyed", tag).replace("my_law", &name.replace('-', "_"))
-    };
-    let mut files = vec![(format!("src/{tag}.rs"), own(LAW)), (format!("src/{tag}.md"), own(PAGE))];
-    // In the tree the conformance tests find every law.
-    if name != "voussoir-laws" {
-        files.push((format!("tests/{tag}.rs"), own(TEST)));
     }
-    if let Some((there, _)) = files.iter().find(|(file, _)| into.join(file).exists()) {
-        eprintln!("voussoir: {} is there already; nothing was written", into.join(there).display());
-        return WRONG_INPUT;
-    }
-    for (file, text) in &files {
-        let place = into.join(file);
-        let written =
-            std::fs::create_dir_all(place.parent().unwrap_or(into)).and_then(|()| std::fs::write(&place, text));
-        if let Err(error) = written {
-            eprintln!("voussoir: cannot write {}: {error}", place.display());
-            return NO_ACCESS;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinds::{RunRequest, read_study};
+    use crate::solve::Unobserved;
+
+    /// Every template is free of mistakes and is answered with proof.
+    #[test]
+    fn templates_run_as_they_stand() {
+        for template in Template::ALL {
+            let word = template.word();
+            assert!(template.text().starts_with(&format!("name = \"{word}\" ")), "{word}");
+            let study = read_study(template.text(), word, &[("output.figures".into(), "false".into())]);
+            let study = study.unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+            assert!(study.notes().is_empty(), "{word}: {:?}", study.notes());
+            let request = RunRequest { wanted: (0..study.count()).collect(), jobs: 1, ..RunRequest::default() };
+            assert!(study.run(&request, &Unobserved).certified, "{word}");
         }
-        say(format!("{}", place.display()));
     }
-    say(format!(
-        "add `pub mod {tag};` to {}, change the equations, and say `voussoir conform {tag}`",
-        into.join("src/lib.rs").display()
-    ));
-    FINE
 }

@@ -1,22 +1,39 @@
 //! Progress on a terminal, and the journal of finished cases for `--resume`.
 
+use super::codes::say;
+use super::interrupt;
 use crate::results::CaseResult;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::Value as Json;
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+/// What a run shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// Nothing but errors.
+    Nothing,
+    /// How far it has come, on a terminal.
+    Bar,
+    /// The same, and each answered case as a line of JSON on standard output.
+    Lines,
+}
+
 /// Shows progress on a terminal and keeps finished cases.
 pub struct Progress {
     bar: ProgressBar,
-    quiet: bool,
+    shown_as: Shown,
     name: String,
     started: Instant,
     /// When a path was last shown, in tenths of a second since the start.
     shown: AtomicU64,
     journal: Mutex<Option<std::fs::File>>,
+    /// Ids of the cases whose lines are on standard output.
+    said: Mutex<BTreeSet<usize>>,
 }
 
 /// Tenths of a second after which a path counts as long and is shown.
@@ -24,15 +41,25 @@ const LONG: u64 = 10;
 
 impl Progress {
     /// Progress of the study called `name`; finished cases are added to the file `journal`.
-    pub fn new(name: &str, quiet: bool, journal: Option<std::fs::File>) -> Self {
+    pub fn new(name: &str, shown_as: Shown, journal: Option<std::fs::File>) -> Self {
         Progress {
             bar: ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
-            quiet,
+            shown_as,
             name: name.into(),
             started: Instant::now(),
             shown: AtomicU64::new(0),
             journal: Mutex::new(journal),
+            said: Mutex::default(),
         }
+    }
+
+    /// Says as lines those cases of a results.json that were not answered while it looked on: finished earlier, made by
+    /// the study's kind, or of a kind that answers none.
+    pub fn say_others(&self, results: &[u8]) {
+        let results: Json = serde_json::from_slice(results).unwrap_or_default();
+        let said = self.said.lock().map(|said| said.clone()).unwrap_or_default();
+        let known = |case: &&Json| case["id"].as_u64().is_none_or(|id| !said.contains(&(id as usize)));
+        results["cases"].as_array().into_iter().flatten().filter(known).for_each(say);
     }
 
     /// Takes the bar off the terminal.
@@ -41,14 +68,30 @@ impl Progress {
     }
 }
 
+impl Progress {
+    /// Adds a finished case to the journal.
+    fn keep(&self, line: &str) {
+        let Ok(mut journal) = self.journal.lock() else { return };
+        // A line of its own even after one that was cut short, and in one piece.
+        if let Some(file) = journal.as_mut()
+            && let Err(error) = file.write_all(format!("\n{line}\n").as_bytes())
+        {
+            // It costs only the chance to go on after an interruption.
+            eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
+            *journal = None;
+        }
+    }
+}
+
 impl Observer for Progress {
     fn begins(&self, cases: usize) {
         self.bar.set_length(cases as u64);
-        if !self.quiet && cases > 0 {
+        interrupt::begins(cases);
+        if self.shown_as != Shown::Nothing && cases > 0 {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         // One case is no share of anything: what shows is where its path has come to, once that is long.
-        let template = if cases < 2 { "{msg}" } else { "{msg} {bar:30} {pos}/{len} {eta}" };
+        let template = if cases < 2 { "{msg}" } else { "{msg}: solving {bar:30} {pos}/{len} cases, {eta} left" };
         self.bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
         if cases > 1 {
             self.bar.set_message(self.name.clone());
@@ -57,15 +100,21 @@ impl Observer for Progress {
 
     fn answered(&self, case: &CaseResult) {
         self.bar.inc(1);
-        let Ok(mut journal) = self.journal.lock() else { return };
-        if let (Some(file), Ok(line)) = (journal.as_mut(), serde_json::to_string(case)) {
-            // A line of its own even after one that was cut short, and in one piece.
-            if let Err(error) = file.write_all(format!("\n{line}\n").as_bytes()) {
-                // It costs only the chance to go on after an interruption.
-                eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
-                *journal = None;
+        let line = serde_json::to_string(case).unwrap_or_default();
+        self.keep(&line);
+        interrupt::finished();
+        if self.shown_as == Shown::Lines {
+            if let Ok(mut said) = self.said.lock() {
+                said.insert(case.label.id);
             }
+            say(line);
         }
+    }
+
+    fn phase(&self, what: &str) {
+        self.bar.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+        self.bar.set_message(format!("{}: {what}", self.name));
+        self.bar.tick();
     }
 
     fn on_path(&self, at: &PathProgress) {

@@ -3,24 +3,19 @@
 use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
+use super::options::{Options, useful_jobs};
 use super::progress::Progress;
-use crate::kinds::{LoadedStudy, RunRequest};
+use super::today::today;
+use super::{interrupt, shard, stream};
+use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
+use crate::results::CaseLabel;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Options of the command.
-pub struct Options {
-    /// Where results go.
-    pub out: Option<PathBuf>,
-    /// KEY=VALUE overrides.
-    pub set: Vec<String>,
-    /// Cases side by side.
-    pub jobs: usize,
-    /// Only this case.
-    pub case: Option<usize>,
-    /// Go on from finished cases.
-    pub resume: bool,
-    /// Print nothing but errors.
-    pub quiet: bool,
+/// The arguments of a run with which it goes on where it was interrupted.
+pub fn going_on(arguments: &[String]) -> Vec<String> {
+    let resume = (!arguments.iter().any(|word| word == "--resume")).then(|| "--resume".to_string());
+    arguments.iter().cloned().chain(resume).collect()
 }
 
 /// Runs studies of any kind; the greatest exit code of them. Every study is checked before the first is run.
@@ -42,6 +37,10 @@ pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
     if wrong != FINE {
         return wrong;
     }
+    if options.list {
+        return studies.iter().map(|(_, study)| list(study.as_ref(), options)).max().unwrap_or(FINE);
+    }
+    interrupt::catch(&options.again);
     let mut code = FINE;
     for (path, study) in &studies {
         let dir = match &options.out {
@@ -98,11 +97,6 @@ fn results_of_another(path: &Path, dir: &Path) -> u8 {
     WRONG_INPUT
 }
 
-/// Cases side by side that help: no more than processors.
-pub(super) fn useful_jobs(jobs: usize) -> usize {
-    jobs.clamp(1, std::thread::available_parallelism().map_or(1, usize::from))
-}
-
 /// Ids of the cases that are asked for.
 fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, u8> {
     match case {
@@ -116,12 +110,73 @@ fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, u8
     }
 }
 
+/// Prints the label of each case as a line of JSON.
+fn list(study: &dyn LoadedStudy, options: &Options) -> u8 {
+    let Some(cases) = study.cases() else {
+        (0..study.count()).for_each(|id| say(json!({ "study": study.name(), "id": id })));
+        return FINE;
+    };
+    let ids = match (options.case, shard::ids_of(study, options.shard)) {
+        (Some(id), _) => vec![id],
+        (None, Ok(ids)) => ids,
+        (None, Err(code)) => return code,
+    };
+    for case in ids.into_iter().filter_map(|id| cases.case(id)) {
+        let hash = case.hash();
+        let label = CaseLabel {
+            id: case.id,
+            case_hash: hash,
+            variant: case.variant.clone(),
+            scene: case.scene.clone(),
+            parameters: case.parameters.clone(),
+        };
+        say(serde_json::to_string(&label).unwrap_or_default());
+    }
+    FINE
+}
+
+/// Opens a file as the desktop does; that it cannot is no error of the run.
+fn open(path: &Path) {
+    let program = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let started = std::process::Command::new(program)
+        .arg(path)
+        .stdin(std::process::Stdio::null())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn();
+    if let Err(error) = started {
+        eprintln!("voussoir: {} cannot be opened with {program}: {error}", path.display());
+    }
+}
+
 fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) -> Result<u8, u8> {
-    let resolved = toml::to_string(study.resolved()).map_err(|error| {
+    let resolved = study.resolved_text().map_err(|error| {
         eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name());
         NO_ACCESS
     })?;
+    let resolved = format!("{SOURCE}{}\n{resolved}", path.display().to_string().replace(['\n', '\r'], " "));
     let wanted = wanted(study, options.case)?;
+    if let Some(shard) = options.shard {
+        return shard::run(study, shard, dir, &resolved, options);
+    }
+    if let Some(CasesOf::Streamed(sweep)) = study.cases() {
+        return stream::run(sweep, dir, &resolved, options);
+    }
+    run_held(study, wanted, dir, &resolved, options)
+}
+
+/// Runs a study whose cases are held, all at once.
+fn run_held(
+    study: &dyn LoadedStudy,
+    wanted: Vec<usize>,
+    dir: &Path,
+    resolved: &str,
+    options: &Options,
+) -> Result<u8, u8> {
     let folder = ResultFolder::open(dir)?;
     let (mut code, mut parts) = (FINE, Vec::new());
     for part in study.parts() {
@@ -131,7 +186,7 @@ fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) 
     }
     let keep = options.case.is_some();
     let stored = (options.resume || keep).then(|| [folder.read("results.json"), folder.read(JOURNAL)]);
-    let progress = Progress::new(study.name(), options.quiet, folder.journal(options.resume || keep));
+    let progress = Progress::new(study.name(), options.shown(), folder.journal(options.resume || keep));
     let request = RunRequest {
         wanted,
         jobs: useful_jobs(options.jobs),
@@ -144,7 +199,6 @@ fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) 
     };
     let output = study.run(&request, &progress);
     progress.finish();
-    let resolved = format!("{SOURCE}{}\n{resolved}", path.display().to_string().replace(['\n', '\r'], " "));
     folder.write("resolved.toml", resolved.as_bytes())?;
     // What is worth most comes first: a disk may be full.
     let (results, others): (Vec<_>, Vec<_>) = output.files.iter().partition(|(name, _)| name == "results.json");
@@ -152,46 +206,19 @@ fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) 
         folder.write(name, bytes)?;
     }
     folder.remove_left_over(&output.files);
-    if !options.quiet {
+    if options.json {
+        output
+            .files
+            .iter()
+            .filter(|(name, _)| name == "results.json")
+            .for_each(|(_, bytes)| progress.say_others(bytes));
+    } else if !options.quiet {
         say(output.table);
         output.remarks.iter().for_each(say);
         say(format!("results in {}", folder.path().display()));
     }
+    if options.open && output.files.iter().any(|(name, _)| name == "report.html") {
+        open(&folder.path().join("report.html"));
+    }
     Ok(code.max(if output.certified { FINE } else { NOT_PROVEN }))
-}
-
-/// The day in UTC, as 2026-11-22.
-fn today() -> String {
-    let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    date_of(seconds / 86_400)
-}
-
-/// The date so many days after the first of January 1970.
-fn date_of(mut days: u64) -> String {
-    let leap = |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
-    let mut year = 1970;
-    while days >= 365 + u64::from(leap(year)) {
-        days -= 365 + u64::from(leap(year));
-        year += 1;
-    }
-    let lengths = [31, 28 + u64::from(leap(year)), 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
-    let mut month = 0;
-    while days >= lengths[month] {
-        days -= lengths[month];
-        month += 1;
-    }
-    format!("{year}-{:02}-{:02}", month + 1, days + 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::date_of;
-
-    #[test]
-    fn days_are_dates() {
-        assert_eq!(
-            [0, 59, 11_016, 11_017, 20_778].map(date_of),
-            ["1970-01-01", "1970-03-01", "2000-02-29", "2000-03-01", "2026-11-21"]
-        );
-    }
 }

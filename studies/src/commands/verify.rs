@@ -2,8 +2,8 @@
 
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
 use super::files;
-use super::progress::Progress;
-use super::run::useful_jobs;
+use super::options::useful_jobs;
+use super::progress::{Progress, Shown};
 use crate::kinds::StoredResults;
 use std::path::Path;
 
@@ -22,7 +22,7 @@ fn confirm(dir: &Path, jobs: usize) -> Result<u8, u8> {
     for part in study.parts() {
         code = code.max(confirm(&dir.join(&part.folder), jobs)?);
     }
-    let progress = Progress::new(study.name(), false, None);
+    let progress = Progress::new(study.name(), Shown::Bar, None);
     let file = |name: &str| std::fs::read(dir.join(name)).ok();
     let stored = StoredResults { results: &results, jobs: useful_jobs(jobs), file: &file };
     let found = study.verify_stored(&stored, &progress);

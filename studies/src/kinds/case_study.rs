@@ -1,7 +1,7 @@
 //! Studies with a scene as commands see them: their cases are solved as their kind says, certified, and written by
 //! all writers.
 
-use super::kind::{LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
+use super::kind::{CasesOf, LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::format_number;
 use crate::figures::sweep::study_chart;
@@ -35,6 +35,22 @@ impl Study {
         StudyResults { study, version, date: None, only_cases, cases, comparison: own.comparison, own: own.other }
     }
 
+    /// What a run with these results, in order of id, writes and says; `date` is its day.
+    pub fn output_of(&self, version: &str, date: Option<String>, cases: Vec<CaseResult>, jobs: usize) -> RunOutput {
+        let results = StudyResults { date, ..self.results(version, cases) };
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        let output = StudyOutput::new(self, &results, &cases);
+        let files = side_by_side(jobs, || written(&output));
+        let mut table = results_table(&output);
+        if let Some(comparison) = &results.comparison {
+            table += "\n";
+            table += &comparison_table(comparison);
+        }
+        table += &found(&results.own);
+        let certified = results.certified();
+        RunOutput { files, table, remarks: Vec::new(), certified }
+    }
+
     /// Stored cases that are this study's own: of the same label, and of the same resolved case.
     fn own_cases(&self, [results, journal]: &[String; 2]) -> BTreeMap<usize, CaseResult> {
         let whole = serde_json::from_str::<StudyResults>(results).map(|results| results.cases).unwrap_or_default();
@@ -66,6 +82,10 @@ impl LoadedStudy for Study {
 
     fn explain(&self) -> String {
         explain(self)
+    }
+
+    fn cases(&self) -> Option<CasesOf<'_>> {
+        Some(CasesOf::Held(self))
     }
 
     fn piece(&self, results: &str, piece: Piece) -> Option<String> {
@@ -105,9 +125,10 @@ impl LoadedStudy for Study {
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
         let stored = request.stored.as_ref().map(|stored| self.own_cases(stored)).unwrap_or_default();
         let is_wanted = |id: &usize| request.wanted.binary_search(id).is_ok();
-        let searches = kind(&self.kind).is_some_and(|kind| kind.searches());
+        // A finished case does not tell which cases its kind has made from it.
+        let resume = request.resume && !kind(&self.kind).is_some_and(|kind| kind.makes_cases());
         let kept = |case: &CaseResult| match is_wanted(&case.label.id) {
-            true => request.resume && !searches && case.status != Status::Stalled,
+            true => resume && case.status != Status::Stalled,
             false => request.keep,
         };
         let mut done: BTreeMap<usize, CaseResult> = stored.into_iter().filter(|(_, case)| kept(case)).collect();
@@ -118,19 +139,10 @@ impl LoadedStudy for Study {
             let solved = kind.solve(self, &rest, request.jobs, observer);
             done.extend(solved.into_iter().map(|case| (case.label.id, case)));
         }
-        let cases = done.into_values().collect();
-        let results = StudyResults { date: request.date.clone(), ..self.results(&request.version, cases) };
-        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
-        let output = StudyOutput::new(self, &results, &cases);
-        let files = side_by_side(request.jobs, || written(&output));
-        let mut table = results_table(&output);
-        if let Some(comparison) = &results.comparison {
-            table += "\n";
-            table += &comparison_table(comparison);
-        }
-        table += &found(&results.own);
-        let certified = results.certified() && !observer.cancelled();
-        RunOutput { files, table, remarks: remarks(request, others, self.count()), certified }
+        observer.phase("writing and drawing");
+        let output = self.output_of(&request.version, request.date.clone(), done.into_values().collect(), request.jobs);
+        let certified = output.certified && !observer.cancelled();
+        RunOutput { remarks: remarks(request, others, self.count()), certified, ..output }
     }
 
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
@@ -178,7 +190,7 @@ fn found(own: &Map<String, Json>) -> String {
 }
 
 /// What `verify` has done with each case.
-const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver; then every number \
+pub(super) const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver; then every number \
 and word against solving the case again (the histories of paths are not stored); tables and figures against results.json. \
 Not checked: counters, seconds, version";
 

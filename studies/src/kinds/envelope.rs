@@ -116,16 +116,16 @@ impl StudyKind for Envelope {
         range_mistakes("envelope", request.range, &request.keys(), outline)
     }
 
-    fn searches(&self) -> bool {
-        true
-    }
-
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = Request::of(&study.outline) else { return results };
         let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request, observer)).collect::<Vec<_>>();
         results.extend(side_by_side(jobs, all));
         results
+    }
+
+    fn makes_cases(&self) -> bool {
+        true
     }
 
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {

@@ -3,7 +3,7 @@
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, Unobserved, solve_cases};
-use crate::study::{Case, Outline, ReadFile, Study, StudySource};
+use crate::study::{Case, Outline, ReadFile, Study, StudySource, Sweep};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Diagnostic, Parameter};
@@ -39,8 +39,8 @@ pub trait StudyKind: Sync {
         solve_cases(study, wanted, jobs, observer)
     }
 
-    /// Whether it makes further cases: they belong to a whole search, so that a run that is resumed searches again.
-    fn searches(&self) -> bool {
+    /// Whether [`StudyKind::solve`] makes cases besides those of the study.
+    fn makes_cases(&self) -> bool {
         false
     }
 
@@ -78,6 +78,11 @@ pub trait LoadedStudy: Send + Sync {
     /// The file with `--set` applied.
     fn resolved(&self) -> &toml::Value;
 
+    /// The same as text; an error where TOML cannot hold it.
+    fn resolved_text(&self) -> Result<String, String> {
+        toml::to_string(self.resolved()).map_err(|error| error.to_string())
+    }
+
     /// What a user should know before it is run: each note of its cases once.
     fn notes(&self) -> Vec<String> {
         Vec::new()
@@ -103,6 +108,11 @@ pub trait LoadedStudy: Send + Sync {
         Err("this study has no scene".into())
     }
 
+    /// Its cases, where they can be solved in parts and put together again.
+    fn cases(&self) -> Option<CasesOf<'_>> {
+        None
+    }
+
     /// Solves what is wanted and turns it into the texts of files.
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
 
@@ -113,6 +123,15 @@ pub trait LoadedStudy: Send + Sync {
     fn verify(&self, results: &str) -> Result<Verification, String> {
         self.verify_stored(&StoredResults { results, jobs: 1, file: &|_| None }, &Unobserved)
     }
+}
+
+/// The cases of a study.
+#[derive(Debug, Clone, Copy)]
+pub enum CasesOf<'a> {
+    /// All of them are held.
+    Held(&'a Study),
+    /// They are so many that each is made when it is needed.
+    Streamed(&'a Sweep),
 }
 
 /// A study that is run for another one, which reports on it.

@@ -1,5 +1,6 @@
 //! Study kinds: what is done with the cases of a study. One file each; file = tag.
 
+mod by_case;
 mod case_study;
 pub mod compare;
 pub mod envelope;
@@ -13,10 +14,11 @@ pub mod report;
 pub mod run;
 mod run_study;
 mod search;
+mod streamed;
 
 pub use kind::{
-    KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind, Verification,
-    kind, kinds,
+    CasesOf, KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind,
+    Verification, kind, kinds,
 };
 pub use read::{read_source, read_source_beside, read_study};
 pub use run_study::RunOptions;

@@ -103,10 +103,6 @@ impl StudyKind for Optimise {
         range_mistakes("optimise", request.range, &request.keys, outline)
     }
 
-    fn searches(&self) -> bool {
-        true
-    }
-
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = Request::of(&study.outline) else { return results };
@@ -124,6 +120,10 @@ impl StudyKind for Optimise {
         };
         results.extend(side_by_side(jobs, all));
         results
+    }
+
+    fn makes_cases(&self) -> bool {
+        true
     }
 
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {

@@ -2,8 +2,11 @@
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::config::diagnostic::LocatedDiagnostic;
-use crate::study::{Study, StudySource};
+use crate::study::{StudyFile, StudySource};
 use voussoir_core::plugin::{Card, PluginKind};
+
+/// Studies of more cases are streamed: each case is made, solved, written and forgotten.
+pub const HELD: usize = 5000;
 
 struct Run;
 
@@ -16,13 +19,14 @@ voussoir_core::inventory::submit! {
         summary: "answers every case of the study (variants × sweep) on its own",
         parameters: &[],
         file: file!(),
-        page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case.\n",
+        page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case. More than 5000 cases are made, solved, written and forgotten one by one: memory does not grow with their number, results.json and results.csv are written, and nothing is drawn.\n",
         ..Card::BLANK
     }
 }
 
 impl StudyKind for Run {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
-        Ok(Box::new(Study::from_source(source)?))
+        let file = StudyFile::read(source)?;
+        if file.count() > HELD { Ok(Box::new(file.sweep()?)) } else { Ok(Box::new(file.study()?)) }
     }
 }

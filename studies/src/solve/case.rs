@@ -79,14 +79,17 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     result.certificate.failures.extend(wrong);
 }
 
+/// Solves one case while an observer looks on, and tells it; `None` where it has cancelled before that.
+pub fn solve_followed(case: &Case, observer: &dyn Observer) -> Option<CaseResult> {
+    let result = solve_unless_cancelled(case, observer)?;
+    observer.answered(&result);
+    Some(result)
+}
+
 /// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`. Those
 /// that are not answered when the observer cancels are left out.
 pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-    let one = |id: &usize| {
-        let result = solve_unless_cancelled(&study.cases[*id], observer)?;
-        observer.answered(&result);
-        Some(result)
-    };
+    let one = |id: &usize| solve_followed(&study.cases[*id], observer);
     if jobs > 1 {
         side_by_side(jobs, || wanted.par_iter().filter_map(one).collect())
     } else {

@@ -14,8 +14,13 @@ use voussoir_core::plugin::{PluginKind, card};
 
 /// What will be solved, in words, for the first case; the others differ by their parameters only.
 pub fn explain(study: &Study) -> String {
-    let mut text = format!("study \"{}\" ({}): {} case(s)\n", study.name, study.kind, study.cases.len());
-    match study.cases.first() {
+    explain_first(&study.name, &study.kind, study.cases.len(), study.cases.first())
+}
+
+/// The same of a study by name, kind, number of cases and its first case.
+pub fn explain_first(name: &str, kind: &str, cases: usize, first: Option<&Case>) -> String {
+    let mut text = format!("study \"{name}\" ({kind}): {cases} case(s)\n");
+    match first {
         Some(case) => explain_case(case, &mut text),
         None => text.push_str("nothing to solve\n"),
     }

@@ -30,6 +30,11 @@ pub trait Observer: Sync {
         let _ = cases;
     }
 
+    /// What is done from now on, in a word or two, after the cases are solved.
+    fn phase(&self, what: &str) {
+        let _ = what;
+    }
+
     /// A case is answered.
     fn answered(&self, case: &CaseResult) {
         let _ = case;

@@ -106,7 +106,7 @@ impl Survey {
             let row = Row { cells: cells(line, separator), columns: &columns, decimal_comma: separator != ',' };
             match row.points(&|column| at(number, column)) {
                 Ok(points) => points.into_iter().for_each(|(curve, point)| survey.curves[curve].push(point)),
-                Err(wrong) => mistakes.push(wrong),
+                Err(wrong) => mistakes.push(*wrong),
             }
         }
         if mistakes.is_empty()
@@ -141,7 +141,7 @@ impl Survey {
                 None if lower == "curve" => Some(Column::Curve),
                 None => axis(&lower).map(|axis| Column::Coordinate { curve: None, axis, unit: *unit }),
             };
-            let near = voussoir_core::plugin::nearest(&lower, COLUMNS.into_iter()).is_some();
+            let near = voussoir_core::plugin::nearest(&lower, COLUMNS).is_some();
             match column {
                 None if near => {
                     let help = suggest(&lower, &COLUMNS, "columns");
@@ -185,7 +185,7 @@ struct Row<'a> {
 
 impl Row<'_> {
     /// Its points with the curve they are of; a pair of empty cells is none.
-    fn points(&self, at: &dyn Fn(usize) -> Origin) -> Result<Vec<(usize, [f64; 2])>, LocatedDiagnostic> {
+    fn points(&self, at: &dyn Fn(usize) -> Origin) -> Result<Vec<(usize, [f64; 2])>, Box<LocatedDiagnostic>> {
         let mut of_line = None;
         let mut found = [[None; 2]; 3];
         for (&(place, cell), column) in self.cells.iter().zip(self.columns) {
@@ -194,14 +194,18 @@ impl Row<'_> {
                     of_line = CURVES.iter().position(|name| *name == cell.to_lowercase());
                     if of_line.is_none() {
                         let message = format!("\"{cell}\" is neither intrados nor extrados");
-                        return Err(LocatedDiagnostic::new(&at(place), "", message));
+                        return Err(Box::new(LocatedDiagnostic::new(&at(place), "", message)));
                     }
                 }
                 Column::Coordinate { curve, axis, unit } if !cell.is_empty() => {
                     let written = if self.decimal_comma { cell.replace(',', ".") } else { cell.to_string() };
                     let number = written.parse::<f64>().ok().filter(|number| number.is_finite());
                     let Some(number) = number else {
-                        return Err(LocatedDiagnostic::new(&at(place), "", format!("\"{cell}\" is not a number")));
+                        return Err(Box::new(LocatedDiagnostic::new(
+                            &at(place),
+                            "",
+                            format!("\"{cell}\" is not a number"),
+                        )));
                     };
                     found[curve.unwrap_or(2)][axis] = Some(number * unit);
                 }
@@ -218,12 +222,12 @@ impl Row<'_> {
                 [None, None] => {}
                 _ => {
                     let message = format!("a point of the {} has only one coordinate", CURVES[curve]);
-                    return Err(LocatedDiagnostic::new(&at(1), "", message));
+                    return Err(Box::new(LocatedDiagnostic::new(&at(1), "", message)));
                 }
             }
         }
         if points.is_empty() {
-            return Err(LocatedDiagnostic::new(&at(1), "", "this line has no point"));
+            return Err(Box::new(LocatedDiagnostic::new(&at(1), "", "this line has no point")));
         }
         Ok(points)
     }

@@ -43,14 +43,20 @@ const AFTER: [&str; 18] = [
 /// The table of a study: a cell is empty where a case has no such value; lists are separated by
 /// blanks, notes by ` | `.
 pub fn results_csv(study: &StudyOutput) -> String {
-    let keys = study.sweep_keys.iter().map(|key| key_with_unit(key));
     let scenes = study.results.cases.iter().any(|case| case.label.scene.is_some());
-    let before = BEFORE.iter().copied().chain(scenes.then_some("scene"));
-    let header = before.map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string()));
-    csv_table(header.collect(), study.results.cases.iter().map(|case| row(case, scenes, &study.sweep_keys)))
+    let rows = study.results.cases.iter().map(|case| row(case, scenes, &study.sweep_keys));
+    csv_table(header(&study.sweep_keys, scenes), rows)
 }
 
-fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<String> {
+/// Names of the columns, where `keys` are swept; with one for scenes where several are compared.
+pub(super) fn header(keys: &[String], scenes: bool) -> Vec<String> {
+    let keys = keys.iter().map(|key| key_with_unit(key));
+    let before = BEFORE.iter().copied().chain(scenes.then_some("scene"));
+    before.map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string())).collect()
+}
+
+/// The row of a case under that header.
+pub(super) fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<String> {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     let joints = |list: Vec<usize>| list.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let mechanism = case.mechanism.as_ref();

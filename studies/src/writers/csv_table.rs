@@ -1,13 +1,38 @@
 //! Tables as CSV, of which no cell is a formula to a spreadsheet.
 
+use std::io::{self, Write};
+
 /// A table with its header. Rows are as long as the header.
 pub fn csv_table(header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in std::iter::once(header).chain(rows) {
-        writer.write_record(row.into_iter().map(plain)).expect("every row is as long as the header");
+    let whole = || -> io::Result<Vec<u8>> {
+        let mut table = CsvRows::new(Vec::new(), header)?;
+        for row in rows {
+            table.add(row)?;
+        }
+        table.finish()
+    };
+    String::from_utf8(whole().expect("every row is as long as the header")).expect("every cell is text")
+}
+
+/// The same table, row by row.
+pub struct CsvRows<W: Write>(csv::Writer<W>);
+
+impl<W: Write> CsvRows<W> {
+    /// Writes the header.
+    pub fn new(out: W, header: Vec<String>) -> io::Result<Self> {
+        let mut rows = CsvRows(csv::Writer::from_writer(out));
+        rows.add(header).map(|()| rows)
     }
-    let bytes = writer.into_inner().expect("writing to memory does not fail");
-    String::from_utf8(bytes).expect("every cell is text")
+
+    /// Writes a row, as long as the header.
+    pub fn add(&mut self, row: Vec<String>) -> io::Result<()> {
+        Ok(self.0.write_record(row.into_iter().map(plain))?)
+    }
+
+    /// Where it was written to, all of it.
+    pub fn finish(self) -> io::Result<W> {
+        self.0.into_inner().map_err(|error| error.into_error())
+    }
 }
 
 /// A cell that is text or a number: what a spreadsheet would read as a formula gets an apostrophe in front, which

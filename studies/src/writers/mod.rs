@@ -15,6 +15,7 @@ pub mod record;
 mod register;
 pub mod report;
 pub mod results_json;
+pub mod stream;
 mod study_output;
 pub mod table;
 pub mod vtu;

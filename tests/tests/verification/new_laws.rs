@@ -85,6 +85,26 @@ fn a_rough_block_wears_smooth() {
     assert!(compared >= 5 && furthest > 2e-3, "{compared} points up to {furthest:e} m");
 }
 
+/// Pressed evenly to 1 MPa by its weight and pushed in the plane of the joint, a block slides at tan(25° + 10 log10 100) = 1 of it.
+#[test]
+fn a_rock_joint_slides_at_its_peak_strength() {
+    let joint = "law = \"barton_bandis\"\nroughness = 10.0\nwall_strength = 1e8\nresidual_angle = 25.0\ngreatest_closure = 2e-4";
+    let text = pushed(
+        joint,
+        1.0,
+        "newton_path",
+        "continuation = { strategy = \"arc_length\" }\nstop = { displacement = 1e-3 }",
+    );
+    // 10 kN on 0.01 m².
+    let text = text.replace("width = 0.1", "width = 0.01").replace("200 kN/m3", "2000 kN/m3");
+    let text = text
+        .replace("normal_stiffness = 1e11", "normal_stiffness = 1e10")
+        .replace("point = [0, 0.05]", "point = [0.0, 0.0]");
+    let result = answered(&text);
+    certified(&result);
+    assert_close(result.load_factor.expect("a factor"), 10.0, 1e-9);
+}
+
 /// What has no facets is refused by name where facets are needed, with who can take it.
 #[test]
 fn wear_is_refused_by_limit_analysis_by_name() {

@@ -112,12 +112,8 @@ impl InterfaceResponse for Mutated {
             "nothing_stored" => said.stored = 0.0,
             "not_a_number_at_no_gap" if gap[0] == 0.0 => said.traction[1] *= 0.0 / gap[0],
             "allocates" => said.stored += vec![0.0; 1 + usize::from(gap[0] > 0.0)].iter().sum::<f64>(),
-            "creates_energy" => {
-                // Friction that pushes: what slides is carried on.
-                if slides {
-                    said.traction[1] *= -self.friction;
-                }
-            }
+            // Friction that pushes: what slides is carried on.
+            "creates_energy" if slides => said.traction[1] *= -self.friction,
             "refuses_to_open" if gap[0] > 1e-4 => return Err(UpdateFailure::NoConvergence),
             "presses_when_open" if gap[0] > 0.0 => said.traction[0] = said.traction[0].abs(),
             _ => {}

@@ -99,9 +99,12 @@ impl Shared {
     }
 }
 
-/// The joints in their order, and the place (joint, position in it) of every contact point. `None` where sections do
+/// The joints in their order, and the place (joint, position in it) of every contact point.
+pub type Ordered = (Vec<Joint>, Vec<(usize, usize)>);
+
+/// The joints of chains. `None` where sections do
 /// not form chains, or where nothing gives way in one.
-pub fn joints(system: &System, sections: &Sections) -> Option<(Vec<Joint>, Vec<(usize, usize)>)> {
+pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
     let order = ordered(system, sections)?;
     let mut within = vec![usize::MAX; system.contacts];
     for section in &sections.all {

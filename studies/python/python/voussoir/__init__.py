@@ -1,0 +1,73 @@
+"""How masonry made of blocks stands and collapses.
+
+    import voussoir
+    results = voussoir.run("my_bridge.toml")        # or a dictionary with the same keys, or the text of a file
+    results[0].load_factor
+
+A study is said once: `run` answers all its cases with everything that proves them, `sweep` answers many cases as columns,
+on this machine or on a cluster. `law` makes a class a joint law.
+"""
+
+from __future__ import annotations
+
+import json as _json
+import os as _os
+from typing import Any as _Any
+
+from . import _voussoir
+from ._laws import Facet, law
+from ._results import Case, Figure, Results
+from ._study import Study
+from ._sweep import Table, sweep
+from ._voussoir import StudyError, __version__
+
+__all__ = [
+    "Case", "Facet", "Figure", "Results", "Study", "StudyError", "Table", "__version__",
+    "check", "law", "plugins", "run", "schema", "sweep", "verify",
+]  # fmt: skip
+
+
+def run(
+    study: Study,
+    *,
+    set: dict[str, _Any] | None = None,
+    cases: list[int] | None = None,
+    jobs: int = 1,
+    progress: _Any = None,
+) -> Results:
+    """Answers the cases of a study of any kind.
+
+    `study` is a dictionary with the keys of a study file, the path of such a file, or its text. `set` overrides keys, as
+    `{"joints.dry.friction": 0.5}`; `cases` are the ids to answer; `jobs` cases are worked on side by side. `progress` is
+    called with a dictionary: `{"event": "begins", "cases": 38}`, then `"answered"` with case, status and load_factor, and
+    `"path"` with case, stage, factor and states. If it returns False the run ends and what is answered is returned; an
+    exception of it, or Ctrl-C, ends the run and is raised. Raises StudyError with every mistake of the study.
+    """
+    from ._study import source
+
+    answer = _voussoir.run(source(study, set), cases, jobs, progress)
+    return Results(answer["name"], answer["files"], answer["table"], answer["remarks"], answer["certified"])
+
+
+def check(study: Study, *, set: dict[str, _Any] | None = None) -> dict[str, _Any]:
+    """Name, number of cases (`count`), `notes` and the `plan` of a study without mistakes; else StudyError."""
+    from ._study import source
+
+    return _voussoir.check(source(study, set))
+
+
+def verify(folder: str | _os.PathLike[str], *, jobs: int = 1) -> list[str]:
+    """What is wrong with a results folder that `voussoir run` or `Results.write` has written; nothing if all is confirmed."""
+    found: list[str] = _voussoir.verify(_os.fspath(folder), jobs)["findings"]
+    return found
+
+
+def schema() -> dict[str, _Any]:
+    """The JSON Schema of study files."""
+    found: dict[str, _Any] = _json.loads(_voussoir.schema())
+    return found
+
+
+def plugins(kind: str | None = None) -> dict[str, str]:
+    """Tags and summaries of plug-ins: of a kind such as "laws", "materials", "scenes", "solvers", or of all."""
+    return {tag: summary for of, tag, summary in _voussoir.plugins() if kind is None or of == kind}

@@ -1,0 +1,174 @@
+"""Joint laws written in Python.
+
+    @voussoir.law("my_friction")
+    class MyFriction:
+        def __init__(self, friction):
+            self.friction = friction
+
+        def facets(self):
+            mu = self.friction
+            return [Facet("opening", [-1, 0], 0.0), Facet("sliding", [-mu, 1], 0.0), Facet("sliding", [-mu, -1], 0.0)]
+
+In a study: `joints.dry = {"law": "python_facets", "class": "my_friction", "parameters": {"friction": 0.6}}`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+_CLASSES: dict[str, type[Any]] = {}
+_Class = TypeVar("_Class", bound="type[Any]")
+
+
+class Facet:
+    """A half plane `normal` · t <= `bound` of admissible tractions t = (t_n, t_t) [Pa], t_n > 0 in compression, and the
+    direction of flow on it; flow is associated where `flow` is left out. `mode` is "opening", "sliding" or "crushing"."""
+
+    def __init__(self, mode: str, normal: Sequence[float], bound: float, flow: Sequence[float] | None = None) -> None:
+        if mode not in ("opening", "sliding", "crushing"):
+            raise ValueError(f'a facet is "opening", "sliding" or "crushing", not {mode!r}')
+        self.mode = mode
+        self.normal = [float(x) for x in normal]
+        self.bound = float(bound)
+        self.flow = self.normal if flow is None else [float(x) for x in flow]
+        if len(self.normal) != 2 or len(self.flow) != 2:
+            raise ValueError("normal and flow of a facet are two numbers, (n, t)")
+        numbers = [*self.normal, *self.flow, self.bound]
+        if not np.all(np.isfinite(numbers)) or self.bound < 0 or self.normal == [0.0, 0.0]:
+            raise ValueError("a facet has finite numbers, a normal that is not zero and a bound that is not negative")
+
+    def __repr__(self) -> str:
+        return f"Facet({self.mode!r}, {self.normal}, {self.bound}, {self.flow})"
+
+
+def law(name: str) -> Callable[[_Class], _Class]:
+    """Registers a class as a joint law. It has `facets()`, a list of `Facet` (`law = "python_facets"`), or
+    `respond(gap, state)` with `stiffness` and, where there is memory, `state_names` (`law = "python_response"`).
+
+    `respond` gets gaps (points, 2) [m], open > 0, and states (points, n), and returns (traction, state) or a dictionary
+    with `traction` (points, 2) [Pa], compression > 0, `state`, and where known `tangent` (points, 2, 2) [Pa/m], `stored`
+    and `dissipated` (points) [J/m2]. Without a tangent it is found by differences over `size` (1e-4 m unless the class says
+    otherwise). It must be a pure function of its arguments.
+    """
+
+    def register(cls: _Class) -> _Class:
+        _CLASSES[name] = cls
+        return cls
+
+    return register
+
+
+def make(name: str, parameters: str) -> Any:
+    """An object of a registered class."""
+    if name not in _CLASSES:
+        known = ", ".join(sorted(_CLASSES)) or "none"
+        raise KeyError(f'no class is registered as "{name}" with @voussoir.law in this process (registered: {known})')
+    return _CLASSES[name](**json.loads(parameters))
+
+
+def check(name: str, parameters: str, form: str) -> tuple[str, str] | None:
+    """What is wrong with a law: a key of its table and the complaint."""
+    if name not in _CLASSES:
+        known = ", ".join(sorted(_CLASSES)) or "none"
+        return "class", f'no class is registered as "{name}" with @voussoir.law in this process (registered: {known})'
+    try:
+        made = make(name, parameters)
+    except Exception as error:  # noqa: BLE001 - whatever its author raises is what is told
+        wanted = inspect.signature(_CLASSES[name])
+        return "parameters", f"{name}{wanted} cannot be made with them: {type(error).__name__}: {error}"
+    try:
+        if form == "facets":
+            if not facets(made):
+                return "class", f"{name}.facets() is empty"
+            stiffness(made)
+        else:
+            if stiffness(made) is None:
+                return "class", f"{name} needs `stiffness`, two numbers [k_n, k_t] in Pa/m"
+            state = np.array(initial_state(made), dtype=float)
+            answers = respond(made, np.zeros((1, 2)).tobytes(), state.tobytes(), 1)
+            if not all(np.all(np.isfinite(np.frombuffer(part))) for part in answers):
+                return "class", f"{name}.respond gives numbers that are not finite at the untouched state"
+    except Exception as error:  # noqa: BLE001
+        return "class", f"{name}: {type(error).__name__}: {error}"
+    return None
+
+
+def facets(made: Any) -> list[tuple[str, list[float], float, list[float]]]:
+    """The facets of a law, as the native module takes them."""
+    return [(facet.mode, facet.normal, facet.bound, facet.flow) for facet in made.facets()]
+
+
+def stiffness(made: Any) -> list[float] | None:
+    """[k_n, k_t] [Pa/m] where the law has it."""
+    found = getattr(made, "stiffness", None)
+    if found is None:
+        return None
+    numbers = [float(x) for x in (found() if callable(found) else found)]
+    if len(numbers) != 2 or not all(x > 0 and np.isfinite(x) for x in numbers):
+        raise ValueError("stiffness is two positive numbers, [k_n, k_t] in Pa/m")
+    return numbers
+
+
+def state_names(made: Any) -> list[str]:
+    """What each number of the state is, with its unit."""
+    return [str(name) for name in getattr(made, "state_names", ())]
+
+
+def initial_state(made: Any) -> list[float]:
+    """The state of the untouched joint: zeros unless the class says otherwise."""
+    names = state_names(made)
+    found = getattr(made, "initial_state", None)
+    numbers = [0.0] * len(names) if found is None else [float(x) for x in (found() if callable(found) else found)]
+    if len(numbers) != len(names):
+        raise ValueError(f"initial_state has {len(numbers)} numbers, state_names {len(names)}")
+    return numbers
+
+
+def respond(made: Any, gap: bytes, state: bytes, count: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
+    """Tractions, tangents, states, stored and dissipated energies of a group of points."""
+    gaps = np.frombuffer(gap).reshape(count, 2)
+    old = np.frombuffer(state).reshape(count, len(state_names(made)))
+    answer = _answer(made, gaps, old)
+    tangent = answer.get("tangent")
+    if tangent is None:
+        tangent = _differences(made, gaps, old)
+    zeros = np.zeros(count)
+    parts = (
+        ("traction", answer["traction"], (count, 2)),
+        ("tangent", tangent, (count, 2, 2)),
+        ("state", answer["state"], old.shape),
+        ("stored", answer.get("stored", zeros), (count,)),
+        ("dissipated", answer.get("dissipated", zeros), (count,)),
+    )
+    out = [_shaped(name, value, shape).tobytes() for name, value, shape in parts]
+    return out[0], out[1], out[2], out[3], out[4]
+
+
+def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Any:
+    array = np.ascontiguousarray(value, dtype=np.float64)
+    if array.shape != shape:
+        raise ValueError(f"respond gives {name} of shape {array.shape}, wanted {shape}")
+    return array
+
+
+def _answer(made: Any, gaps: Any, old: Any) -> dict[str, Any]:
+    answer = made.respond(gaps, old)
+    return answer if isinstance(answer, dict) else {"traction": answer[0], "state": answer[1]}
+
+
+def _differences(made: Any, gaps: Any, old: Any) -> Any:
+    """The tangent by central differences."""
+    step = 1e-6 * float(getattr(made, "size", 1e-4))
+    tangent = np.empty((len(gaps), 2, 2))
+    for j in range(2):
+        shift = np.zeros(2)
+        shift[j] = step
+        high = np.asarray(_answer(made, gaps + shift, old)["traction"])
+        low = np.asarray(_answer(made, gaps - shift, old)["traction"])
+        tangent[:, :, j] = (high - low) / (2 * step)
+    return tangent

@@ -1,0 +1,33 @@
+"""Sweeps on a Dask cluster: the same numbers, also when a worker is killed in the middle."""
+
+import os
+import signal
+
+import pytest
+
+import voussoir
+from test_voussoir import swept
+
+distributed = pytest.importorskip("distributed")
+
+
+def test_a_killed_worker_loses_nothing():
+    study = swept(1500)
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster, distributed.Client(cluster) as client:
+        killed = []
+
+        def progress(done, of):
+            if not killed and done >= 200:
+                pid = client.submit(os.getpid, pure=False).result()
+                killed.append(pid)
+                os.kill(pid, signal.SIGKILL)
+
+        table = voussoir.sweep(study, client=client, chunk=50, progress=progress)
+    assert killed and table.count == 3000 and list(table["id"]) == list(range(3000))
+    assert all(table["certified"])
+    here = voussoir.sweep(study)
+    for name in here:
+        if name != "seconds":
+            assert list(table[name]) == list(here[name]), name

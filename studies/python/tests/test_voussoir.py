@@ -1,0 +1,274 @@
+"""The Python package as a user meets it."""
+
+import json
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ProcessPoolExecutor
+
+import numpy as np
+import pytest
+
+import voussoir
+
+ARCH = {
+    "name": "arch",
+    "scene": {
+        "scene": "arch",
+        "profile": {"shape": "segmental", "span": 9.42, "rise": 2.99},
+        "thickness": 0.6,
+        "width": 5.81,
+        "voussoirs": 15,
+        "ends": "bonded",
+        "material": "stone",
+        "joint": "dry",
+    },
+    "materials": {"stone": {"law": "rigid", "density": 2200.0}},
+    "joints": {"dry": {"law": "coulomb_associated", "friction": 0.6}},
+    "stages": [
+        {"name": "dead", "gravity": 9.81},
+        {
+            "name": "live",
+            "until": "collapse",
+            "loads": [{"kind": "point", "span_fraction": 0.25, "force": [0.0, "-1 kN"]}],
+        },
+    ],
+}
+
+
+def with_(**keys):
+    return {**ARCH, **keys}
+
+
+def elastic(**joint):
+    """The arch with elastic blocks and compliant joints: a path."""
+    scene = {**ARCH["scene"], "voussoirs": 5, "mesh": {"elements": [2, 2]}, "ends": "jointed"}
+    stone = {"law": "elastic", "young_modulus": "5 GPa", "poisson_ratio": 0.3, "density": 2200.0}
+    return with_(scene=scene, materials={"stone": stone}, joints={"dry": joint})
+
+
+def test_a_dictionary_a_text_and_a_file_are_the_same(tmp_path):
+    results = voussoir.run(ARCH)
+    # Strathmashie, 2.99 m: the value of the README, and of its doctest.
+    assert results[0].status == "collapse" and abs(results[0].load_factor - 698.0227) < 1e-4
+    assert results.certified and results[0].certified and results[0].mechanism["kind"] == "four_hinge"
+    path = tmp_path / "arch.toml"
+    path.write_bytes(results.files["resolved.toml"])
+    for study in (path, str(path), path.read_text()):
+        assert voussoir.run(study)[0].load_factor == results[0].load_factor
+    weak = voussoir.run(path, set={"joints.dry.friction": 0.3})
+    assert weak[0].load_factor == voussoir.run(ARCH, set={"joints.dry.friction": 0.3})[0].load_factor
+    assert weak[0].load_factor <= results[0].load_factor
+
+
+def test_arrays():
+    case = voussoir.run(ARCH)[0]
+    field, motion = case.field, case.motion
+    assert field["force"].shape == (len(field["joint"]), 2) and field["force"].dtype == np.float64
+    assert motion["velocity"].shape == (len(motion["body"]), 3)
+    assert case.bounds.shape == (2,) and abs(case.bounds[0] - case.load_factor) < 1e-6 * case.load_factor
+    assert case.thrust_line.shape[1] == 2
+    # Vertical equilibrium of the field with what it carries: the springings' forces balance weights and load.
+    assert np.all(field["force"][:, 0] >= -1e-6)
+    path = voussoir.run({**elastic(law="unilateral", tangential="stuck"), "output": {"curve": True, "figures": False}})[0]
+    assert path.curve.ndim == 2 and path.curve.shape[1] == 2 and len(path.curve) > 2
+    assert path.curve[:, 1].max() == pytest.approx(path.load_factor)
+    with pytest.raises(AttributeError, match="the case has no strength"):
+        path.strength
+
+
+def test_mistakes_are_exceptions_with_text_and_place(tmp_path):
+    path = tmp_path / "wrong.toml"
+    path.write_bytes(voussoir.run(ARCH).files["resolved.toml"].replace(b"friction", b"frictoin"))
+    with pytest.raises(voussoir.StudyError) as found:
+        voussoir.check(path)
+    said = subprocess.run([sys.executable, "-m", "voussoir", "check", path], capture_output=True, text=True)
+    assert said.returncode == 2 and str(found.value) in said.stderr and 'did you mean "friction"?' in str(found.value)
+    mistake = found.value.mistakes[0]
+    assert mistake["file"] == str(path) and mistake["line"] > 1 and mistake["key"].startswith("joints.dry")
+    with pytest.raises(voussoir.StudyError, match="joints.dry.friction"):
+        voussoir.run(with_(joints={"dry": {"law": "coulomb", "friction": -0.5}}))
+    with pytest.raises(voussoir.StudyError, match="is null"):
+        voussoir.run(with_(name=None))
+    with pytest.raises(TypeError, match="a study cannot hold"):
+        voussoir.run(with_(name=object()))
+    with pytest.raises(ValueError):
+        voussoir.run(with_(scene={**ARCH["scene"], "width": float("nan")}))
+    with pytest.raises(FileNotFoundError):
+        voussoir.run("there_is_none.toml")
+    with pytest.raises(ValueError, match="there is no case 7"):
+        voussoir.run(ARCH, cases=[7])
+
+
+def test_figures_and_tables_show_themselves(tmp_path):
+    results = voussoir.run(ARCH)
+    figures = results.figures
+    assert figures and all(figure._repr_svg_().lstrip().startswith("<svg") for figure in figures.values())
+    assert "<td>collapse</td>" in results._repr_html_() and "698.0227" in results.table
+    assert results.report.startswith("<!DOCTYPE html>")
+    figure = next(iter(figures.values()))
+    figure.save(tmp_path / "figure.svg")
+    results.write(tmp_path / "out")
+    assert voussoir.verify(tmp_path / "out") == []
+    stored = json.loads((tmp_path / "out/results.json").read_text())
+    stored["cases"][0]["load_factor"] *= 1.001
+    (tmp_path / "out/results.json").write_text(json.dumps(stored))
+    assert any("load_factor" in finding for finding in voussoir.verify(tmp_path / "out"))
+
+
+def swept(count=12):
+    return with_(
+        sweep={
+            "scene.profile.rise": {"from": 2.0, "to": 4.0, "count": count},
+            "joints.dry.friction": {"list": [0.5, 0.6]},
+        }
+    )
+
+
+def test_sweeps_are_columns_and_the_same_whoever_works():
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    seen = []
+    table = voussoir.sweep(swept(), progress=lambda done, of: seen.append((done, of)))
+    assert table.count == 24 and seen[-1] == (24, 24)
+    assert list(table)[:5] == ["id", "scene.profile.rise", "joints.dry.friction", "status", "load_factor"]
+    whole = voussoir.run(swept())
+    assert [case.load_factor for case in whole] == list(table["load_factor"])
+    assert [case.case_hash for case in whole] == table["case_hash"]
+    frame = pandas.DataFrame(table)
+    assert frame.groupby("joints.dry.friction").load_factor.min().shape == (2,)
+    assert polars.DataFrame(table).filter(polars.col("status") == "collapse").height == 24
+    assert len(table.rows()) == 24 and "<table>" in table._repr_html_()
+    with ProcessPoolExecutor(2) as pool:
+        spread = voussoir.sweep(swept(), client=pool, chunk=5)
+    for name in table:
+        if name != "seconds":
+            assert list(spread[name]) == list(table[name]), name
+    assert list(voussoir.sweep(swept(), jobs=2)["load_factor"]) == list(table["load_factor"])
+    with pytest.raises(voussoir.StudyError, match="profile"):
+        voussoir.sweep(swept(), set={"scene.profile.span": -1.0})
+    with pytest.raises(ValueError, match="use voussoir.run"):
+        voussoir.sweep({**swept(), "kind": "compare", "variants": [{"name": "a"}, {"name": "b"}]})
+
+
+def test_progress_cancels_and_raises():
+    events = []
+    voussoir.run(swept(), progress=lambda event: events.append(event["event"]))
+    assert events[0] == "begins" and events.count("answered") == 24
+    some = voussoir.run(swept(200), progress=lambda event: event["event"] != "answered")
+    assert 0 < len(some) < 400 and not some.certified
+
+    def fails(event):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        voussoir.run(swept(), progress=fails)
+
+
+def test_ctrl_c_works_and_other_threads_go_on():
+    long = swept(20000)
+    del long["sweep"]["joints.dry.friction"]
+    counted = [0]
+    stop = threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    threading.Timer(1.0, lambda: signal.raise_signal(signal.SIGINT)).start()
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        while True:
+            voussoir.sweep(long)
+    assert time.monotonic() - started < 30.0
+    stop.set()
+    thread.join()
+    assert counted[0] > 20
+
+
+@voussoir.law("test_friction")
+class Friction:
+    def __init__(self, friction, stiffness=None):
+        self.friction, self.stiffness = friction, stiffness
+
+    def facets(self):
+        mu = self.friction
+        return [
+            voussoir.Facet("opening", [-1, 0], 0.0),
+            voussoir.Facet("sliding", [-mu, 1], 0.0),
+            voussoir.Facet("sliding", [-mu, -1], 0.0),
+        ]
+
+
+@voussoir.law("test_unilateral")
+class Unilateral:
+    """No tension, no sliding: t_n = k <-g_n>, t_t = -k_t g_t while closed."""
+
+    stiffness = [1e11, 1e11]
+
+    def respond(self, gap, state):
+        closed = gap[:, 0] < 0.0
+        traction = np.where(closed[:, None], -gap * self.stiffness, 0.0)
+        stored = np.sum(traction**2 / self.stiffness, axis=1) / 2
+        tangent = np.where(closed[:, None, None], -np.diag(self.stiffness), 0.0)
+        return {"traction": traction, "state": state, "stored": stored, "tangent": tangent}
+
+
+def test_laws_written_in_python_are_those_of_the_tree():
+    table = {"law": "python_facets", "class": "test_friction", "parameters": {"friction": 0.6}}
+    own = voussoir.run(with_(joints={"dry": table}))[0]
+    assert own.certified and own.load_factor == voussoir.run(ARCH)[0].load_factor
+    # Along a path too, from event to event.
+    stiff = {"normal_stiffness": 1e10, "shear_stiffness": 1e10}
+    table["parameters"]["stiffness"] = [1e10, 1e10]
+    theirs = voussoir.run(elastic(law="coulomb_associated", friction=0.6, **stiff))[0]
+    assert voussoir.run(elastic(**table))[0].load_factor == theirs.load_factor and theirs.certified
+
+
+def test_a_response_in_python_is_that_of_facets():
+    own = voussoir.run(elastic(law="python_response", **{"class": "test_unilateral"}))[0]
+    stiff = {"normal_stiffness": 1e11, "shear_stiffness": 1e11}
+    theirs = voussoir.run(elastic(law="unilateral", tangential="stuck", **stiff))[0]
+    assert own.solver == "newton_path"
+    assert own.load_factor == pytest.approx(theirs.load_factor, rel=1e-3), own.notes
+
+
+def test_mistakes_in_laws_are_told():
+    def wrong(**joint):
+        with pytest.raises(voussoir.StudyError) as found:
+            voussoir.check(with_(joints={"dry": joint}))
+        return str(found.value)
+
+    assert "no class is registered" in wrong(law="python_facets", **{"class": "nobody"})
+    assert "cannot be made" in wrong(law="python_facets", parameters={"x": 1}, **{"class": "test_friction"})
+    assert "stiffness" in wrong(law="python_response", parameters={"friction": 0.6}, **{"class": "test_friction"})
+    with pytest.raises(ValueError, match="a facet is"):
+        voussoir.Facet("closing", [1, 0], 0.0)
+    with pytest.raises(ValueError, match="not negative"):
+        voussoir.Facet("sliding", [1, 0], -1.0)
+
+
+def test_schema_plugins_and_the_command_line(tmp_path):
+    assert voussoir.schema()["title"] == "Voussoir study"
+    assert "python_facets" in voussoir.plugins("laws") and "limit_chain" in voussoir.plugins()
+    assert voussoir.check(ARCH)["count"] == 1
+    run = lambda *words: subprocess.run([sys.executable, "-m", "voussoir", *words], capture_output=True, text=True, cwd=tmp_path)
+    assert run("new", "arch").returncode == 0
+    ran = run("run", "arch.toml", "--json")
+    assert ran.returncode == 0 and json.loads(ran.stdout)["load_factor"] == voussoir.run(ARCH)[0].load_factor
+    assert run("verify", "results/arch").returncode == 0
+    assert run("rum").returncode == 2 and run("--version").stdout.strip() == f"voussoir {voussoir.__version__}"
+
+
+def test_a_point_study():
+    joint = {"law": "coulomb_associated", "friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 1e10}
+    path = [{"steps": 1, "traction": {"n": 1e6}}, {"steps": 10, "gap": {"t": -1e-3}}]
+    study = {"name": "p", "kind": "point", "joints": {"dry": joint}, "point": {"joint": "dry", "path": path}}
+    case = voussoir.run(study)[0]
+    assert case.rows.shape == (12, len(case.columns)) and case.certified
+    sheared = case.rows[:, case.columns.index("traction_t [Pa]")]
+    assert sheared[-1] == pytest.approx(0.6e6)

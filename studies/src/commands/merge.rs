@@ -1,0 +1,239 @@
+//! `voussoir merge`: the parts of a study that were solved apart, put together into the results of a whole run.
+
+use super::by_case::no_access;
+use super::case_lines::CaseLines;
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::files;
+use super::folder::{JOURNAL, ResultFolder};
+use super::options::useful_jobs;
+use super::shard::{PART, PartEnd, PartHead, study_hash};
+use super::stream;
+use super::today::today;
+use crate::kinds::CasesOf;
+use crate::results::CaseResult;
+use crate::solve::side_by_side;
+use crate::verify::case::verify_case;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// Ids that are named in a message.
+const NAMED: usize = 12;
+/// Lines that are checked at once.
+const AT_ONCE: usize = 256;
+
+/// What is asked of a merge.
+pub struct MergeOptions {
+    /// Where the results go.
+    pub out: Option<PathBuf>,
+    /// Cases checked side by side.
+    pub jobs: usize,
+    /// Print nothing but errors.
+    pub quiet: bool,
+}
+
+/// Merges parts.
+pub fn merge(dirs: &[PathBuf], options: &MergeOptions) -> u8 {
+    match merged(dirs, options) {
+        Ok(code) | Err(code) => code,
+    }
+}
+
+fn wrong(text: impl std::fmt::Display) -> u8 {
+    eprintln!("voussoir merge: {text}; nothing was written");
+    WRONG_INPUT
+}
+
+/// A part that was found.
+struct Part {
+    folder: PathBuf,
+    head: PartHead,
+}
+
+fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
+    let parts = dirs.iter().map(|dir| found(dir)).collect::<Result<Vec<_>, _>>()?.concat();
+    let parts = parts.into_iter().map(|folder| read_part(&folder)).collect::<Result<Vec<_>, _>>()?;
+    let first = parts.first().ok_or_else(|| wrong("no part was found"))?;
+    same_study(&parts)?;
+    let study = files::study(&first.folder.join("resolved.toml"), &[])?;
+    if study_hash(study.resolved()) != first.head.study_hash {
+        return Err(wrong(format!("{}: resolved.toml is not that of its cases", first.folder.display())));
+    }
+    let cases = study.cases().ok_or_else(|| wrong("this kind of study is not solved in parts"))?;
+    let mut lines = CaseLines::default();
+    for part in &parts {
+        let path = part.folder.join(PART);
+        lines.add(&path, 0, &mut |_| true).map_err(|error| no_access(&path, error))?;
+    }
+    let doubles = lines.sort();
+    if !doubles.is_empty() {
+        return Err(wrong(format!("{} stand in two parts", named(&doubles))));
+    }
+    let there: BTreeSet<usize> = lines.ids().collect();
+    let missing: Vec<usize> = (0..study.count()).filter(|id| !there.contains(id)).collect();
+    if !missing.is_empty() {
+        return Err(wrong(format!(
+            "{} of {} are missing: {}",
+            missing.len(),
+            study.count(),
+            hint(&parts, &missing, &cases)
+        )));
+    }
+    let jobs = useful_jobs(options.jobs);
+    side_by_side(jobs, || confirmed(&cases, &lines))?;
+    let out = match (&options.out, dirs) {
+        (Some(out), _) => out.clone(),
+        (None, [dir]) if !dir.join(PART).is_file() => dir.clone(),
+        _ => return Err(wrong("say where the results go with --out DIR")),
+    };
+    let text = files::read(&first.folder.join("resolved.toml"))?;
+    let folder = ResultFolder::open(&out)?;
+    folder.write("resolved.toml", text.as_bytes())?;
+    let study = match cases {
+        CasesOf::Streamed(sweep) => return stream::finish(sweep, &folder, &lines, None, options.quiet),
+        CasesOf::Held(study) => study,
+    };
+    let results = lines.cases().collect::<Result<Vec<_>, _>>().map_err(|error| no_access(&out, error))?;
+    let output = study.output_of(env!("CARGO_PKG_VERSION"), Some(today()), results, jobs);
+    for (name, bytes) in &output.files {
+        folder.write(name, bytes)?;
+    }
+    folder.remove_left_over(&output.files);
+    if !options.quiet {
+        say(output.table);
+        say(format!("{} parts confirmed and merged; results in {}", parts.len(), out.display()));
+    }
+    Ok(if output.certified { FINE } else { NOT_PROVEN })
+}
+
+/// The folders of parts in a folder, or the folder itself.
+fn found(dir: &Path) -> Result<Vec<PathBuf>, u8> {
+    if dir.join(PART).is_file() {
+        return Ok(vec![dir.into()]);
+    }
+    let listed = std::fs::read_dir(dir).map_err(|error| no_access(dir, error))?;
+    let mut folders: Vec<PathBuf> = listed.flatten().map(|entry| entry.path()).collect();
+    folders.retain(|folder| folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("shard-")));
+    folders.sort();
+    match folders.iter().find(|folder| !folder.join(PART).is_file()) {
+        Some(folder) => {
+            let why = match folder.join(JOURNAL).is_file() {
+                true => "is not finished: run it again with --resume",
+                false => "holds no cases",
+            };
+            Err(wrong(format!("{} {why}", folder.display())))
+        }
+        None if folders.is_empty() => Err(wrong(format!(
+            "{} holds no part; parts are written by `voussoir run STUDY --shard M/N`",
+            dir.display()
+        ))),
+        None => Ok(folders),
+    }
+}
+
+/// The head of a part whose end is there.
+fn read_part(folder: &Path) -> Result<Part, u8> {
+    let path = folder.join(PART);
+    let mut file = std::fs::File::open(&path).map_err(|error| no_access(&path, error))?;
+    let mut first = String::new();
+    BufReader::new(&file).read_line(&mut first).map_err(|error| no_access(&path, error))?;
+    let head: PartHead = serde_json::from_str(&first)
+        .map_err(|error| wrong(format!("{} is no part of a study: {error}", path.display())))?;
+    let mut tail = Vec::new();
+    let length = file.seek(SeekFrom::End(0)).unwrap_or(0);
+    let read = file.seek(SeekFrom::Start(length.saturating_sub(64))).and_then(|_| file.read_to_end(&mut tail));
+    read.map_err(|error| no_access(&path, error))?;
+    let last = tail.trim_ascii_end().rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
+    let end: PartEnd =
+        serde_json::from_slice(last).map_err(|_| wrong(format!("{} is cut short: copy it again", path.display())))?;
+    let mut lines = CaseLines::default();
+    lines.add(&path, 0, &mut |_| true).map_err(|error| no_access(&path, error))?;
+    let count = lines.ids().count();
+    if count != end.cases_in_part {
+        let what = format!("{} holds {count} cases and says {}", path.display(), end.cases_in_part);
+        return Err(wrong(what));
+    }
+    Ok(Part { folder: folder.into(), head })
+}
+
+/// All parts must be of one study, one version and one way to cut it.
+fn same_study(parts: &[Part]) -> Result<(), u8> {
+    let Some(first) = parts.first() else { return Ok(()) };
+    for part in parts {
+        let (a, b) = (&first.head, &part.head);
+        let differ = |what: &str, x: &str, y: &str| {
+            let (one, other) = (first.folder.display(), part.folder.display());
+            Err(wrong(format!("{one} is of {what} {x}, {other} of {what} {y}")))
+        };
+        if b.version != env!("CARGO_PKG_VERSION") {
+            let own = env!("CARGO_PKG_VERSION");
+            return Err(wrong(format!("{} was solved by version {}, this is {own}", part.folder.display(), b.version)));
+        }
+        if a.study != b.study {
+            return differ("the study", &format!("\"{}\"", a.study), &format!("\"{}\"", b.study));
+        }
+        if a.study_hash != b.study_hash {
+            let (one, other) = (first.folder.display(), part.folder.display());
+            return Err(wrong(format!("{one} and {other} were solved from different versions of the study file")));
+        }
+        if a.shard.of != b.shard.of {
+            return differ("a study in parts of", &a.shard.of.to_string(), &b.shard.of.to_string());
+        }
+    }
+    Ok(())
+}
+
+/// The first ids of a list.
+fn named(ids: &[usize]) -> String {
+    let first: Vec<String> = ids.iter().take(NAMED).map(usize::to_string).collect();
+    let more = if ids.len() > NAMED { format!(" and {} more", ids.len() - NAMED) } else { String::new() };
+    format!("{} {}{more}", if ids.len() == 1 { "case" } else { "cases" }, first.join(", "))
+}
+
+/// Which cases are missing, and in which part they would be.
+fn hint(parts: &[Part], missing: &[usize], cases: &CasesOf<'_>) -> String {
+    let of = parts.first().map_or(1, |part| part.head.shard.of);
+    let there: BTreeSet<usize> = parts.iter().map(|part| part.head.shard.number).collect();
+    let absent: Vec<String> = (1..=of).filter(|number| !there.contains(number)).map(|n| format!("{n}/{of}")).collect();
+    let mut text = named(missing);
+    if !absent.is_empty() {
+        text += &format!(
+            "; the part{} {} {} not there",
+            if absent.len() == 1 { "" } else { "s" },
+            absent.join(", "),
+            if absent.len() == 1 { "is" } else { "are" }
+        );
+    } else if let Some(part) = missing.first().and_then(|id| cases.part(*id, of)) {
+        text += &format!("; the first belongs to the part {}/{of}", part + 1);
+    }
+    text
+}
+
+/// Every case must be the study's own, and hold by what it proves itself.
+fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines) -> Result<(), u8> {
+    let check = |result: &CaseResult| -> Vec<String> {
+        let id = result.label.id;
+        let wrong: Vec<String> = match cases.case_of(&result.label) {
+            None => vec!["the study has no such case".into()],
+            Some(case) if case.hash() != result.label.case_hash => vec!["it is not this study's".into()],
+            Some(case) => verify_case(&case, result),
+        };
+        wrong.into_iter().map(|why| format!("case {id}: {why}")).collect()
+    };
+    let count = lines.ids().count();
+    let mut findings = Vec::new();
+    for from in (0..count).step_by(AT_ONCE) {
+        let read: std::io::Result<Vec<CaseResult>> =
+            (from..count.min(from + AT_ONCE)).map(|index| lines.case(index)).collect();
+        let chunk = read.map_err(|error| no_access(Path::new(PART), error))?;
+        findings.extend(chunk.par_iter().flat_map_iter(check).collect::<Vec<_>>());
+    }
+    match findings.as_slice() {
+        [] => Ok(()),
+        some => {
+            some.iter().take(NAMED).for_each(|line| eprintln!("{line}"));
+            Err(wrong(format!("{} finding(s): the parts do not hold", some.len())))
+        }
+    }
+}

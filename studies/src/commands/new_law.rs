@@ -1,0 +1,75 @@
+//! `voussoir new law`: the files of a law, from those of an example that is compiled and tested.
+
+use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
+use std::path::Path;
+use voussoir_core::plugin::{PluginKind, card};
+
+/// The example's law, its page, and its test.
+const LAW: &str = include_str!("../../examples/my_law/src/keyed.rs");
+const PAGE: &str = include_str!("../../examples/my_law/src/keyed.md");
+const TEST: &str = include_str!("../../examples/my_law/tests/keyed.rs");
+
+/// Why a word cannot be the tag of a new law.
+fn unfit(tag: &str) -> Option<String> {
+    let word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if !tag.starts_with(|c: char| c.is_ascii_lowercase()) || !tag.chars().all(word) {
+        return Some("a tag is the name of a file: small letters, digits and _, a letter first".into());
+    }
+    let taken = card(PluginKind::InterfaceLaw, tag)?;
+    Some(format!("there is such a law already: {}", taken.file))
+}
+
+/// `shear_keys` as `ShearKeys`.
+fn type_name(tag: &str) -> String {
+    let capital =
+        |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
+    tag.split('_').map(capital).collect()
+}
+
+/// Writes a law of joints, its page and its test into a crate; nothing that is there is overwritten.
+pub fn law(tag: &str, into: &Path) -> u8 {
+    if let Some(why) = unfit(tag) {
+        eprintln!("voussoir new law {tag}: {why}");
+        return WRONG_INPUT;
+    }
+    let manifest = into.join("Cargo.toml");
+    let text = match std::fs::read_to_string(&manifest) {
+        Ok(text) => text,
+        Err(error) => {
+            eprintln!("voussoir: {}: {error}; --out names the folder of a crate", manifest.display());
+            return NO_ACCESS;
+        }
+    };
+    let table: Option<toml::Table> = text.parse().ok();
+    let Some(name) = table.as_ref().and_then(|table| table.get("package")?.get("name")?.as_str()) else {
+        eprintln!("{}: names no package", manifest.display());
+        return WRONG_INPUT;
+    };
+    let own = |text: &str| {
+        text.replace("Keyed", &type_name(tag)).replace("keyed", tag).replace("my_law", &name.replace('-', "_"))
+    };
+    let mut files = vec![(format!("src/{tag}.rs"), own(LAW)), (format!("src/{tag}.md"), own(PAGE))];
+    // In the tree the conformance tests find every law.
+    if name != "voussoir-laws" {
+        files.push((format!("tests/{tag}.rs"), own(TEST)));
+    }
+    if let Some((there, _)) = files.iter().find(|(file, _)| into.join(file).exists()) {
+        eprintln!("voussoir: {} is there already; nothing was written", into.join(there).display());
+        return WRONG_INPUT;
+    }
+    for (file, text) in &files {
+        let place = into.join(file);
+        let written =
+            std::fs::create_dir_all(place.parent().unwrap_or(into)).and_then(|()| std::fs::write(&place, text));
+        if let Err(error) = written {
+            eprintln!("voussoir: cannot write {}: {error}", place.display());
+            return NO_ACCESS;
+        }
+        say(format!("{}", place.display()));
+    }
+    say(format!(
+        "add `pub mod {tag};` to {}, change the equations, and say `voussoir conform {tag}`",
+        into.join("src/lib.rs").display()
+    ));
+    FINE
+}

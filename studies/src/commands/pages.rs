@@ -1,0 +1,33 @@
+//! `voussoir completions` and `voussoir man`.
+
+use super::codes::{FINE, NO_ACCESS};
+use std::io::Write;
+
+/// Prints what a shell needs to complete the words of the command line.
+pub fn completions(shell: clap_complete::Shell, command: &mut clap::Command) -> u8 {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, command, "voussoir", &mut text);
+    printed(&text)
+}
+
+/// Prints the manual page: the program, then each command.
+pub fn man(command: clap::Command) -> u8 {
+    let mut text = Vec::new();
+    let mut written = clap_mangen::Man::new(command.clone()).render(&mut text);
+    for each in command.get_subcommands().filter(|each| !each.is_hide_set()) {
+        let page = clap_mangen::Man::new(each.clone().display_name(format!("voussoir {}", each.get_name())));
+        written = written.and_then(|()| {
+            writeln!(text, ".SH \"COMMAND {}\"", each.get_name().to_uppercase())?;
+            page.render_synopsis_section(&mut text)?;
+            page.render_description_section(&mut text)?;
+            page.render_options_section(&mut text)
+        });
+    }
+    if written.is_ok() { printed(&text) } else { NO_ACCESS }
+}
+
+/// Prints bytes; a reader that has gone away is no error.
+fn printed(text: &[u8]) -> u8 {
+    drop(std::io::stdout().write_all(text));
+    FINE
+}

@@ -1,0 +1,107 @@
+//! One part of a study, for one of several machines: `voussoir run STUDY --shard 2/8`.
+//!
+//! A part is a folder `shard-2-of-8` with the resolved study and `cases.jsonl`: a line that says what it is a part of, a
+//! line for each case in order of id, and a line with their number, so that a copy that was cut short is found.
+
+use super::by_case::solve_into_journal;
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::folder::{JOURNAL, ResultFolder};
+use super::options::{Options, Shard};
+use crate::kinds::LoadedStudy;
+use serde::{Deserialize, Serialize};
+use std::io::Write;
+use std::path::Path;
+
+/// The file of a part.
+pub const PART: &str = "cases.jsonl";
+
+/// The first line of a part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartHead {
+    /// Of the study.
+    pub study: String,
+    /// Of the program.
+    pub version: String,
+    /// Of the resolved study's text.
+    pub study_hash: String,
+    /// Which part it is.
+    pub shard: Shard,
+}
+
+/// The last line of a part.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct PartEnd {
+    /// Lines between the first and this one.
+    pub cases_in_part: usize,
+}
+
+/// What tells one resolved study from another: 64 bits of FNV-1a over its text, without the name of its file.
+pub fn study_hash(resolved: &toml::Value) -> String {
+    let text = toml::to_string(resolved).unwrap_or_default();
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    format!("{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, step))
+}
+
+/// Ids of the cases of a part, in order; of the whole study where there is no part. A study of this kind may have none.
+pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize>, u8> {
+    let Some(shard) = shard else { return Ok((0..study.count()).collect()) };
+    let Some(cases) = study.cases() else {
+        eprintln!(
+            "--shard: the study \"{}\" is of a kind that cannot be solved in parts; it costs little",
+            study.name()
+        );
+        return Err(WRONG_INPUT);
+    };
+    Ok((0..study.count()).filter(|id| cases.part(*id, shard.of) == Some(shard.number - 1)).collect())
+}
+
+/// Solves a part of a study.
+pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, options: &Options) -> Result<u8, u8> {
+    let ids = ids_of(study, Some(shard))?;
+    let Some(cases) = study.cases() else { return Err(WRONG_INPUT) };
+    let folder = ResultFolder::open(&dir.join(shard.folder()))?;
+    let path = folder.path().join(PART);
+    let head = PartHead {
+        study: study.name().into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        study_hash: study_hash(study.resolved()),
+        shard,
+    };
+    let first = serde_json::to_string(&head).unwrap_or_default();
+    if options.resume && folder.read(PART).lines().next() == Some(first.as_str()) {
+        if !options.quiet {
+            say(format!("{} is finished", path.display()));
+        }
+        return Ok(FINE);
+    }
+    folder.remove(PART);
+    folder.write("resolved.toml", resolved.as_bytes())?;
+    let lines = solve_into_journal(&cases, study.name(), &ids, &folder, options)?;
+    let mut part = folder.aside(PART)?;
+    let (mut count, mut certified) = (0, 0);
+    let mut copy = || -> std::io::Result<()> {
+        writeln!(part, "{first}")?;
+        for index in 0..lines.ids().count() {
+            let line = lines.line(index)?;
+            let head: super::case_lines::LineHead = serde_json::from_slice(&line)?;
+            certified += usize::from(head.certificate.passed);
+            count += 1;
+            part.write_all(&line)?;
+            part.write_all(b"\n")?;
+        }
+        writeln!(part, "{}", serde_json::to_string(&PartEnd { cases_in_part: count })?)
+    };
+    let copied = copy();
+    part.done(copied)?;
+    folder.remove(JOURNAL);
+    if !options.quiet && !options.json {
+        say(format!(
+            "{} of {} cases in {}; `voussoir merge {}` puts the parts together",
+            ids.len(),
+            study.count(),
+            path.display(),
+            dir.display()
+        ));
+    }
+    Ok(if certified == count { FINE } else { NOT_PROVEN })
+}

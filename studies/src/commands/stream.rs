@@ -1,0 +1,109 @@
+//! A run of so many cases that none is held: from the journal to results.json and results.csv, case by case.
+
+use super::by_case::{no_access, solve_into_journal};
+use super::case_lines::CaseLines;
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::folder::{JOURNAL, ResultFolder};
+use super::options::Options;
+use super::today::today;
+use crate::figures::format::{format_number, format_value, status_word};
+use crate::kinds::CasesOf;
+use crate::results::CaseResult;
+use crate::study::Sweep;
+use crate::writers::stream::{CsvStream, StreamedResults, write_json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use voussoir_core::limit::Status;
+
+/// What is told of very many cases.
+#[derive(Debug, Default)]
+struct Tally {
+    count: usize,
+    certified: usize,
+    statuses: BTreeMap<&'static str, usize>,
+    least: Option<(f64, String)>,
+}
+
+impl Tally {
+    fn add(&mut self, case: &CaseResult) {
+        self.count += 1;
+        self.certified += usize::from(case.certificate.passed);
+        *self.statuses.entry(status_word(case.status)).or_default() += 1;
+        let Some(factor) = case.load_factor.filter(|_| case.status != Status::Unbounded) else { return };
+        if self.least.as_ref().is_none_or(|(least, _)| factor < *least) {
+            let swept = case.label.parameters.iter().map(|(key, value)| format!(", {key} = {}", format_value(value)));
+            self.least = Some((factor, format!("case {}{}", case.label.id, swept.collect::<String>())));
+        }
+    }
+
+    fn text(&self) -> String {
+        let of = |(status, count): (&&str, &usize)| format!("{count} {status}");
+        let mut text = format!("{} cases: ", self.count);
+        text += &self.statuses.iter().map(of).collect::<Vec<_>>().join(", ");
+        text += &format!("; {} certified\n", self.certified);
+        if let Some((factor, place)) = &self.least {
+            text += &format!("least load factor: {} ({place})\n", format_number(*factor, 7));
+        }
+        text
+    }
+}
+
+/// Solves a study whose cases are streamed.
+pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Result<u8, u8> {
+    if options.case.is_some() && dir.join("results.json").exists() {
+        eprintln!(
+            "voussoir: {}: of so many cases one cannot be replaced; write it into a folder of its own with --out",
+            dir.display()
+        );
+        return Err(WRONG_INPUT);
+    }
+    let folder = ResultFolder::open(dir)?;
+    folder.write("resolved.toml", resolved.as_bytes())?;
+    let ids = options.case.map_or_else(|| (0..sweep.count()).collect(), |id| vec![id]);
+    let lines = solve_into_journal(&CasesOf::Streamed(sweep), &sweep.name, &ids, &folder, options)?;
+    finish(sweep, &folder, &lines, options.case.map(|id| vec![id]), options.quiet || options.json)
+}
+
+/// Writes results.json and results.csv from lines of all cases, and says what they hold.
+pub fn finish(
+    sweep: &Sweep,
+    folder: &ResultFolder,
+    lines: &CaseLines,
+    only_cases: Option<Vec<usize>>,
+    quiet: bool,
+) -> Result<u8, u8> {
+    let wants_csv = sweep.output.writers.as_ref().is_none_or(|tags| tags.iter().any(|tag| tag == "results_csv"));
+    let mut tally = Tally::default();
+    let mut json = folder.aside("results.json")?;
+    let mut csv = None;
+    if wants_csv {
+        let aside = folder.aside("results.csv")?;
+        let new =
+            CsvStream::new(aside, sweep.keys()).map_err(|error| no_access(&folder.path().join("results.csv"), error));
+        csv = Some(new?);
+    }
+    let version = env!("CARGO_PKG_VERSION").to_string();
+    let head = StreamedResults { study: sweep.name.clone(), version, date: Some(today()), only_cases };
+    let mut rows = lines.cases().map(|case| {
+        let case = case?;
+        tally.add(&case);
+        csv.as_mut().map_or(Ok(()), |csv| csv.add(&case))?;
+        Ok(case)
+    });
+    let written = write_json(&mut json, &head, &mut rows);
+    drop(rows);
+    json.done(written)?;
+    if let Some(csv) = csv {
+        let aside = csv.finish().map_err(|error| no_access(&folder.path().join("results.csv"), error))?;
+        aside.done(Ok(()))?;
+    } else {
+        folder.remove("results.csv");
+    }
+    folder.remove_drawn();
+    folder.remove(JOURNAL);
+    if !quiet {
+        say(tally.text());
+        say(format!("results.json and results.csv in {}; so many cases are not drawn", folder.path().display()));
+    }
+    Ok(if tally.certified == tally.count { FINE } else { NOT_PROVEN })
+}

@@ -1,0 +1,159 @@
+//! What `voussoir explain` knows besides plug-ins: words about studies, and every key of a study file.
+
+use crate::study::study_keys;
+use std::collections::BTreeSet;
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Shape, Variant, cards, cards_of};
+
+/// Words with a page of their own; the first of each row is its name.
+const PAGES: [(&[&str], &str); 9] = [
+    (&["auto"], include_str!("topics/auto.md")),
+    (&["loads", "load"], include_str!("topics/loads.md")),
+    (&["profiles", "profile", "shape", "shapes"], include_str!("topics/profiles.md")),
+    (&["results", "result", "output"], include_str!("topics/results.md")),
+    (&["settlement", "settlements"], include_str!("topics/settlement.md")),
+    (&["stages", "stage"], include_str!("topics/stages.md")),
+    (&["status", "statuses"], include_str!("topics/status.md")),
+    (&["sweep", "sweeps", "variants", "variant", "zip"], include_str!("topics/sweep.md")),
+    (&["units", "unit"], include_str!("topics/units.md")),
+];
+
+/// Names of the pages and all words that `explain` knows besides tags.
+pub fn words() -> BTreeSet<String> {
+    let mut words: BTreeSet<String> =
+        PAGES.iter().flat_map(|(names, _)| names.iter()).map(ToString::to_string).collect();
+    each_key(&mut |place| {
+        words.insert(place.name().into());
+    });
+    words
+}
+
+/// What is known of a word; empty where nothing is.
+pub fn explain(word: &str) -> String {
+    let page = PAGES.iter().find(|(names, _)| names.contains(&word)).map(|(_, page)| page.to_string());
+    let mut text = page.unwrap_or_default();
+    if PAGES[2].0.contains(&word) {
+        text += &profiles();
+    }
+    let mut keys: Vec<String> = Vec::new();
+    each_key(&mut |place| {
+        let line = place.line();
+        if place.name() == word && !keys.contains(&line) {
+            keys.push(line);
+        }
+    });
+    if !keys.is_empty() {
+        text += &format!("{}as a key of a study file:\n{}", if text.is_empty() { "" } else { "\n" }, keys.concat());
+    }
+    text
+}
+
+/// The shapes of profiles with their keys.
+fn profiles() -> String {
+    let mut text = String::new();
+    each_key(&mut |place| {
+        if let Place::Word { key: "shape", variant, .. } = place
+            && !text.contains(&format!("\n{}:", variant.tag))
+        {
+            let keys = variant.parameters.iter().map(|key| format!("    {}\n", describe(key)));
+            text += &format!("\n{}: {}\n{}", variant.tag, variant.doc, keys.collect::<String>());
+        }
+    });
+    text
+}
+
+/// A key, or a word that decides which keys a table has.
+enum Place<'a> {
+    Key { path: &'a str, key: &'a Parameter },
+    Word { path: &'a str, key: &'static str, variant: &'static Variant },
+}
+
+impl Place<'_> {
+    fn name(&self) -> &'static str {
+        match self {
+            Place::Key { key, .. } => key.name,
+            Place::Word { variant, .. } => variant.tag,
+        }
+    }
+
+    fn line(&self) -> String {
+        match self {
+            Place::Key { path, key } => format!("  {path}: {}\n{}", describe(key), inside(&key.shape)),
+            Place::Word { path, key, variant } => {
+                let keys = variant.parameters.iter().map(|key| format!("    {}\n", describe(key)));
+                format!("  {path} = {{ {key} = \"{}\" }}: {}\n{}", variant.tag, variant.doc, keys.collect::<String>())
+            }
+        }
+    }
+}
+
+/// Name, unit, meaning and need of a key.
+pub fn describe(key: &Parameter) -> String {
+    let unit = match &key.shape {
+        Shape::Number(quantity, range) => {
+            let unit = if quantity.unit().is_empty() { "-" } else { quantity.unit() };
+            format!(" [{unit}], {}", range.describe())
+        }
+        Shape::Choice(words) => format!(", one of {}", words.join(", ")),
+        _ => String::new(),
+    };
+    let need = match key.need {
+        Need::Required => "required".to_string(),
+        Need::Optional(otherwise) => format!("optional: otherwise {otherwise}"),
+        Need::Default(value) => format!("default {value}"),
+    };
+    format!("{}{unit}  {} ({need})", key.name, key.doc)
+}
+
+/// The keys of a table, or of the tables of a list.
+fn inside(shape: &Shape) -> String {
+    match shape {
+        Shape::Table(keys) => keys.iter().map(|key| format!("    {}\n", describe(key))).collect(),
+        Shape::List { of, .. } | Shape::Map(of) => inside(of),
+        Shape::Either(shapes) => shapes.iter().map(inside).find(|text| !text.is_empty()).unwrap_or_default(),
+        Shape::Plugin(kind) => format!("    one of: {}\n", tags(*kind).join(", ")),
+        _ => String::new(),
+    }
+}
+
+fn tags(kind: PluginKind) -> Vec<&'static str> {
+    cards_of(kind).into_iter().map(|card| card.tag).collect()
+}
+
+/// Every key of a study file with a scene, and of every plug-in.
+fn each_key(see: &mut dyn FnMut(&Place<'_>)) {
+    for key in study_keys() {
+        walk(key.name, key, see);
+    }
+    for card in cards() {
+        let path = of_card(card);
+        for key in card.parameters {
+            walk(&format!("{path}.{}", key.name), key, see);
+        }
+    }
+}
+
+/// Where the keys of a plug-in stand.
+fn of_card(card: &Card) -> String {
+    format!("{} \"{}\"", card.kind.describe(), card.tag)
+}
+
+fn walk(path: &str, key: &Parameter, see: &mut dyn FnMut(&Place<'_>)) {
+    see(&Place::Key { path, key });
+    walk_shape(path, &key.shape, see);
+}
+
+fn walk_shape(path: &str, shape: &Shape, see: &mut dyn FnMut(&Place<'_>)) {
+    match shape {
+        Shape::Table(keys) => keys.iter().for_each(|key| walk(&format!("{path}.{}", key.name), key, see)),
+        Shape::List { of, .. } => walk_shape(&format!("{path}[]"), of, see),
+        Shape::Map(of) => walk_shape(&format!("{path}.NAME"), of, see),
+        Shape::Either(shapes) => shapes.iter().for_each(|shape| walk_shape(path, shape, see)),
+        Shape::Tagged { key, variants } => {
+            for variant in *variants {
+                see(&Place::Word { path, key, variant });
+                variant.parameters.iter().for_each(|key| walk(&format!("{path}.{}", key.name), key, see));
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,221 @@
+//! A study file whose axes are read: the cases are made from here, all of them to be held, or one at a time.
+
+use super::case::build_case;
+use super::diagnostics::located;
+use super::keys::{VARIANT, kind_tables, study_keys};
+use super::model::{Case, Drawn, Output, Study};
+use super::outline::Outline;
+use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
+use super::sweep::Sweep;
+use crate::config::check::Checker;
+use crate::config::diagnostic::{LocatedDiagnostic, sort};
+use crate::config::document::Node;
+use crate::config::expand::{Expanded, Expansion};
+use crate::config::origin::Origin;
+use crate::kinds::kind;
+use serde_json::{Map, Value as Json};
+use std::collections::HashMap;
+use voussoir_core::plugin::{Parameter, Shape};
+
+/// Greatest number of different mistakes reported.
+const MAX_MISTAKES: usize = 100;
+/// Greatest number of different notes of a sweep that are kept.
+const MAX_NOTES: usize = 100;
+
+/// A study file with a scene: variants, scenes and axes are read, no case is made yet.
+#[derive(Debug)]
+pub struct StudyFile {
+    root: Node,
+    expansion: Expansion,
+    outline: Outline,
+    /// Found wrong so far.
+    diagnostics: Vec<LocatedDiagnostic>,
+}
+
+impl StudyFile {
+    /// Reads the axes of a source. Mistakes that leave them readable are told with those of the cases.
+    pub fn read(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
+        let StudySource { root, sets, mut diagnostics } = source;
+        if kind(kind_of(&root)).is_some_and(|kind| kind.file_keys().is_some()) {
+            let message = format!("\"{}\" has no scene to solve", kind_of(&root));
+            let wrong = LocatedDiagnostic::new(&root.place("kind"), "kind", message);
+            diagnostics.push(wrong.help("run it by `voussoir run STUDY.toml`"));
+            return Err(diagnostics);
+        }
+        check_variants(&root, &mut diagnostics);
+        let table = kind_table(&root, &mut diagnostics);
+        let expansion = match Expansion::new(&root, &kind_tables()) {
+            Ok(expansion) => expansion,
+            Err(wrong) => {
+                diagnostics.extend(wrong);
+                sort(&mut diagnostics);
+                return Err(diagnostics);
+            }
+        };
+        check_sets(&sets, &expansion, &mut diagnostics);
+        let outline =
+            Outline { variants: expansion.variants(), scenes: expansion.scenes(), axes: expansion.axes(), table };
+        check_outline(&root, &outline, &mut diagnostics);
+        Ok(StudyFile { root, expansion, outline, diagnostics })
+    }
+
+    /// Number of cases.
+    pub fn count(&self) -> usize {
+        self.expansion.count()
+    }
+
+    /// The study with all its cases; every mistake at once.
+    pub fn study(mut self) -> Result<Study, Vec<LocatedDiagnostic>> {
+        let mut cases = Vec::new();
+        make_cases(&self.expansion, &mut self.diagnostics, |case| cases.push(case));
+        let Sweep { name, kind, outline, output, resolved, expansion, .. } = self.sweep_of(cases.first())?;
+        Ok(Study { name, kind, outline, output, cases, resolved, expansion })
+    }
+
+    /// The study with none of its cases kept; each is made once, so that every mistake is told at once.
+    pub fn sweep(mut self) -> Result<Sweep, Vec<LocatedDiagnostic>> {
+        let (mut first, mut notes) = (None, Vec::new());
+        make_cases(&self.expansion, &mut self.diagnostics, |case| {
+            for note in &case.notes {
+                if notes.len() < MAX_NOTES && !notes.contains(note) {
+                    notes.push(note.clone());
+                }
+            }
+            first.get_or_insert(case);
+        });
+        self.sweep_of(first.as_ref()).map(|sweep| Sweep { notes, ..sweep })
+    }
+
+    /// The study with none of its cases made but the first: for those who know that [`StudyFile::sweep`] takes it.
+    pub fn sweep_unchecked(mut self) -> Result<Sweep, Vec<LocatedDiagnostic>> {
+        let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded));
+        let first = first.map_err(|wrong| self.diagnostics.extend(wrong)).ok();
+        self.sweep_of(first.as_ref())
+    }
+
+    /// What does not depend on the cases but the first, or all mistakes.
+    fn sweep_of(mut self, first: Option<&Case>) -> Result<Sweep, Vec<LocatedDiagnostic>> {
+        if !self.diagnostics.is_empty() {
+            sort(&mut self.diagnostics);
+            return Err(self.diagnostics);
+        }
+        let first = first.map(|case| &case.resolved);
+        // A sweep or a variant may have changed it.
+        if let Some(why) = first.and_then(|case| case["name"].as_str()).and_then(no_file_name) {
+            return Err(vec![LocatedDiagnostic::new(&self.root.place("name"), "name", why).help(FILE_NAME)]);
+        }
+        let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
+        Ok(Sweep {
+            name: text_of("name"),
+            kind: text_of("kind"),
+            outline: self.outline,
+            output: first.map(|case| output(&case["output"], self.expansion.count())).unwrap_or_default(),
+            notes: Vec::new(),
+            resolved: self.root.to_toml(),
+            expansion: self.expansion,
+        })
+    }
+}
+
+/// What is written besides the results, from the checked table `[output]`.
+fn output(table: &Json, cases: usize) -> Output {
+    let flag = |name: &str| table[name].as_bool().unwrap_or(false);
+    let tags = |list: &Vec<Json>| list.iter().filter_map(|tag| tag.as_str().map(str::to_string)).collect();
+    Output {
+        curve: flag("curve"),
+        figures: Drawn::read(&table["figures"], cases),
+        vtu: flag("vtu"),
+        writers: table["writers"].as_array().map(tags),
+        options: table["options"].as_object().cloned().unwrap_or_default(),
+    }
+}
+
+/// Makes every case and hands it over; a mistake that several cases have stands once, with the first of them where not
+/// all have it.
+fn make_cases(expansion: &Expansion, diagnostics: &mut Vec<LocatedDiagnostic>, mut take: impl FnMut(Case)) {
+    let count = expansion.count();
+    let mut times: HashMap<LocatedDiagnostic, usize> = HashMap::new();
+    let mut order: Vec<(LocatedDiagnostic, String)> = Vec::new();
+    for id in 0..count {
+        let (result, label) = match expansion.case(id) {
+            Ok(expanded) => {
+                let label = describe_case(&expanded);
+                (build_case(id, expanded), label)
+            }
+            Err(wrong) => (Err(wrong), String::new()),
+        };
+        match result {
+            Ok(case) => take(case),
+            Err(wrong) => {
+                for diagnostic in wrong {
+                    let times = times.entry(diagnostic.clone()).or_insert(0);
+                    if *times == 0 {
+                        order.push((diagnostic, label.clone()));
+                    }
+                    *times += 1;
+                }
+            }
+        }
+        if order.len() > MAX_MISTAKES {
+            break;
+        }
+    }
+    diagnostics.extend(order.into_iter().map(|(mut diagnostic, label)| {
+        if times[&diagnostic] < count && !label.is_empty() {
+            diagnostic.case = Some(label);
+        }
+        diagnostic
+    }));
+}
+
+fn check_variants(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) {
+    let Some(variants) = root.table().and_then(|table| table.get("variants")) else {
+        return;
+    };
+    let mut checker = Checker::new(root);
+    checker.check(variants, &Shape::List { of: &VARIANT, min: 0, max: usize::MAX }, "variants");
+    diagnostics.append(&mut checker.diagnostics);
+}
+
+/// A swept key that is set on the command line besides.
+fn check_sets(sets: &[(String, String)], expansion: &Expansion, diagnostics: &mut Vec<LocatedDiagnostic>) {
+    for (path, _) in sets.iter().filter(|(path, _)| expansion.swept().any(|swept| swept == path)) {
+        let message = "is swept, so setting it has no effect";
+        let help = format!("change the axis instead: --set 'sweep.\"{path}\".list=[…]'");
+        diagnostics.push(LocatedDiagnostic::new(&Origin::Set(path.as_str().into()), path, message).help(help));
+    }
+}
+
+/// The table of the study's kind, checked; a table of another kind is a mistake.
+fn kind_table(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) -> Map<String, Json> {
+    let (kind, tables, mut own) = (kind_of(root), kind_tables(), Map::new());
+    let of_kinds = |parameter: &&Parameter| tables.contains(&parameter.name);
+    for parameter in study_keys().iter().filter(of_kinds) {
+        let name = parameter.name;
+        let Some(node) = root.table().and_then(|table| table.get(name)) else { continue };
+        let mut checker = Checker::new(root);
+        let value = checker.check(node, &parameter.shape, name);
+        diagnostics.append(&mut checker.diagnostics);
+        if kind == name {
+            own = value.as_ref().and_then(Json::as_object).cloned().unwrap_or_default();
+        } else {
+            let message = format!("is only read by kind = \"{name}\", but the kind is \"{kind}\"");
+            let help = format!("write kind = \"{name}\", or remove this table");
+            diagnostics.push(LocatedDiagnostic::new(&root.place(name), name, message).help(help));
+        }
+    }
+    own
+}
+
+/// What the study's kind finds wrong with its axes and its table.
+fn check_outline(root: &Node, outline: &Outline, diagnostics: &mut Vec<LocatedDiagnostic>) {
+    let Some(kind) = kind(kind_of(root)) else { return };
+    diagnostics.extend(kind.check(outline).into_iter().map(|wrong| located(root, wrong)));
+}
+
+fn describe_case(case: &Expanded) -> String {
+    let variant = case.variant.iter().map(|name| format!("variant \"{name}\""));
+    let scene = case.scene.iter().map(|name| format!("scene \"{name}\""));
+    let swept = case.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+    variant.chain(scene).chain(swept).collect::<Vec<_>>().join(", ")
+}

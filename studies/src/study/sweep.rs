@@ -1,0 +1,42 @@
+//! A study of so many cases that they are made one at a time, and none is kept.
+
+use super::case::build_case;
+use super::model::{Case, Output};
+use super::outline::Outline;
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::config::expand::Expansion;
+
+/// A study file that holds no mistake, without its cases: what it takes does not grow with their number.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Its name.
+    pub name: String,
+    /// What is done with the cases: the tag of a study kind.
+    pub kind: String,
+    /// Its axes and the table of its kind.
+    pub outline: Outline,
+    /// What is written.
+    pub output: Output,
+    /// Different notes of its cases, up to a hundred.
+    pub notes: Vec<String>,
+    /// The file with `--set` applied, as of [`super::Study`].
+    pub resolved: toml::Value,
+    pub(crate) expansion: Expansion,
+}
+
+impl Sweep {
+    /// Number of cases.
+    pub fn count(&self) -> usize {
+        self.expansion.count()
+    }
+
+    /// Swept keys, outermost first.
+    pub fn keys(&self) -> Vec<String> {
+        self.expansion.swept().map(String::from).collect()
+    }
+
+    /// Case `id < count()`.
+    pub fn case(&self, id: usize) -> Result<Case, Vec<LocatedDiagnostic>> {
+        build_case(id, self.expansion.case(id)?)
+    }
+}
