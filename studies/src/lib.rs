@@ -29,7 +29,7 @@
 //! |---|---|
 //! | [`Study::from_toml`], [`Study::from_file`], [`Study::from_value`], [`Study::builder`] | a study, or a [`StudyError`] with every mistake in it |
 //! | [`Study::run`], [`Study::run_with`] | all its cases, or some, side by side, watched and cancelled by an [`Observer`](solve::Observer) such as [`Watch`](solve::Watch) |
-//! | [`StudyResults`], [`CaseResult`] | what `results.json` holds, typed; [`verify`] checks it |
+//! | [`StudyResults`], [`CaseResult`] | what `results.json` holds, typed; [`verify()`] checks it |
 //! | [`kinds::read_study`], [`kinds::read_source`] with [`study::StudySource`] | a study of any kind, also one without a scene: [`LoadedStudy::run`](kinds::LoadedStudy::run) gives the files that `voussoir run` writes, as bytes |
 //! | [`conformance::conform`] | whether a law of one's own keeps what it promises |
 //! | [`cli::main`] | the command line, for a program that links plug-ins of its own |

@@ -47,10 +47,12 @@ pub fn words_of_key(key: &str) -> String {
 
 /// The title of an axis or a column: `rise of the intrados [m]`.
 pub fn title_of_key(key: &str) -> String {
-    match unit_of_key(key) {
-        Some(unit) => format!("{} [{unit}]", words_of_key(key)),
+    // One of several numbers under a key says which.
+    let words = match key.rsplit('.').next().and_then(|name| name.parse::<usize>().ok()) {
+        Some(index) => format!("{}, number {}", words_of_key(key), index + 1),
         None => words_of_key(key),
-    }
+    };
+    unit_of_key(key).map_or(words.clone(), |unit| format!("{words} [{unit}]"))
 }
 
 #[cfg(test)]
@@ -60,6 +62,7 @@ mod tests {
     #[test]
     fn keys_are_words_with_units() {
         assert_eq!(title_of_key("scene.profile.rise"), "rise of the intrados [m]");
+        assert_eq!(title_of_key("scene.brick.1"), "length and height of a brick, number 2");
         assert_eq!(words_of_key("no.such.strange_key"), "strange key");
         assert!(!title_of_key("stages.1.loads.0.force.0").is_empty());
     }

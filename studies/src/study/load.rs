@@ -4,6 +4,7 @@ use super::case::build_case;
 use super::file::StudyFile;
 use super::model::{Case, Study};
 use super::source::StudySource;
+use super::sweep::Sweep;
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value};
 use crate::config::origin::Origin;
@@ -37,5 +38,12 @@ impl Study {
             expanded.parameters.insert(key.clone(), value.clone());
         }
         build_case(id, expanded)
+    }
+}
+
+impl Sweep {
+    /// Case `id < count()`.
+    pub fn case(&self, id: usize) -> Result<Case, Vec<LocatedDiagnostic>> {
+        build_case(id, self.expansion.case(id)?)
     }
 }

@@ -1,9 +1,7 @@
 //! A study of so many cases that they are made one at a time, and none is kept.
 
-use super::case::build_case;
-use super::model::{Case, Output};
+use super::model::Output;
 use super::outline::Outline;
-use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::expand::Expansion;
 
 /// A study file that holds no mistake, without its cases: what it takes does not grow with their number.
@@ -33,10 +31,5 @@ impl Sweep {
     /// Swept keys, outermost first.
     pub fn keys(&self) -> Vec<String> {
         self.expansion.swept().map(String::from).collect()
-    }
-
-    /// Case `id < count()`.
-    pub fn case(&self, id: usize) -> Result<Case, Vec<LocatedDiagnostic>> {
-        build_case(id, self.expansion.case(id)?)
     }
 }

@@ -286,7 +286,13 @@ fn at(series: Value, place: Value) -> Value {
 }
 
 fn has(value: Value, item: Value) -> Value {
+    // What is proven not to exist holds nothing.
+    if matches!(value, Value::Missing { proven: true, .. }) {
+        return Value::Truth(false);
+    }
     value.map(&|list| match list {
+        Value::Missing { proven: true, .. } => Value::Truth(false),
+        missing @ Value::Missing { .. } => missing,
         Value::List(values) => Value::Truth(values.contains(&item)),
         other => Value::Truth(other == item),
     })

@@ -158,6 +158,12 @@ fn result(entry: &Json, path: &str) -> Value {
         return last(entry, column);
     }
     let names: Vec<&str> = path.split('.').collect();
+    if names[0] == "mechanism"
+        && entry["mechanism"].is_null()
+        && ["collapse", "limit_point", "stalled"].contains(&status)
+    {
+        return Value::unknown("no mechanism was found");
+    }
     follow(entry, &names)
 }
 
