@@ -10,7 +10,7 @@ use interrupted::{Told, interruptible};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use source::{Source, study_error};
+use source::Source;
 use std::path::{Path, PathBuf};
 use voussoir::kinds::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verification};
 

@@ -93,6 +93,10 @@ def check(name: str, parameters: str, form: str) -> tuple[str, str] | None:
             answers = respond(made, np.zeros((1, 2)).tobytes(), state.tobytes(), 1)
             if not all(np.all(np.isfinite(np.frombuffer(part))) for part in answers):
                 return "class", f"{name}.respond gives numbers that are not finite at the untouched state"
+            tangent = np.frombuffer(answers[1]).reshape(2, 2)
+            if not (tangent[0, 0] < 0 and np.linalg.det(tangent) > 0):
+                told = "a gap must meet a traction that grows against it"
+                return "class", f"{name}: the tangent at the untouched state, {tangent.tolist()}, is not stiff: {told}"
     except Exception as error:  # noqa: BLE001
         return "class", f"{name}: {type(error).__name__}: {error}"
     return None

@@ -1,4 +1,6 @@
-from typing import Any
+from typing import Any, final
+
+__all__ = ["Sweep", "StudyError", "check", "main", "plugins", "run", "schema", "verify", "__version__"]
 
 __version__: str
 
@@ -7,6 +9,7 @@ _Source = tuple[str, str, str, list[tuple[str, str]]]
 class StudyError(ValueError):
     mistakes: list[dict[str, Any]]
 
+@final
 class Sweep:
     def __new__(cls, source: _Source, checked: bool = True) -> Sweep: ...
     @property
