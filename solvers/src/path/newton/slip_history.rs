@@ -40,7 +40,7 @@ pub(super) fn missed_slip(
 ) -> Option<f64> {
     // After a peak friction may let the path cycle in small loops: following them closely leads nowhere.
     let short = following.length <= SHORTEST * following.limits.first;
-    let matters = tracer.system.finite() && !tracer.system.monotone();
+    let matters = tracer.system.finite() && !tracer.system.joints_flow_associated();
     if !matters || tracer.limit.peak.is_some() || short {
         return None;
     }

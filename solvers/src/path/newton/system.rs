@@ -199,7 +199,12 @@ impl<'a> StepSystem<'a> {
 
     /// Whether flow is associated everywhere: then every step is a monotone problem.
     pub fn monotone(&self) -> bool {
-        self.piecewise_linear() && self.laws.polygons.iter().all(|law| !law.is_non_associated())
+        self.piecewise_linear() && self.joints_flow_associated()
+    }
+
+    /// Whether the flow of all facets of joints is associated.
+    pub fn joints_flow_associated(&self) -> bool {
+        self.laws.polygons.iter().all(|law| !law.is_non_associated())
     }
 
     /// Whether with small displacements every law is one of facets.
