@@ -8,7 +8,7 @@ use super::progress::Progress;
 use super::today::today;
 use super::{interrupt, shard, stream};
 use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
-use crate::results::CaseLabel;
+use crate::solve::label_of;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -122,15 +122,7 @@ fn list(study: &dyn LoadedStudy, options: &Options) -> u8 {
         (None, Err(code)) => return code,
     };
     for case in ids.into_iter().filter_map(|id| cases.case(id)) {
-        let hash = case.hash();
-        let label = CaseLabel {
-            id: case.id,
-            case_hash: hash,
-            variant: case.variant.clone(),
-            scene: case.scene.clone(),
-            parameters: case.parameters.clone(),
-        };
-        say(serde_json::to_string(&label).unwrap_or_default());
+        say(serde_json::to_string(&label_of(&case)).unwrap_or_default());
     }
     FINE
 }

@@ -26,6 +26,17 @@ pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseRe
     stands_by_statics(input).unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
 }
 
+/// What tells a case from all others.
+pub fn label_of(case: &Case) -> CaseLabel {
+    CaseLabel {
+        id: case.id,
+        case_hash: case.hash(),
+        variant: case.variant.clone(),
+        scene: case.scene.clone(),
+        parameters: case.parameters.clone(),
+    }
+}
+
 /// Solves one case.
 pub fn solve_case(case: &Case) -> CaseResult {
     solve_observed(case, &mut Unobserved)
@@ -42,13 +53,7 @@ fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
 fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
     let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
-    result.label = CaseLabel {
-        id: case.id,
-        case_hash: case.hash(),
-        variant: case.variant.clone(),
-        scene: case.scene.clone(),
-        parameters: case.parameters.clone(),
-    };
+    result.label = label_of(case);
     result.loads = load_entries(case);
     result.partial_factors = case.resolved.get("factors").cloned();
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {

@@ -4,34 +4,13 @@ use serde_json::Value as Json;
 use voussoir::kinds::{LoadedStudy, RunOutput, RunRequest, StoredResults, read_source_beside};
 use voussoir::solve::Unobserved;
 use voussoir::study::StudySource;
+use voussoir_tests::{Arch, changed};
 
-const RISES: &str = r#"
-name = "rises"
-[scene]
-scene = "arch"
-profile = { shape = "segmental", span = 9.42, rise = 2.99 }
-thickness = 0.60
-width = 5.81
-voussoirs = 15
-ends = "bonded"
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2200.0
-[joints.dry]
-law = "coulomb_associated"
-friction = 0.6
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "live"
-until = "collapse"
-loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
-[sweep]
-"scene.profile.rise" = { list = [2.99, 1.19] }
-"#;
+/// The reference arch and a flat one.
+fn rises() -> String {
+    let arch = changed(&Arch::default().study(), "name = \"arch\"", "name = \"rises\"");
+    format!("{arch}[sweep]\n\"scene.profile.rise\" = {{ list = [2.99, 1.19] }}\n")
+}
 
 const REPORT: &str = r#"
 name = "report"
@@ -66,7 +45,7 @@ tests = [
 "#;
 
 fn read(report: &str) -> Result<Box<dyn LoadedStudy>, Vec<String>> {
-    let neighbour = |name: &str| if name == "rises.toml" { Ok(RISES.to_string()) } else { Err("no such file".into()) };
+    let neighbour = |name: &str| if name == "rises.toml" { Ok(rises()) } else { Err("no such file".into()) };
     let words =
         |wrong: Vec<voussoir::config::diagnostic::LocatedDiagnostic>| wrong.iter().map(|w| w.to_string()).collect();
     let source = StudySource::parse(report, "report.toml", &[]).map_err(words)?;

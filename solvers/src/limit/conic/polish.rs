@@ -119,7 +119,7 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
     }
     let (mut best, chosen) = best?;
     if best.error > UNSETTLED
-        && let Some(exchanged) = exchanged(system, &best.pair, &chosen, delta)
+        && let Some(exchanged) = exchanged(system, &best.pair, (&items, &chosen), delta)
     {
         factorisations += exchanged.factorisations;
         iterations += exchanged.iterations;
@@ -136,16 +136,14 @@ fn greatest_multiplier(pair: &Pair) -> f64 {
 
 /// Exchanges single rows, from those of the active ones that carry, until no row is violated. `None` where that does not
 /// come to an end.
-fn exchanged(system: &System, start: &Pair, active: &[Item], delta: f64) -> Option<Polished> {
+fn exchanged(system: &System, start: &Pair, (items, active): (&[Item], &[Item]), delta: f64) -> Option<Polished> {
     let scale = greatest_multiplier(start);
     let mut chosen: Vec<Item> =
         active.iter().copied().filter(|item| multiplier(start, *item) > 1e-10 * scale).collect();
-    let items: Vec<Item> =
-        (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
     let (mut pair, mut factorisations, mut iterations) = (start.clone(), 0, 0);
     for _ in 0..EXCHANGES {
         let within: Vec<bool> = items.iter().map(|item| chosen.contains(item)).collect();
-        let mut newton = Newton { system, active: &chosen, pair: clipped(&pair, &items, &within), delta };
+        let mut newton = Newton { system, active: &chosen, pair: clipped(&pair, items, &within), delta };
         let work = newton.run()?;
         factorisations += work.0;
         iterations += work.1;

@@ -46,7 +46,8 @@ pub struct Rates {
     pub refinements: u64,
 }
 
-fn largest(values: &[f64]) -> f64 {
+/// Greatest size of a number among these.
+pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |a: f64, b| a.max(b.abs()))
 }
 

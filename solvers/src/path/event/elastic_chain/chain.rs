@@ -6,7 +6,7 @@ use super::joint::joints;
 use super::redundants::{MOST_WEAK, Open, closing};
 use crate::contact::mode::ContactMode;
 use crate::path::event::force_method::Sections;
-use crate::path::event::rates::Rates;
+use crate::path::event::rates::{Rates, largest};
 use crate::path::event::system::{Load, System};
 use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
 use voussoir_core::path::PathProblem;
@@ -235,10 +235,9 @@ impl ElasticChain {
     /// every joint; gaps of points that stick are zero.
     pub fn examined(&self, system: &System, load: &Load, rates: &ChainRates) -> (Rates, Vec<DMatrix<f64>>) {
         let x = self.unknowns(system, &rates.own);
-        let size = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let (forces, motions) = x.split_at(2 * system.contacts);
-        let forces = size(forces).max(load.size).max(f64::MIN_POSITIVE);
-        let motions = size(motions).max(forces);
+        let forces = largest(forces).max(load.size).max(f64::MIN_POSITIVE);
+        let motions = largest(motions).max(forces);
         let (mut gaps, mut worst) = (vec![[0.0; 2]; system.contacts], 0.0f64);
         let mut left = Vec::with_capacity(rates.own.len());
         for (e, factor) in self.factors.all.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::chain::{ChainRates, ElasticChain};
 use crate::contact::mode::ContactMode;
-use crate::path::event::rates::{Rates, leaving};
+use crate::path::event::rates::{Rates, largest, leaving};
 use crate::path::event::system::{Load, System};
 use crate::path::event::trace::Trace;
 use nalgebra::DMatrix;
@@ -83,9 +83,9 @@ fn refined(
         (rates, left) = chain.examined(system, load, &own);
     }
     let mut refinements = 0;
-    let size = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let (forces, motions) = rates.x.split_at(2 * system.contacts);
-    let enough = RESIDUAL[0].max(ERROR * size(forces) / size(motions).max(size(forces)).max(f64::MIN_POSITIVE));
+    let enough =
+        RESIDUAL[0].max(ERROR * largest(forces) / largest(motions).max(largest(forces)).max(f64::MIN_POSITIVE));
     while refinements < REFINEMENTS as u64 && rates.worst > enough {
         refinements += 1;
         let better = chain.refined(&own, left)?;
