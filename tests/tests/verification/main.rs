@@ -15,6 +15,7 @@ mod extreme_strengths;
 mod finite;
 mod flow_rule;
 mod force_method;
+mod lourenco_rots;
 mod new_laws;
 mod newton;
 mod optimise;
