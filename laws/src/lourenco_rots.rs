@@ -303,7 +303,7 @@ voussoir_core::inventory::submit! {
         claims: &[Property::DISSIPATIVE],
         samples: &[
             Sample::new(WALL, 1e-4, &["elastic", "cracking", "shearing", "cracking_shearing", "sliding", "crushing", "crushing_shearing"]),
-            Sample::new(SHEARED, 1e-4, &["elastic", "cracking", "shearing", "cracking_shearing", "crushing_shearing"]),
+            Sample::new(SHEARED, 1e-4, &["elastic", "cracking", "shearing", "cracking_shearing"]),
             Sample::new(DILATANT, 1e-4, &["elastic", "cracking", "shearing", "cracking_shearing", "crushing_shearing"]),
         ],
         known_paths: KNOWN_PATHS,

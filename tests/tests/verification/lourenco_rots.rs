@@ -127,7 +127,7 @@ fn an_arch_whose_bond_fades_carries_what_the_dry_one_carries() {
             .to_string();
     let arch = Arch { joint, mesh: "elements = [1, 4]".into(), solver: "newton_path", ..Arch::default() };
     let strong = answered(&arch.study());
-    let weak = answered(&Arch { joint: arch.joint.replace("1e9", "1.05e7").replace("5e7", "5e3"), ..arch }.study());
+    let weak = answered(&Arch { joint: arch.joint.replace("5e7", "5e3").replace("1e9", "1.05e7"), ..arch }.study());
     for result in [&strong, &weak] {
         assert_eq!(result.status, Status::LimitPoint, "{:?}", result.notes);
         assert!(result.certificate.passed, "{:?} {:?}", result.certificate.failures, result.notes);
