@@ -15,6 +15,7 @@ pub mod new_law;
 pub mod options;
 pub mod pages;
 mod progress;
+mod refill;
 pub mod run;
 pub mod shard;
 mod stream;
