@@ -3,6 +3,7 @@
 use super::codes::{NO_ACCESS, WRONG_INPUT};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::kinds::{LoadedStudy, read_source_beside};
+use crate::serve::Session;
 use crate::study::{StudySource, beside};
 use std::path::Path;
 
@@ -44,6 +45,13 @@ pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStu
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
     let study = source.and_then(|source| read_source_beside(source, &beside(path)));
     study.map_err(|diagnostics| report(path, &diagnostics))
+}
+
+/// Reads a study to be looked at, printing every mistake in its first case.
+pub fn session(path: &Path, sets: &[(String, String)]) -> Result<Session, u8> {
+    let text = read(path)?;
+    let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
+    source.and_then(Session::read).map_err(|diagnostics| report(path, &diagnostics))
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {
