@@ -7,7 +7,7 @@ use crate::solve::{Observer, Unobserved, solve_cases};
 use crate::study::{Case, Outline, ReadFile, Study, StudySource, Sweep};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
-use std::io::{Read, Write};
+use std::io::{Cursor, Read, Write};
 use voussoir_core::plugin::{Diagnostic, Parameter};
 
 /// A kind of study, chosen by `kind = …`. Instances register with
@@ -123,7 +123,7 @@ pub trait LoadedStudy: Send + Sync {
 
     /// Checks the text of a results.json alone.
     fn verify(&self, results: &str) -> Result<Verification, String> {
-        let file = |name: &str| (name == RESULTS).then(|| Box::new(results.as_bytes()) as Box<dyn Read>);
+        let file = |name: &str| (name == RESULTS).then(|| Box::new(Cursor::new(results.to_string())) as Box<dyn Read>);
         self.verify_stored(&StoredResults { jobs: 1, file: &file }, &Unobserved)
     }
 }
@@ -205,12 +205,12 @@ pub struct StoredResults<'a> {
     /// Cases side by side.
     pub jobs: usize,
     /// A file of the result folder from its beginning, results.json and others; `None` where there is none.
-    pub file: &'a dyn Fn(&str) -> Option<Box<dyn Read + 'a>>,
+    pub file: &'a dyn Fn(&str) -> Option<Box<dyn Read>>,
 }
 
-impl<'a> StoredResults<'a> {
+impl StoredResults<'_> {
     /// results.json from its beginning.
-    pub fn results(&self) -> Result<Box<dyn Read + 'a>, String> {
+    pub fn results(&self) -> Result<Box<dyn Read>, String> {
         (self.file)(RESULTS).ok_or(format!("there is no {RESULTS}"))
     }
 
@@ -223,7 +223,7 @@ impl<'a> StoredResults<'a> {
     }
 
     /// What is wrong with the files beside results.json: each that is there must be the one that is made from it.
-    pub fn altered<'b>(&self, made: impl Iterator<Item = (&'b str, &'b [u8])>) -> Vec<String> {
+    pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<String> {
         let others = made.filter(|(name, _)| *name != RESULTS);
         let differs = |(name, bytes): &(&str, &[u8])| {
             let Some(stored) = (self.file)(name) else { return false };

@@ -32,7 +32,7 @@ struct Check<'a> {
     ids: Vec<usize>,
     missing: Vec<usize>,
     /// results.csv as it should be, against the one that is there; `None` where there is none, or it is another one.
-    table: Option<CsvStream<SameBytes<Box<dyn Read + 'a>>>>,
+    table: Option<CsvStream<SameBytes<Box<dyn Read>>>>,
 }
 
 /// Checks results case by case.
