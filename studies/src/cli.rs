@@ -72,6 +72,17 @@ enum Command {
         #[arg(long)]
         quiet: bool,
     },
+    /// Open a study in a browser on this machine, with sliders for its numbers
+    Serve {
+        /// Study file (TOML)
+        study: PathBuf,
+        /// Override a key of the study
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Open the page in a browser
+        #[arg(long)]
+        open: bool,
+    },
     /// Write a commented study that runs as it stands, or a law
     New {
         /// What it is about
@@ -159,6 +170,7 @@ impl Command {
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
             }
+            Command::Serve { study, set, open } => commands::serve::serve(&study, &set, open),
             Command::New { what } => what.answer(),
             Command::Check { studies, set } => commands::check::check(&studies, &set),
             Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),

@@ -48,6 +48,7 @@ pub mod postprocess;
 pub mod prelude;
 pub mod results;
 pub mod scenes;
+pub mod serve;
 pub mod solve;
 pub mod study;
 pub mod verify;

@@ -24,6 +24,7 @@ mod path_certificate;
 mod paths_read;
 mod peaks;
 mod plastic;
+mod residuals;
 mod semicircle;
 mod settled;
 mod settlements;
