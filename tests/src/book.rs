@@ -170,7 +170,7 @@ fn cell(text: &str) -> String {
 
 fn row(parameter: &Parameter) -> String {
     let unit = match &parameter.shape {
-        Shape::Number(quantity, range) => format!("{} ({})", quantity.unit(), range.describe()),
+        Shape::Number(quantity, range) => format!("{} ({})", quantity.unit(), range.describe()).trim().to_string(),
         Shape::Choice(words) => words.join(", "),
         _ => String::new(),
     };
