@@ -40,6 +40,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
             let states = resolved.get("output").and_then(|output| output["states"].as_u64());
+            let output_sensitivities = resolved.get("output").is_some_and(|output| output["sensitivities"] == true);
             let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
@@ -55,6 +56,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
                 solver,
                 output_curve,
                 output_states,
+                output_sensitivities,
                 notes,
                 brief,
                 resolved,

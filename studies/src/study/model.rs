@@ -52,6 +52,8 @@ pub struct Case {
     pub output_curve: bool,
     /// How many states of a path are kept.
     pub output_states: usize,
+    /// Whether derivatives of the load factor are asked for.
+    pub output_sensitivities: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
     /// One of many made from another case, which has the weights that both have: its results leave them out.

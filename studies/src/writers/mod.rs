@@ -16,6 +16,7 @@ pub mod record;
 mod register;
 pub mod report;
 pub mod results_json;
+pub mod sensitivities;
 pub mod stream;
 mod study_output;
 pub mod table;

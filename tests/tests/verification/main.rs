@@ -24,6 +24,7 @@ mod paths_read;
 mod peaks;
 mod plastic;
 mod semicircle;
+mod sensitivities;
 mod settled;
 mod settlements;
 mod snap_through;
