@@ -13,6 +13,14 @@ pub fn read(path: &Path) -> Result<String, u8> {
         eprintln!("voussoir: cannot read {}: {error}", path.display());
         NO_ACCESS
     })?;
+    // UTF-16 without a mark at its beginning is UTF-8 to the letter, with a zero beside each.
+    if bytes.contains(&0) {
+        eprintln!(
+            "{}:1:1: this file holds zero bytes; save it as UTF-8, as TOML asks for (it may be in UTF-16)",
+            path.display()
+        );
+        return Err(WRONG_INPUT);
+    }
     String::from_utf8(bytes).map_err(|error| {
         let (bytes, at) = (error.as_bytes(), error.utf8_error().valid_up_to());
         let (line, column) = (bytes[..at].iter().filter(|b| **b == b'\n').count() + 1, bytes[..at].iter().rev().take_while(|b| **b != b'\n').count() + 1);

@@ -12,6 +12,8 @@ pub mod figures;
 pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;
+#[cfg(feature = "png")]
+pub mod png;
 pub mod record;
 mod register;
 pub mod report;
