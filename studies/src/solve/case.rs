@@ -63,7 +63,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
-    if case.output_sensitivities {
+    if !case.output_sensitivities.is_empty() {
         let found = catch_unwind(AssertUnwindSafe(|| sensitivities(case, &result)));
         match found.unwrap_or_else(|_| Err("a panic ended their search".into())) {
             Ok(found) => result.sensitivities = found,

@@ -5,7 +5,7 @@
 //! again.
 
 use crate::results::{CaseResult, SensitivityEntry};
-use crate::study::{Case, NumberKind, NumericKey, Study, StudySource, numeric_keys};
+use crate::study::{Case, NumberKind, NumericKey, Study, StudySource};
 use serde_json::json;
 use voussoir_core::limit::{JointForce, LimitProblem, Status, Velocity};
 use voussoir_core::model::geometry::turned;
@@ -13,8 +13,6 @@ use voussoir_core::model::{Target, stage_loads};
 use voussoir_core::plugin::{PluginKind, Quantity, card};
 use voussoir_solvers::limit::sensitivity::{DataRate, OptimalFace, same_data};
 
-/// Longer lists of numbers are data, no parameters.
-const LONGEST: usize = 12;
 /// Step of the differences of data, as a share of the number.
 const STEP: f64 = 1e-5;
 /// Derivatives that differ by less than this share are one.
@@ -102,8 +100,7 @@ pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<Sensitivity
     }
     let forces = forces(&problem, result)?;
     let face = OptimalFace::new(&problem, factor, &forces, &motion(case, &problem, result)?)?;
-    let keys = numeric_keys(&case.resolved, LONGEST);
-    Ok(keys.iter().filter_map(|key| entry(case, &problem, &face, key, factor)).collect())
+    Ok(case.output_sensitivities.iter().filter_map(|key| entry(case, &problem, &face, key, factor)).collect())
 }
 
 /// The derivative with respect to one number; `None` where the data do not depend on it.

@@ -28,7 +28,7 @@ fn assert_differences(study: &Study, tolerance: f64) -> CaseResult {
         for (slope, step) in [(entry.left, -2e-5 * scale), (entry.right, 2e-5 * scale)] {
             let load = |value: f64| {
                 let mut changed = study.at(0, &[(entry.key.clone(), json!(value))]).ok()?;
-                changed.output_sensitivities = false;
+                changed.output_sensitivities.clear();
                 solve_case(&changed).load_factor
             };
             let (Some(slope), Some(near), Some(far)) =

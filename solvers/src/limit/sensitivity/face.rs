@@ -2,6 +2,7 @@
 
 use super::data::DataRate;
 use super::program::{Direction, Program};
+use super::row::{FaceRow, Source};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
@@ -13,26 +14,6 @@ const TIGHT: f64 = 1e-8;
 const MOVES: f64 = 1e-8;
 /// Scenes of more forces take too long.
 const GREATEST: usize = 900;
-
-/// A row A_i of the strengths over the forces of one joint, of length 1, with its slack in r̂.
-#[derive(Debug, Clone)]
-pub(super) struct FaceRow {
-    joint: usize,
-    /// Index among the joint's rows, or of the end of its stress block.
-    source: Source,
-    /// Factor that has made its length 1.
-    scale: f64,
-    /// Over all forces.
-    pub coefficients: DVector<f64>,
-    /// ≥ 0.
-    pub slack: f64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Source {
-    Row(usize),
-    Block(usize),
-}
 
 /// All fields that carry the limit load, and all mechanisms at it, by what they share.
 #[derive(Debug)]

@@ -16,6 +16,7 @@
 mod data;
 mod face;
 mod program;
+mod row;
 
 pub use self::data::{DataRate, same_data};
 pub use self::face::OptimalFace;

@@ -1,6 +1,6 @@
 //! The linear program of a one-sided derivative, and whether the face is stable enough for it.
 
-use super::face::FaceRow;
+use super::row::FaceRow;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
 
