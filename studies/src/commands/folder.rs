@@ -150,7 +150,7 @@ impl ResultFolder {
     /// write this time.
     pub fn remove_left_over(&self, written: &[(String, Vec<u8>)]) {
         self.remove(JOURNAL);
-        let top = ["results.csv", "curve.csv", "comparison.csv", "report.html"].map(String::from);
+        let top = ["results.csv", "curve.csv", "comparison.csv", "sensitivities.csv", "report.html"].map(String::from);
         let filled = FILLED.into_iter().flat_map(|folder| {
             let names = entries(&self.path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
             names.collect::<Vec<_>>()
