@@ -2,6 +2,7 @@
 
 use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
 use super::files;
+use super::folder::named_by_writers;
 use super::options::useful_jobs;
 use super::progress::{Progress, Shown};
 use crate::kinds::StoredResults;
@@ -32,10 +33,15 @@ fn confirm(dir: &Path, jobs: usize) -> Result<u8, u8> {
     let stored = StoredResults { jobs: useful_jobs(jobs), file: &file };
     let found = study.verify_stored(&stored, &progress);
     progress.finish();
-    let found = found.map_err(|error| {
+    let mut found = found.map_err(|error| {
         eprintln!("{}: not a results file: {error}", path.display());
         WRONG_INPUT
     })?;
+    // Where cases are missing nothing is made, and what they wrote is not foreign for that.
+    if !found.made.is_empty() {
+        let foreign = named_by_writers(dir).into_iter().filter(|name| !found.made.contains(name));
+        found.files.extend(foreign.map(|name| format!("{name} is none of the files that results.json gives")));
+    }
     found.findings.iter().for_each(|(id, why)| say(format!("case {id}: {why}")));
     found.files.iter().for_each(say);
     let wrong = found.findings.len() + found.files.len();

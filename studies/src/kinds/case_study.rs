@@ -154,17 +154,17 @@ impl LoadedStudy for Study {
             return Err("the check was cancelled".into());
         }
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
-        let files = if cases.len() == results.cases.len() {
-            let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));
-            stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
-        } else {
-            Vec::new()
+        let made = match cases.len() == results.cases.len() {
+            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases))),
+            false => Vec::new(),
         };
+        let files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
         Ok(Verification {
             cases: results.cases.len(),
             stalled: results.cases.iter().filter(|case| case.status == Status::Stalled).count(),
             findings: verify_read(self, &results, &json, &again)?,
             files,
+            made: made.into_iter().map(|(name, _)| name).collect(),
             of: self.count(),
             how: HOW,
         })

@@ -250,6 +250,8 @@ pub struct Verification {
     pub findings: Vec<(usize, String)>,
     /// What is wrong with the other files.
     pub files: Vec<String>,
+    /// Names of all files that the results give.
+    pub made: Vec<String>,
     /// Number of cases of the study.
     pub of: usize,
     /// What was checked how.

@@ -44,7 +44,7 @@ pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Obser
         observer,
         jobs: stored.jobs,
         waiting: Vec::new(),
-        found: Verification { of: sweep.count(), how: HOW, ..Verification::default() },
+        found: Verification { of: sweep.count(), how: HOW, made: vec![TABLE.into()], ..Verification::default() },
         ids: Vec::new(),
         missing: Vec::new(),
         table: None,

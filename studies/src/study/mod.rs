@@ -8,6 +8,9 @@ mod builder;
 mod case;
 mod diagnostics;
 mod documented_vehicles;
+pub mod drawing;
+#[cfg(feature = "dxf")]
+mod dxf;
 mod error;
 mod export;
 mod file;

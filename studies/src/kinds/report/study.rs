@@ -189,6 +189,7 @@ impl LoadedStudy for ReportStudy {
             stalled: 0,
             findings,
             files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))),
+            made: made.files.into_iter().map(|(name, _)| name).collect(),
             of: self.contents.claims.len(),
             how: "checked: verdicts, charts and page against the results of the parts, each of which is verified by itself",
         })
