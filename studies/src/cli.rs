@@ -13,6 +13,10 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Let studies run this shared library (law = "external"); may be given several times
+    #[cfg(feature = "external")]
+    #[arg(long, global = true, value_name = "PATH")]
+    allow_library: Vec<PathBuf>,
 }
 
 #[derive(Subcommand)]
@@ -249,5 +253,12 @@ pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Res
     }
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let cli = Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments))?;
+    #[cfg(feature = "external")]
+    for path in &cli.allow_library {
+        if let Err(error) = crate::external::allow(path) {
+            eprintln!("voussoir: --allow-library {}: {error}", path.display());
+            return Ok(commands::NO_ACCESS);
+        }
+    }
     Ok(cli.command.answer(&words))
 }

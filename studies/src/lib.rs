@@ -61,6 +61,8 @@ pub use study::{Case, Study, StudyBuilder, StudyError};
 pub use verify::verify;
 
 pub use voussoir_core as core;
+#[cfg(feature = "external")]
+pub use voussoir_external as external;
 pub use voussoir_laws as laws;
 pub use voussoir_solvers as solvers;
 

@@ -6,6 +6,7 @@
 //! `cargo test --release -p voussoir-tests --test verification arch::`.
 
 mod arch;
+pub mod book;
 pub mod by_hand;
 pub mod energy;
 pub mod gates;

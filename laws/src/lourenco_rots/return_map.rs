@@ -32,14 +32,13 @@ fn root(mut f: impl FnMut(f64) -> f64, low: [f64; 2], high: [f64; 2]) -> Option<
     for _ in 0..ITERATIONS {
         let x = a + share * (b - a);
         let f_x = f(x);
-        let c;
-        let f_c;
-        if (f_x > 0.0) == (f_a > 0.0) {
-            (c, f_c) = (a, f_a);
+        let (c, f_c) = if (f_x > 0.0) == (f_a > 0.0) {
+            (a, f_a)
         } else {
-            (c, f_c) = (b, f_b);
+            let far = (b, f_b);
             (b, f_b) = (a, f_a);
-        }
+            far
+        };
         (a, f_a) = (x, f_x);
         let best = if f_a.abs() < f_b.abs() { a } else { b };
         let least = 2.0 * f64::EPSILON * best.abs() / (b - a).abs();

@@ -17,6 +17,7 @@ mod open;
 pub mod options;
 pub mod pages;
 mod progress;
+mod refill;
 pub mod run;
 pub mod serve;
 pub mod shard;

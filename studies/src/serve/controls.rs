@@ -2,7 +2,7 @@
 
 use crate::figures::format::{escape, format_short};
 use crate::figures::words::words_of_key;
-use crate::study::{NumberKind, NumericKey, numeric_keys};
+use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
 use serde_json::Value as Json;
 use std::fmt::Write;
 use voussoir_core::plugin::{Quantity, Range};
@@ -144,7 +144,7 @@ fn control(key: &NumericKey, resolved: &Json) -> String {
 
 /// The controls of a case as HTML: sliders for its numbers, fields for those that are optional and not given.
 pub(super) fn controls(resolved: &Json) -> String {
-    let keys = numeric_keys(resolved, LONGEST);
+    let keys = numeric_keys(study_keys(), resolved, LONGEST);
     let mut text = String::new();
     for (heading, table) in GROUPS {
         let own = |key: &&NumericKey| key.key.split('.').next() == Some(table);

@@ -1,35 +1,55 @@
 //! The page that is served: drawings, the answer, sliders.
 
 use super::controls::controls;
-use super::session::Session;
 use crate::figures::format::escape;
 use crate::writers::page;
 use serde_json::Value as Json;
 
-/// The page of a case with these checked keys.
-pub(super) fn page(session: &Session, case: usize, resolved: &Json) -> String {
-    let mut body = format!("<h1>{}</h1>\n", escape(session.name()));
-    if session.kind() != "run" {
+/// What a page shows.
+#[derive(Debug)]
+pub(super) struct Shown<'a> {
+    /// Name of the study.
+    pub name: &'a str,
+    /// What its kind does with its cases.
+    pub kind: &'a str,
+    /// Id of the case.
+    pub case: usize,
+    /// Number of cases.
+    pub count: usize,
+    /// What tells them apart; `None` where they are too many to choose from.
+    pub labels: Option<Vec<String>>,
+    /// The checked keys of the case.
+    pub resolved: &'a Json,
+}
+
+/// The page of a case.
+pub(super) fn page(shown: &Shown) -> String {
+    let mut body = format!("<h1>{}</h1>\n", escape(shown.name));
+    if shown.kind != "run" {
         body += &format!(
             "<p class=\"quiet\">Its kind is {}: here its cases are answered one at a time.</p>\n",
-            escape(session.kind())
+            escape(shown.kind)
         );
     }
-    body += &choice(session, case);
-    body += &format!("<div id=\"live\" data-case=\"{case}\">\n{SEEN}<form>\n{}</form>\n</div>\n", controls(resolved));
+    body += &choice(shown);
+    body += &format!(
+        "<div id=\"live\" data-case=\"{}\">\n{SEEN}<form>\n{}</form>\n</div>\n",
+        shown.case,
+        controls(shown.resolved)
+    );
     body += "<noscript>This page needs its script.</noscript>\n";
-    page::served(session.name(), &body)
+    page::served(shown.name, &body)
 }
 
 /// A list of the study's cases.
-fn choice(session: &Session, case: usize) -> String {
-    let labels = match session.labels() {
+fn choice(shown: &Shown) -> String {
+    let labels = match &shown.labels {
         Some(labels) if labels.len() > 1 => labels,
         Some(_) => return String::new(),
-        None => return format!("<p class=\"quiet\">Case {case} of {}.</p>\n", session.count()),
+        None => return format!("<p class=\"quiet\">Case {} of {}.</p>\n", shown.case, shown.count),
     };
     let options = labels.iter().enumerate().map(|(id, label)| {
-        let selected = if id == case { " selected" } else { "" };
+        let selected = if id == shown.case { " selected" } else { "" };
         format!("<option value=\"{id}\"{selected}>{}</option>", escape(label))
     });
     format!("<p><label>Case <select id=\"case\">{}</select></label></p>\n", options.collect::<String>())

@@ -127,7 +127,14 @@ impl Session {
     pub fn page(&self, case: usize) -> Result<String, String> {
         let (_, study) = self.study(&Asked { case, set: Vec::new() }).map_err(|wrong| lines(&wrong))?;
         let first = study.cases.first().ok_or("the study has no case")?;
-        Ok(page::page(self, case, &first.resolved))
+        Ok(page::page(&page::Shown {
+            name: self.name(),
+            kind: self.kind(),
+            case,
+            count: self.count(),
+            labels: self.labels(),
+            resolved: &first.resolved,
+        }))
     }
 }
 

@@ -1,7 +1,6 @@
 //! The numbers of a checked case by dotted key, with what the schema says of each: for sliders, and for derivatives
 //! of a load factor.
 
-use super::keys::study_keys;
 use crate::config::common_keys::common_parameters;
 use crate::config::dotted_key::join;
 use serde_json::Value as Json;
@@ -46,10 +45,10 @@ impl NumericKey {
 
 /// The numbers of a checked case ([`super::Case::resolved`]) in the order of the schema. Optional numbers that are
 /// not given are listed too where they stand in a table by themselves. Lists of more than `longest` numbers or
-/// tables are left out: they are data, not parameters.
-pub fn numeric_keys(resolved: &Json, longest: usize) -> Vec<NumericKey> {
+/// tables are left out: they are data, not parameters. `keys` are those of study files ([`super::study_keys`]).
+pub fn numeric_keys(keys: &[Parameter], resolved: &Json, longest: usize) -> Vec<NumericKey> {
     let mut walk = Walk { longest, found: Vec::new() };
-    for parameter in study_keys().iter().filter(|parameter| TABLES.contains(&parameter.name)) {
+    for parameter in keys.iter().filter(|parameter| TABLES.contains(&parameter.name)) {
         if let Some(value) = resolved.get(parameter.name) {
             walk.shape(parameter.name, &parameter.shape, value, parameter.doc);
         }
@@ -154,13 +153,13 @@ fn outer_form(shape: &Shape, value: &Json) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::load;
+    use crate::study::{load, study_keys};
 
     #[test]
     fn every_number_of_an_arch_is_found_with_its_range_and_unit() {
         let text = include_str!("../commands/new/arch.toml");
         let study = load(text, "arch.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
-        let keys = numeric_keys(&study.cases[0].resolved, 12);
+        let keys = numeric_keys(study_keys(), &study.cases[0].resolved, 12);
         let of = |key: &str| keys.iter().find(|own| own.key == key).unwrap_or_else(|| panic!("{key} in {keys:?}"));
         assert_eq!((of("scene.profile.span").unit(), of("scene.profile.span").value.is_some()), ("m", true));
         assert!(matches!(of("scene.voussoirs").kind, NumberKind::Whole(..)));

@@ -26,6 +26,7 @@ mod peaks;
 mod plastic;
 mod residuals;
 mod semicircle;
+mod sensitivities;
 mod settled;
 mod settlements;
 mod snap_through;
