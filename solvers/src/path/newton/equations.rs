@@ -49,7 +49,9 @@ impl Equations {
     pub fn new(system: &System, hessian: &Hessian) -> Self {
         let (u, base, last) = (system.units, 2 * system.contacts, system.size());
         let of_gaps = hessian.entries.iter().filter(|e| e.0 < base).count();
-        let (mut gaps, mut bodies): (Entries, Entries) = (Vec::with_capacity(of_gaps + base), Vec::new());
+        let of_bodies = hessian.entries.len() - of_gaps;
+        let (mut gaps, mut bodies): (Entries, Entries) =
+            (Vec::with_capacity(of_gaps + base), Vec::with_capacity(of_bodies + last - base));
         let row_of = |i: usize| match i < base {
             true => Some((i, u.displacement)),
             false if (i - base) % 3 == 2 => Some((system.column(i)?.0, u.force * u.length)),
