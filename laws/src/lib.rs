@@ -16,6 +16,7 @@ pub mod drucker_prager_cap;
 pub mod drucker_prager_softening;
 pub mod elastic;
 pub mod fill_pressure;
+pub mod lourenco_rots;
 pub mod mohr_coulomb;
 pub mod mohr_coulomb_solid;
 pub mod orthotropic_elastic;

@@ -13,6 +13,10 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Let studies run this shared library (law = "external"); may be given several times
+    #[cfg(feature = "external")]
+    #[arg(long, global = true, value_name = "PATH")]
+    allow_library: Vec<PathBuf>,
 }
 
 #[derive(Subcommand)]
@@ -67,6 +71,17 @@ enum Command {
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
+    },
+    /// Open a study in a browser on this machine, with sliders for its numbers
+    Serve {
+        /// Study file (TOML)
+        study: PathBuf,
+        /// Override a key of the study
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Open the page in a browser
+        #[arg(long)]
+        open: bool,
     },
     /// Write a commented study that runs as it stands, or a law
     New {
@@ -155,6 +170,7 @@ impl Command {
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
             }
+            Command::Serve { study, set, open } => commands::serve::serve(&study, &set, open),
             Command::New { what } => what.answer(),
             Command::Check { studies, set } => commands::check::check(&studies, &set),
             Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),
@@ -237,5 +253,12 @@ pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Res
     }
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let cli = Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments))?;
+    #[cfg(feature = "external")]
+    for path in &cli.allow_library {
+        if let Err(error) = crate::external::allow(path) {
+            eprintln!("voussoir: --allow-library {}: {error}", path.display());
+            return Ok(commands::NO_ACCESS);
+        }
+    }
     Ok(cli.command.answer(&words))
 }

@@ -48,6 +48,7 @@ pub mod postprocess;
 pub mod prelude;
 pub mod results;
 pub mod scenes;
+pub mod serve;
 pub mod solve;
 pub mod study;
 pub mod verify;
@@ -60,6 +61,8 @@ pub use study::{Case, Study, StudyBuilder, StudyError};
 pub use verify::verify;
 
 pub use voussoir_core as core;
+#[cfg(feature = "external")]
+pub use voussoir_external as external;
 pub use voussoir_laws as laws;
 pub use voussoir_solvers as solvers;
 

@@ -174,6 +174,13 @@ fn files_are_those_of_the_results() {
         std::fs::write(out.join(name), original).expect("written");
     }
     assert_eq!(code(&voussoir(&["verify", "out", "--jobs", "2"], &at)), 0);
+    // A figure that no case has, under a name as writers give it.
+    for name in ["figures/case-0099-mechanism.svg", "curve.csv"] {
+        std::fs::write(out.join(name), "foreign").expect("written");
+        let output = voussoir(&["verify", "out"], &at);
+        assert!(code(&output) == 1 && said(&output).contains(name), "{name}: {}", said(&output));
+        std::fs::remove_file(out.join(name)).expect("removed");
+    }
     let set = ["run", "a.toml", "--out", "out", "--quiet", "--set", "sweep.\"scene.profile.rise\".count=2"];
     assert_eq!(code(&voussoir(&set, &at)), 0);
     assert!(out.join("figures/case-0001-scene.svg").exists() && !out.join("figures/case-0003-scene.svg").exists());

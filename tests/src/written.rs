@@ -1,5 +1,6 @@
 //! Results as they are written, and what `verify` finds in them.
 
+use crate::gates::above_gates;
 use crate::study;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -18,6 +19,9 @@ pub fn results(text: &str) -> (Study, Value) {
     let (kind, wanted) =
         (kind(&original.kind).expect("a registered kind"), (0..original.cases.len()).collect::<Vec<_>>());
     let results = original.results("test", kind.solve(&original, &wanted, 1, &Unobserved));
+    for case in &results.cases {
+        assert_eq!(above_gates(case, 1e-9, 0.0), Vec::<String>::new());
+    }
     (again, serde_json::to_value(&results).expect("results can be written"))
 }
 

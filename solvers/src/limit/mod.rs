@@ -13,6 +13,7 @@ pub mod nonassociated;
 mod question;
 mod recovery;
 mod scale;
+pub mod sensitivity;
 pub mod sequential;
 mod settlement;
 mod systems;

@@ -77,6 +77,11 @@ impl CsrMatrix {
         }
     }
 
+    /// Number of entries.
+    pub fn entries(&self) -> usize {
+        self.entries.len()
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.start.len() - 1

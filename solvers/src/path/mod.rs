@@ -8,3 +8,4 @@ pub mod newton;
 mod outcome;
 mod self_check;
 mod stability;
+mod system;

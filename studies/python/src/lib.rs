@@ -113,19 +113,19 @@ fn verify<'py>(py: Python<'py>, dir: PathBuf, jobs: usize) -> PyResult<Bound<'py
 
 /// Checks one folder; those of the studies that it reports on are left for later.
 fn verify_one(py: Python<'_>, dir: &Path, jobs: usize, later: &mut Vec<PathBuf>) -> PyResult<Verification> {
-    let read = |name: &str| {
-        let path = dir.join(name);
-        std::fs::read_to_string(&path)
-            .map_err(|error| PyOSError::new_err(format!("cannot read {}: {error}", path.display())))
+    let unreadable = |name: &'static str| {
+        move |error: std::io::Error| PyOSError::new_err(format!("cannot read {}: {error}", dir.join(name).display()))
     };
-    let (results, resolved) = (read("results.json")?, read("resolved.toml")?);
+    std::fs::File::open(dir.join("results.json")).map_err(unreadable("results.json"))?;
+    let resolved = std::fs::read_to_string(dir.join("resolved.toml")).map_err(unreadable("resolved.toml"))?;
     let file = dir.join("resolved.toml").display().to_string();
     let study = Source::Toml { text: resolved, file, sets: Vec::new() }.load()?;
     later.extend(study.parts().iter().map(|part| dir.join(&part.folder)));
-    let bytes = |name: &str| std::fs::read(dir.join(name)).ok();
-    let found = interruptible(py, None, |told| {
-        study.verify_stored(&StoredResults { results: &results, jobs, file: &bytes }, told)
-    })?;
+    let stored = |name: &str| {
+        std::fs::File::open(dir.join(name)).ok().map(|file| Box::new(file) as Box<dyn std::io::Read>)
+    };
+    let found =
+        interruptible(py, None, |told| study.verify_stored(&StoredResults { jobs, file: &stored }, told))?;
     found.map_err(|error| PyValueError::new_err(format!("{}: not a results file: {error}", dir.display())))
 }
 

@@ -135,6 +135,18 @@ def swept(count=12):
     )
 
 
+def test_a_sweep_is_read_back_from_parquet_by_others(tmp_path):
+    duckdb, polars = pytest.importorskip("duckdb"), pytest.importorskip("polars")
+    table = voussoir.sweep(swept())
+    path = tmp_path / "sweep.parquet"
+    table.write_parquet(path)
+    factors = list(table["load_factor"])
+    assert polars.read_parquet(path)["load_factor"].to_list() == factors
+    assert [row[0] for row in duckdb.sql(f"select load_factor from '{path}' order by id").fetchall()] == factors
+    statuses = duckdb.sql(f"select status, count(*) from '{path}' group by status").fetchall()
+    assert sum(count for _, count in statuses) == table.count
+
+
 def test_sweeps_are_columns_and_the_same_whoever_works():
     pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
     seen = []

@@ -3,6 +3,7 @@
 use super::codes::{NO_ACCESS, WRONG_INPUT};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::kinds::{LoadedStudy, read_source_beside};
+use crate::serve::Session;
 use crate::study::{StudySource, beside};
 use std::path::Path;
 
@@ -12,6 +13,14 @@ pub fn read(path: &Path) -> Result<String, u8> {
         eprintln!("voussoir: cannot read {}: {error}", path.display());
         NO_ACCESS
     })?;
+    // UTF-16 without a mark at its beginning is UTF-8 to the letter, with a zero beside each.
+    if bytes.contains(&0) {
+        eprintln!(
+            "{}:1:1: this file holds zero bytes; save it as UTF-8, as TOML asks for (it may be in UTF-16)",
+            path.display()
+        );
+        return Err(WRONG_INPUT);
+    }
     String::from_utf8(bytes).map_err(|error| {
         let (bytes, at) = (error.as_bytes(), error.utf8_error().valid_up_to());
         let (line, column) = (bytes[..at].iter().filter(|b| **b == b'\n').count() + 1, bytes[..at].iter().rev().take_while(|b| **b != b'\n').count() + 1);
@@ -44,6 +53,13 @@ pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStu
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
     let study = source.and_then(|source| read_source_beside(source, &beside(path)));
     study.map_err(|diagnostics| report(path, &diagnostics))
+}
+
+/// Reads a study to be looked at, printing every mistake in its first case.
+pub fn session(path: &Path, sets: &[(String, String)]) -> Result<Session, u8> {
+    let text = read(path)?;
+    let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
+    source.and_then(Session::read).map_err(|diagnostics| report(path, &diagnostics))
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {

@@ -150,18 +150,24 @@ impl ResultFolder {
     /// write this time.
     pub fn remove_left_over(&self, written: &[(String, Vec<u8>)]) {
         self.remove(JOURNAL);
-        let top = ["results.csv", "curve.csv", "comparison.csv", "report.html"].map(String::from);
-        let filled = FILLED.into_iter().flat_map(|folder| {
-            let names = entries(&self.path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
-            names.collect::<Vec<_>>()
-        });
-        for name in top.into_iter().chain(filled.filter(|name| of_a_writer(name))) {
+        for name in named_by_writers(&self.path) {
             if written.iter().all(|(kept, _)| *kept != name) {
                 drop(fs::remove_file(self.path.join(&name)));
             }
         }
         FILLED.iter().for_each(|folder| drop(fs::remove_dir(self.path.join(folder))));
     }
+}
+
+/// Files of a folder that have names which writers give, but for results.json.
+pub fn named_by_writers(path: &Path) -> Vec<String> {
+    let top = ["results.csv", "curve.csv", "comparison.csv", "sensitivities.csv", "report.html"].map(String::from);
+    let filled = FILLED.into_iter().flat_map(|folder| {
+        let names = entries(&path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
+        names.collect::<Vec<_>>()
+    });
+    let there = |name: &String| path.join(name).exists();
+    top.into_iter().filter(there).chain(filled.filter(|name| of_a_writer(name))).collect()
 }
 
 /// A file under another name until it is whole.

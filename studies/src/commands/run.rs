@@ -3,6 +3,7 @@
 use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
+use super::open::open;
 use super::options::{Options, useful_jobs};
 use super::progress::Progress;
 use super::today::today;
@@ -127,24 +128,6 @@ fn list(study: &dyn LoadedStudy, options: &Options) -> u8 {
     FINE
 }
 
-/// Opens a file as the desktop does; that it cannot is no error of the run.
-fn open(path: &Path) {
-    let program = match std::env::consts::OS {
-        "macos" => "open",
-        "windows" => "explorer",
-        _ => "xdg-open",
-    };
-    let started = std::process::Command::new(program)
-        .arg(path)
-        .stdin(std::process::Stdio::null())
-        .stdout(std::process::Stdio::null())
-        .stderr(std::process::Stdio::null())
-        .spawn();
-    if let Err(error) = started {
-        eprintln!("voussoir: {} cannot be opened with {program}: {error}", path.display());
-    }
-}
-
 fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) -> Result<u8, u8> {
     let resolved = study.resolved_text().map_err(|error| {
         eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name());
@@ -210,7 +193,7 @@ fn run_held(
         say(format!("results in {}", folder.path().display()));
     }
     if options.open && output.files.iter().any(|(name, _)| name == "report.html") {
-        open(&folder.path().join("report.html"));
+        open(folder.path().join("report.html"));
     }
     Ok(code.max(if output.certified { FINE } else { NOT_PROVEN }))
 }

@@ -5,6 +5,7 @@ use super::case_lines::CaseLines;
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::Options;
+use super::refill::refill;
 use super::today::today;
 use crate::figures::format::{format_number, format_value, status_word};
 use crate::kinds::CasesOf;
@@ -59,6 +60,9 @@ pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Resu
     }
     let folder = ResultFolder::open(dir)?;
     folder.write("resolved.toml", resolved.as_bytes())?;
+    if options.resume {
+        refill(&folder)?;
+    }
     let ids = options.case.map_or_else(|| (0..sweep.count()).collect(), |id| vec![id]);
     let lines = solve_into_journal(&CasesOf::Streamed(sweep), &sweep.name, &ids, &folder, options)?;
     finish(sweep, &folder, &lines, options.case.map(|id| vec![id]), options.quiet || options.json)

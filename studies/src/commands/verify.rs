@@ -1,10 +1,12 @@
 //! `voussoir verify`.
 
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
 use super::files;
+use super::folder::named_by_writers;
 use super::options::useful_jobs;
 use super::progress::{Progress, Shown};
 use crate::kinds::StoredResults;
+use std::io::Read;
 use std::path::Path;
 
 /// Checks a results folder, `jobs` cases side by side.
@@ -16,21 +18,30 @@ pub fn verify(dir: &Path, jobs: usize) -> u8 {
 
 fn confirm(dir: &Path, jobs: usize) -> Result<u8, u8> {
     let path = dir.join("results.json");
-    let results = files::read(&path)?;
+    let readable = std::fs::File::open(&path);
+    readable.map_err(|error| {
+        eprintln!("voussoir: cannot read {}: {error}", path.display());
+        NO_ACCESS
+    })?;
     let study = files::study(&dir.join("resolved.toml"), &[])?;
     let mut code = FINE;
     for part in study.parts() {
         code = code.max(confirm(&dir.join(&part.folder), jobs)?);
     }
     let progress = Progress::new(study.name(), Shown::Bar, None);
-    let file = |name: &str| std::fs::read(dir.join(name)).ok();
-    let stored = StoredResults { results: &results, jobs: useful_jobs(jobs), file: &file };
+    let file = |name: &str| std::fs::File::open(dir.join(name)).ok().map(|file| Box::new(file) as Box<dyn Read>);
+    let stored = StoredResults { jobs: useful_jobs(jobs), file: &file };
     let found = study.verify_stored(&stored, &progress);
     progress.finish();
-    let found = found.map_err(|error| {
+    let mut found = found.map_err(|error| {
         eprintln!("{}: not a results file: {error}", path.display());
         WRONG_INPUT
     })?;
+    // Where cases are missing nothing is made, and what they wrote is not foreign for that.
+    if !found.made.is_empty() {
+        let foreign = named_by_writers(dir).into_iter().filter(|name| !found.made.contains(name));
+        found.files.extend(foreign.map(|name| format!("{name} is none of the files that results.json gives")));
+    }
     found.findings.iter().for_each(|(id, why)| say(format!("case {id}: {why}")));
     found.files.iter().for_each(say);
     let wrong = found.findings.len() + found.files.len();

@@ -1,7 +1,7 @@
 //! Studies with a scene as commands see them: their cases are solved as their kind says, certified, and written by
 //! all writers.
 
-use super::kind::{CasesOf, LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
+use super::kind::{CasesOf, LoadedStudy, Piece, RESULTS, RunOutput, RunRequest, StoredResults, Verification, kind};
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::format_number;
 use crate::figures::sweep::study_chart;
@@ -10,11 +10,12 @@ use crate::results::{CaseLabel, CaseResult, StudyResults};
 use crate::solve::explain::explain;
 use crate::solve::{Observer, side_by_side};
 use crate::study::{Case, Study, as_blocks};
-use crate::verify::{solve_again, verify_against};
+use crate::verify::{solve_again, verify_read};
 use crate::writers::comparison::comparison_table;
 use crate::writers::record::record;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
+use serde::Deserialize;
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -146,24 +147,24 @@ impl LoadedStudy for Study {
     }
 
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
-        let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
-        let results: StudyResults = serde_json::from_value(json.clone()).map_err(|error| error.to_string())?;
+        let json: Json = serde_json::from_str(&stored.text(RESULTS)?).map_err(|error| error.to_string())?;
+        let results = StudyResults::deserialize(&json).map_err(|error| error.to_string())?;
         let again = solve_again(self, &results, stored.jobs, observer);
         if observer.cancelled() {
             return Err("the check was cancelled".into());
         }
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
-        let files = if cases.len() == results.cases.len() {
-            let made = side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases)));
-            stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
-        } else {
-            Vec::new()
+        let made = match cases.len() == results.cases.len() {
+            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases))),
+            false => Vec::new(),
         };
+        let files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
         Ok(Verification {
             cases: results.cases.len(),
             stalled: results.cases.iter().filter(|case| case.status == Status::Stalled).count(),
-            findings: verify_against(self, &json, &again)?,
+            findings: verify_read(self, &results, &json, &again)?,
             files,
+            made: made.into_iter().map(|(name, _)| name).collect(),
             of: self.count(),
             how: HOW,
         })

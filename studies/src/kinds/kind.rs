@@ -1,11 +1,13 @@
 //! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
 
+use super::same_bytes::SameBytes;
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, Unobserved, solve_cases};
 use crate::study::{Case, Outline, ReadFile, Study, StudySource, Sweep};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
+use std::io::{Cursor, Read, Write};
 use voussoir_core::plugin::{Diagnostic, Parameter};
 
 /// A kind of study, chosen by `kind = …`. Instances register with
@@ -121,7 +123,8 @@ pub trait LoadedStudy: Send + Sync {
 
     /// Checks the text of a results.json alone.
     fn verify(&self, results: &str) -> Result<Verification, String> {
-        self.verify_stored(&StoredResults { results, jobs: 1, file: &|_| None }, &Unobserved)
+        let file = |name: &str| (name == RESULTS).then(|| Box::new(Cursor::new(results.to_string())) as Box<dyn Read>);
+        self.verify_stored(&StoredResults { jobs: 1, file: &file }, &Unobserved)
     }
 }
 
@@ -194,23 +197,46 @@ pub struct RunOutput {
     pub certified: bool,
 }
 
+/// The file that everything else in a result folder is made from.
+pub(super) const RESULTS: &str = "results.json";
+
 /// What `verify` is given.
 pub struct StoredResults<'a> {
-    /// The text of results.json.
-    pub results: &'a str,
     /// Cases side by side.
     pub jobs: usize,
-    /// The bytes of another file of the result folder; `None` where there is none.
-    pub file: &'a dyn Fn(&str) -> Option<Vec<u8>>,
+    /// A file of the result folder from its beginning, results.json and others; `None` where there is none.
+    pub file: &'a dyn Fn(&str) -> Option<Box<dyn Read>>,
 }
 
 impl StoredResults<'_> {
+    /// results.json from its beginning.
+    pub fn results(&self) -> Result<Box<dyn Read>, String> {
+        (self.file)(RESULTS).ok_or(format!("there is no {RESULTS}"))
+    }
+
+    /// The text of a file.
+    pub fn text(&self, name: &str) -> Result<String, String> {
+        let mut text = String::new();
+        let mut file = (self.file)(name).ok_or(format!("there is no {name}"))?;
+        file.read_to_string(&mut text).map_err(|error| error.to_string())?;
+        Ok(text)
+    }
+
     /// What is wrong with the files beside results.json: each that is there must be the one that is made from it.
     pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<String> {
-        let others = made.filter(|(name, _)| *name != "results.json");
-        let altered = others.filter(|(name, bytes)| (self.file)(name).is_some_and(|stored| stored != *bytes));
-        altered.map(|(name, _)| format!("{name} is not what results.json gives")).collect()
+        let others = made.filter(|(name, _)| *name != RESULTS);
+        let differs = |(name, bytes): &(&str, &[u8])| {
+            let Some(stored) = (self.file)(name) else { return false };
+            let mut same = SameBytes::new(stored);
+            same.write_all(bytes).is_err() || !same.ended()
+        };
+        others.filter(differs).map(|(name, _)| not_made(name)).collect()
     }
+}
+
+/// What is said of a file that is not the one that results.json gives.
+pub(super) fn not_made(name: &str) -> String {
+    format!("{name} is not what {RESULTS} gives")
 }
 
 /// What a check of results has found.
@@ -224,6 +250,8 @@ pub struct Verification {
     pub findings: Vec<(usize, String)>,
     /// What is wrong with the other files.
     pub files: Vec<String>,
+    /// Names of all files that the results give.
+    pub made: Vec<String>,
     /// Number of cases of the study.
     pub of: usize,
     /// What was checked how.

@@ -13,8 +13,11 @@ mod read;
 pub mod report;
 pub mod run;
 mod run_study;
+mod same_bytes;
 mod search;
+mod stored_cases;
 mod streamed;
+mod verify_streamed;
 
 pub use kind::{
     CasesOf, KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind,

@@ -4,6 +4,7 @@ use super::entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry,
 };
 use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
+use super::sensitivity::SensitivityEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
@@ -159,6 +160,9 @@ pub struct CaseResult {
     /// What a path leaves.
     #[serde(flatten)]
     pub path: PathRecord,
+    /// On request: how the load factor changes with the numbers of the study.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensitivities: Vec<SensitivityEntry>,
     /// The partial factors that its values were multiplied or divided by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub partial_factors: Option<Json>,
@@ -197,6 +201,7 @@ impl CaseResult {
             seconds: 0.0,
             stages: Vec::new(),
             path: PathRecord::default(),
+            sensitivities: Vec::new(),
             partial_factors: None,
             loads: Vec::new(),
         }

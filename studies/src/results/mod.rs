@@ -9,6 +9,7 @@ mod limit_points;
 pub mod load_entries;
 pub mod path_state;
 mod rank;
+mod sensitivity;
 pub mod stage_start;
 mod study_results;
 pub mod thrust_line;
@@ -20,4 +21,5 @@ pub use entries::{
 };
 pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 pub use rank::load_rank;
+pub use sensitivity::SensitivityEntry;
 pub use study_results::StudyResults;

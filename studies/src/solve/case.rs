@@ -3,6 +3,7 @@
 use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
+use super::sensitivity::sensitivities;
 use super::side_by_side::side_by_side;
 use super::statics::stands_by_statics;
 use super::{limit, path};
@@ -62,6 +63,13 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         withdraw(&mut result, wrong);
     }
     result.notes.extend(case.notes.iter().cloned());
+    if !case.output_sensitivities.is_empty() {
+        let found = catch_unwind(AssertUnwindSafe(|| sensitivities(case, &result)));
+        match found.unwrap_or_else(|_| Err("a panic ended their search".into())) {
+            Ok(found) => result.sensitivities = found,
+            Err(why) => result.notes.push(format!("no sensitivities: {why}")),
+        }
+    }
     if !case.output_curve {
         result.path.curve = None;
     }

@@ -16,6 +16,7 @@ mod path;
 mod path_result;
 mod recorded;
 mod safe_theorem;
+pub mod sensitivity;
 mod settlement;
 mod side_by_side;
 mod statics;

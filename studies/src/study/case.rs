@@ -4,6 +4,7 @@ use super::assemble::{assembly, catalogue};
 use super::diagnostics::DiagnosticList;
 use super::keys::{kind_tables, study_keys};
 use super::model::{Case, SelectedSolver};
+use super::numeric_keys::numeric_keys;
 use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::warnings;
 use super::solver::{choose_solver, unused_by_limit_analysis};
@@ -14,6 +15,9 @@ use crate::config::document::Node;
 use crate::config::expand::Expanded;
 use serde_json::{Map, Value as Json};
 use voussoir_core::plugin::{PluginKind, cards_of, nearest};
+
+/// The load factor is not differentiated with respect to longer lists of numbers: they are data, no parameters.
+const LONGEST: usize = 12;
 
 /// Checks and builds one case.
 pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<LocatedDiagnostic>> {
@@ -40,10 +44,13 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
             let states = resolved.get("output").and_then(|output| output["states"].as_u64());
+            let differentiated = resolved.get("output").is_some_and(|output| output["sensitivities"] == true);
             let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let resolved = Json::Object(resolved);
+            let numbers = || numeric_keys(study_keys(), &resolved, LONGEST);
+            let output_sensitivities = if differentiated { numbers() } else { Vec::new() };
             let brief = false;
             Ok(Case {
                 id,
@@ -55,6 +62,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
                 solver,
                 output_curve,
                 output_states,
+                output_sensitivities,
                 notes,
                 brief,
                 resolved,

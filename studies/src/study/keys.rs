@@ -102,6 +102,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         Need::Optional("no states are kept"),
         "of each path so many states are kept, for the drawing that moves in the report",
     ),
+    key(
+        "sensitivities",
+        Shape::Boolean,
+        Need::Default("false"),
+        "derivatives of the load factor of limit analysis with respect to every number, on both sides",
+    ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ];
 

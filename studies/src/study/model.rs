@@ -1,6 +1,7 @@
 //! A study as it was read: its cases, each with everything that is needed to solve it. How it is read
 //! stands in [`super::load`].
 
+use super::numeric_keys::NumericKey;
 use super::outline::Outline;
 use crate::config::expand::Expansion;
 use serde_json::{Map, Value as Json};
@@ -52,6 +53,8 @@ pub struct Case {
     pub output_curve: bool,
     /// How many states of a path are kept.
     pub output_states: usize,
+    /// Numbers with respect to which the load factor is differentiated; none unless that is asked for.
+    pub output_sensitivities: Vec<NumericKey>,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
     /// One of many made from another case, which has the weights that both have: its results leave them out.

@@ -107,6 +107,14 @@ pub fn design(resolved: &Map<String, Json>, notes: &mut Vec<String>) -> Map<Stri
             notes.push(format!("factors.{name} = {factor} changes nothing: the study has no such number"));
         }
     }
+    let heavier = factors.get("fill_weight").and_then(Json::as_f64).filter(|factor| *factor > 1.0);
+    if let (Some(factor), true) = (heavier, resolved.get("scene").is_some_and(|s| s["fill"]["resistance"].is_object()))
+    {
+        notes.push(format!(
+            "factors.fill_weight = {factor} raises the resistance of the fill too (one source, one factor); where weight helps, \
+             its favourable value decides: solve with fill_weight = 1 besides"
+        ));
+    }
     match out {
         Json::Object(mut out) => {
             out.remove("factors");

@@ -79,7 +79,7 @@ impl StudySource {
 }
 
 /// A value as TOML, or else as text.
-fn value_of(text: &str, origin: &Origin) -> Node {
+pub(crate) fn value_of(text: &str, origin: &Origin) -> Node {
     parse_value(text, origin)
         .or_else(|| parse_value(&format!("{text:?}"), origin))
         .unwrap_or_else(|| Node { value: Value::String(text.into()), origin: origin.clone() })

@@ -1,8 +1,11 @@
 //! Surveyed profiles: `profile = { shape = …, file = "survey.csv" }` becomes the points of the file, so that the
-//! resolved study needs the file no longer.
+//! resolved study needs the file no longer. The file may be a drawing, `survey.dxf`, and so may that of a scene of blocks.
 
+use super::drawing::{Drawing, DrawnBlock};
+#[cfg(feature = "dxf")]
+use super::dxf::read_drawing;
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
-use crate::config::document::{Entry, Node, Value};
+use crate::config::document::{Entry, Node, Table, Value};
 use crate::config::origin::Origin;
 use std::path::Path;
 use std::sync::Arc;
@@ -18,43 +21,177 @@ pub fn no_files(_: &str) -> Result<String, String> {
 /// Reads files that stand beside a study file.
 pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
     let folder = study.parent().unwrap_or(Path::new("")).to_path_buf();
-    move |file| std::fs::read_to_string(folder.join(file)).map_err(|error| error.to_string())
+    move |file| {
+        let bytes = std::fs::read(folder.join(file)).map_err(|error| error.to_string())?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Ok(text),
+            // Older drawings have one byte a character.
+            Err(error) if is_drawing(file) => Ok(error.as_bytes().iter().copied().map(char::from).collect()),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+}
+
+#[cfg(not(feature = "dxf"))]
+fn read_drawing(_: &str) -> Result<Drawing, String> {
+    Err("this program was built without drawings; build it with cargo's `--features dxf`".into())
+}
+
+fn is_drawing(file: &str) -> bool {
+    file.to_lowercase().ends_with(".dxf")
 }
 
 /// Shapes of profiles whose points may stand in a file.
 const SHAPES: [&str; 2] = ["points", "surveyed"];
 
-/// Replaces every `file` of a profile of points by its points.
-pub fn import(node: &mut Node, read: ReadFile, mistakes: &mut Vec<LocatedDiagnostic>) {
-    match &mut node.value {
-        Value::Array(nodes) => nodes.iter_mut().for_each(|node| import(node, read, mistakes)),
-        Value::Table(table) => {
-            let of_points = table.get("shape").and_then(Node::text).is_some_and(|shape| SHAPES.contains(&shape));
-            let file = table
-                .get("file")
-                .filter(|_| of_points)
-                .and_then(|node| Some((node.text()?.to_string(), node.origin.clone())));
-            let Some((file, origin)) = file else {
-                return table.entries.iter_mut().for_each(|entry| import(&mut entry.node, read, mistakes));
-            };
-            let wrong = |message: String| LocatedDiagnostic::new(&origin, "profile.file", message);
-            for key in ["intrados", "extrados"].into_iter().filter(|key| table.get(key).is_some()) {
-                mistakes.push(wrong(format!("is given besides {key}")).help("keep one of the two"));
-            }
-            let text = match read(&file) {
-                Ok(text) => text,
-                Err(why) => return mistakes.push(wrong(format!("\"{file}\" cannot be read: {why}"))),
-            };
-            match Survey::read(&text, &file) {
-                Ok(survey) => {
-                    table.entries.retain(|entry| entry.key != "file");
-                    table.entries.extend(survey.entries(&origin));
-                }
-                Err(found) => mistakes.extend(found),
-            }
+/// Replaces every `file` of a profile of points, and of a scene of blocks, by what it holds.
+pub fn import(root: &mut Node, read: ReadFile, mistakes: &mut Vec<LocatedDiagnostic>) {
+    let table = root.table().and_then(|root| root.get("materials")).and_then(Node::table);
+    let materials: Vec<String> = table.into_iter().flat_map(Table::keys).map(String::from).collect();
+    Import { read, materials, mistakes }.node(root);
+}
+
+/// What a file stands for.
+#[derive(Clone, Copy)]
+enum Wanted {
+    Profile,
+    Blocks,
+}
+
+impl Wanted {
+    /// What a table with a `file` asks for.
+    fn of(table: &Table) -> Option<Wanted> {
+        let word = |key: &str| table.get(key).and_then(Node::text);
+        match (word("shape"), word("scene")) {
+            (Some(shape), _) if SHAPES.contains(&shape) => Some(Wanted::Profile),
+            (_, Some("blocks")) => Some(Wanted::Blocks),
+            _ => None,
         }
-        _ => {}
     }
+
+    /// Keys that the file takes the place of.
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Wanted::Profile => &CURVES,
+            Wanted::Blocks => &["blocks"],
+        }
+    }
+}
+
+struct Import<'a> {
+    read: ReadFile<'a>,
+    materials: Vec<String>,
+    mistakes: &'a mut Vec<LocatedDiagnostic>,
+}
+
+impl Import<'_> {
+    fn node(&mut self, node: &mut Node) {
+        match &mut node.value {
+            Value::Array(nodes) => nodes.iter_mut().for_each(|node| self.node(node)),
+            Value::Table(table) => match self.imported(table) {
+                Some(Ok(entries)) => {
+                    table.entries.retain(|entry| !["file", "unit"].contains(&entry.key.as_str()));
+                    table.entries.extend(entries);
+                }
+                Some(Err(found)) => self.mistakes.extend(found),
+                None => table.entries.iter_mut().for_each(|entry| self.node(&mut entry.node)),
+            },
+            _ => {}
+        }
+    }
+
+    /// The entries that a table's `file` stands for; `None` where it names none.
+    fn imported(&self, table: &Table) -> Option<Result<Vec<Entry>, Vec<LocatedDiagnostic>>> {
+        let wanted = Wanted::of(table)?;
+        let node = table.get("file")?;
+        let (file, origin) = (node.text()?, node.origin.clone());
+        let key = match wanted {
+            Wanted::Profile => "profile.file",
+            Wanted::Blocks => "scene.file",
+        };
+        let wrong = |message: String| LocatedDiagnostic::new(&origin, key, message);
+        let besides = wanted.keys().iter().filter(|key| table.get(key).is_some());
+        let besides: Vec<_> =
+            besides.map(|key| wrong(format!("is given besides {key}")).help("keep one of the two")).collect();
+        if !besides.is_empty() {
+            return Some(Err(besides));
+        }
+        let text = match (self.read)(file) {
+            Ok(text) => text,
+            Err(why) => return Some(Err(vec![wrong(format!("\"{file}\" cannot be read: {why}"))])),
+        };
+        if is_drawing(file) {
+            let found = self.of_drawing(wanted, &text, table.get("unit"), &origin);
+            return Some(found.map_err(|all| all.into_iter().map(|why| wrong(format!("\"{file}\": {why}"))).collect()));
+        }
+        match wanted {
+            Wanted::Profile => Some(Survey::read(&text, file).map(|survey| survey.entries(&origin))),
+            Wanted::Blocks => Some(Err(vec![wrong(format!("\"{file}\" is no drawing (.dxf)"))])),
+        }
+    }
+
+    /// The same of the text of a drawing.
+    fn of_drawing(
+        &self,
+        wanted: Wanted,
+        text: &str,
+        unit: Option<&Node>,
+        origin: &Origin,
+    ) -> Result<Vec<Entry>, Vec<String>> {
+        let drawing = read_drawing(text).map_err(|why| vec![why])?;
+        let materials: Vec<&str> = self.materials.iter().map(String::as_str).collect();
+        drawn(&drawing, wanted, unit, &materials, origin)
+    }
+}
+
+/// What a drawing stands for, in its own unit or another one.
+fn drawn(
+    drawing: &Drawing,
+    wanted: Wanted,
+    unit: Option<&Node>,
+    materials: &[&str],
+    origin: &Origin,
+) -> Result<Vec<Entry>, Vec<String>> {
+    let units = UNITS.map(|known| known.0).join(", ");
+    let unit = match unit.map(Node::text) {
+        None => drawing.unit.ok_or(vec![format!(
+            "the drawing does not say its unit ($INSUNITS); write unit = \"mm\" beside file (units: {units})"
+        )])?,
+        Some(word) => match UNITS.iter().find(|known| Some(known.0) == word) {
+            Some(known) => known.1,
+            None => return Err(vec![format!("unit is none of {units}")]),
+        },
+    };
+    match wanted {
+        Wanted::Profile => Ok(Survey { curves: drawing.profile(unit)? }.entries(origin)),
+        Wanted::Blocks => {
+            let blocks = drawing.blocks(unit, materials)?;
+            let list = Value::Array(blocks.into_iter().map(|block| block_node(block, origin)).collect());
+            Ok(vec![entry("blocks", list, origin)])
+        }
+    }
+}
+
+fn entry(key: &str, value: Value, origin: &Origin) -> Entry {
+    Entry { key: key.into(), origin: origin.clone(), node: Node { value, origin: origin.clone() } }
+}
+
+/// Points as a list of pairs.
+fn points_value(points: Vec<[f64; 2]>, origin: &Origin) -> Value {
+    let node = |value: Value| Node { value, origin: origin.clone() };
+    let point = |point: [f64; 2]| node(Value::Array(point.map(|x| node(Value::Float(x))).into()));
+    Value::Array(points.into_iter().map(point).collect())
+}
+
+/// A block as an entry of the key `blocks`.
+fn block_node(block: DrawnBlock, origin: &Origin) -> Node {
+    let mut entries = vec![
+        entry("name", Value::String(block.name), origin),
+        entry("vertices", points_value(block.vertices, origin), origin),
+    ];
+    entries.extend(block.material.map(|material| entry("material", Value::String(material), origin)));
+    entries.extend(block.fixed.then(|| entry("fixed", Value::Boolean(true), origin)));
+    Node { value: Value::Table(Table { entries }), origin: origin.clone() }
 }
 
 /// Points of an intrados and an extrados \[m\].
@@ -168,11 +305,11 @@ impl Survey {
 
     /// The keys `intrados` and `extrados`.
     fn entries(self, origin: &Origin) -> Vec<Entry> {
-        let node = |value: Value| Node { value, origin: origin.clone() };
-        let point = |point: [f64; 2]| node(Value::Array(point.map(|x| node(Value::Float(x))).into()));
-        let curve = |points: Vec<[f64; 2]>| node(Value::Array(points.into_iter().map(point).collect()));
-        let named = CURVES.into_iter().zip(self.curves);
-        named.map(|(key, points)| Entry { key: key.into(), origin: origin.clone(), node: curve(points) }).collect()
+        CURVES
+            .into_iter()
+            .zip(self.curves)
+            .map(|(key, points)| entry(key, points_value(points, origin), origin))
+            .collect()
     }
 }
 
@@ -273,5 +410,36 @@ mod tests {
             "survey.csv:2:1: a point of the intrados has only one coordinate"
         );
         assert!(message("").contains("no line with the names"));
+    }
+
+    /// A drawing's polylines become the keys that a study would have given; its unit is its own, or the one beside the file.
+    #[test]
+    fn a_drawing_stands_for_points_and_blocks() {
+        use crate::study::drawing::{Corner, Polyline};
+        let corners = |points: &[[f64; 2]]| points.iter().map(|&point| Corner { point, bulge: 0.0 }).collect();
+        let line = |layer: &str, closed: bool, points: &[[f64; 2]]| Polyline {
+            entity: "LWPOLYLINE 2A (line 22)".into(),
+            layer: layer.into(),
+            closed,
+            corners: corners(points),
+        };
+        let origin = Origin::File { file: "a.toml".into(), line: 1, column: 1 };
+        let node = |text: &str| Node { value: Value::String(text.into()), origin: origin.clone() };
+        let square = [[0.0, 0.0], [400.0, 0.0], [400.0, 500.0]];
+        let blocks = Drawing { unit: None, polylines: vec![line("stone", true, &square)], loose: Vec::new() };
+        let of = |unit: Option<&Node>| drawn(&blocks, Wanted::Blocks, unit, &["stone"], &origin);
+        assert!(of(None).unwrap_err()[0].contains("$INSUNITS"));
+        assert!(of(Some(&node("mil"))).unwrap_err()[0].contains("unit is none of m, mm"));
+        let [list] = &of(Some(&node("mm"))).unwrap()[..] else { panic!("one key") };
+        let toml = toml::to_string(
+            &Node { value: Value::Table(Table { entries: vec![list.clone()] }), origin: origin.clone() }.to_toml(),
+        );
+        let toml = toml.unwrap();
+        assert!(toml.contains("name = \"stone 1\"") && toml.contains("material = \"stone\""), "{toml}");
+        assert!(toml.replace(char::is_whitespace, "").contains("[0.4,0.5]"), "{toml}");
+        let polylines = vec![line("intrados", false, &square[..2]), line("extrados", false, &square[1..])];
+        let profile = Drawing { unit: Some(1e-3), polylines, loose: Vec::new() };
+        let keys = drawn(&profile, Wanted::Profile, None, &[], &origin).unwrap();
+        assert_eq!(keys.iter().map(|entry| entry.key.as_str()).collect::<Vec<_>>(), ["intrados", "extrados"]);
     }
 }

@@ -6,6 +6,7 @@ use crate::kinds::kind;
 use crate::results::{CaseResult, StudyResults};
 use crate::solve::{Observer, Unobserved};
 use crate::study::Study;
+use serde::Deserialize;
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
 
@@ -31,10 +32,20 @@ pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer:
 /// What is wrong with results as they are stored, against the same cases solved `again`; an error where they are
 /// no results.
 pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Result<Vec<(usize, String)>, String> {
-    let results: StudyResults = serde_json::from_value(stored.clone()).map_err(|error| error.to_string())?;
+    let results = StudyResults::deserialize(stored).map_err(|error| error.to_string())?;
+    verify_read(study, &results, stored, again)
+}
+
+/// The same where the results have been read from what is stored.
+pub fn verify_read(
+    study: &Study,
+    results: &StudyResults,
+    stored: &Json,
+    again: &[CaseResult],
+) -> Result<Vec<(usize, String)>, String> {
     let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
-    let mut wrong = study_findings(study, &results);
-    wrong.extend(id_findings(study, &results, again));
+    let mut wrong = study_findings(study, results);
+    wrong.extend(id_findings(study, results, again));
     let by_id: BTreeMap<usize, &CaseResult> = again.iter().map(|case| (case.label.id, case)).collect();
     for (result, entry) in results.cases.iter().zip(entries) {
         let id = result.label.id;

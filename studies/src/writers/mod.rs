@@ -12,10 +12,13 @@ pub mod figures;
 pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;
+#[cfg(feature = "png")]
+pub mod png;
 pub mod record;
 mod register;
 pub mod report;
 pub mod results_json;
+pub mod sensitivities;
 pub mod stream;
 mod study_output;
 pub mod table;

@@ -10,17 +10,30 @@ pub(crate) const STATUSES: [Status; 6] =
 
 /// The page's style sheet.
 const STYLE: &str = include_str!("page/style.css");
+/// How the script draws a case.
+const DRAW: &str = include_str!("page/draw.js");
 /// What makes the page answer: sorting, filtering, values under the pointer, drawings that move.
 const SCRIPT: &str = include_str!("page/script.js");
+/// What makes a page that is served follow its sliders.
+const LIVE: &str = include_str!("page/live.js");
 
 /// A whole page: its title for the browser, its body as HTML, and the cases that the script draws.
 pub(crate) fn whole(title: &str, body: &str, cases: &[Json]) -> String {
+    page(title, body, cases, SCRIPT)
+}
+
+/// A page that asks its server for what it draws.
+pub(crate) fn served(title: &str, body: &str) -> String {
+    page(title, body, &[], LIVE)
+}
+
+fn page(title: &str, body: &str, cases: &[Json], script: &str) -> String {
     // Nothing in the data can end the script's element.
     let data = Json::from_iter(cases.iter().cloned()).to_string().replace('<', "\\u003c");
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}\
-         <script type=\"application/json\" id=\"cases\">{data}</script>\n<script>{SCRIPT}</script>\n</body>\n</html>\n",
+         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>{STYLE}</style>\n</head>\n<body>\n{body}\
+         <script type=\"application/json\" id=\"cases\">{data}</script>\n<script>'use strict';\n{{\n{DRAW}\n{script}}}</script>\n</body>\n</html>\n",
         escape(title)
     )
 }

@@ -1,11 +1,14 @@
 //! Studies and results as files: read back unchanged, and every changed number found.
 
 mod figures;
+mod forged_tables;
 mod forgery;
+mod gates;
 mod labels;
 mod lower_bound;
 mod pages;
 mod report;
 mod round_trip;
+mod streamed;
 mod survey;
 mod tampering;

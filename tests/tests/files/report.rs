@@ -87,7 +87,11 @@ fn verdicts_are_computed_and_changed_ones_are_found() {
         other => output.files.iter().find(|(own, _)| own == other).map(|(_, bytes)| bytes.clone()),
     };
     let verify = |results: &str| {
-        let stored = StoredResults { results, jobs: 1, file: &file };
+        let file = |name: &str| {
+            let bytes = if name == "results.json" { results.as_bytes().to_vec() } else { file(name)? };
+            Some(Box::new(std::io::Cursor::new(bytes)) as Box<dyn std::io::Read>)
+        };
+        let stored = StoredResults { jobs: 1, file: &file };
         let found = report.verify_stored(&stored, &Unobserved).expect("results");
         found.findings.len() + found.files.len()
     };

@@ -1,4 +1,5 @@
 //! What is said about wrong input, word for word.
 
+mod book;
 mod mistakes;
 mod warnings;

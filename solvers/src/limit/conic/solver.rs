@@ -15,6 +15,9 @@ use voussoir_core::plugin::{Capability, Card, PluginKind};
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;
 
+/// Units of force that are tried besides, where the polish does not settle.
+const UNITS: [f64; 2] = [0.1, 10.0];
+
 /// Strength in units of the loads from which a program that was not solved is tried in the unit of the strength.
 const STRONG: f64 = 1e2;
 
@@ -187,6 +190,15 @@ impl Engine for ConicEngine<'_> {
             let (system, unit) = self.program(fixed, varying, cap, weakest);
             if let Optimum::Found { pair, unique } = self.optimum(&system) {
                 return self.finite(&system, &pair, unique, varying, unit);
+            }
+        }
+        // Another unit leads the interior point another way: to a point from which the polish may settle.
+        if let Optimum::Unsettled(_) = optimum {
+            for scale in UNITS {
+                let (system, unit) = self.program(fixed, varying, cap, force * scale);
+                if let Optimum::Found { pair, unique } = self.optimum(&system) {
+                    return self.finite(&system, &pair, unique, varying, unit);
+                }
             }
         }
         let failed = match optimum {

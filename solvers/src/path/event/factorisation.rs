@@ -9,11 +9,11 @@
 //! bodies  Gᵀ ṙ = −λ̇ p
 //! ```
 
-use super::system::{Load, System};
 use crate::contact::facet::across;
 use crate::contact::mode::ContactMode;
 use crate::linear::condensed::Condensed;
 use crate::linear::updated::UpdatedFactorisation;
+use crate::path::system::{Load, System};
 use nalgebra::DMatrix;
 use voussoir_core::linear::Entries;
 

@@ -5,10 +5,10 @@ use super::elastic_chain::ElasticChain;
 use super::force_method::{Followed, RECORDED, Sections, by_force_method};
 use super::next_event::{MOMENT, SAME, advance, next_event};
 use super::rates::Direction;
-use super::system::Load;
 use super::trace::Trace;
 use super::unique::unique;
 use crate::path::outcome::{Outcome, PathRecord};
+use crate::path::system::Load;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak};
@@ -82,8 +82,7 @@ impl Unrecorded {
     fn record(&mut self, trace: &mut Trace) -> bool {
         let trapezoid = 0.5 * (self.factor + trace.state.factor) * self.moved;
         if self.events > 1 {
-            trace.state.energy.work +=
-                (self.work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
+            trace.state.energy.work += (self.work - trapezoid) * trace.system.units.energy();
         }
         self.events = 0;
         trace.record()
@@ -185,7 +184,7 @@ fn begin(follower: &mut Follower, load_step: usize) -> Run {
         LoadStepEnd::Factor(f) if f < present.start => -1.0,
         _ => 1.0,
     };
-    let mut load = trace.system.load(trace.problem, &present.loading);
+    let mut load = Load::new(&trace.system, trace.problem, &present.loading);
     load.wrench.iter_mut().flatten().for_each(|v| *v *= sense);
     load.gap.iter_mut().flatten().for_each(|v| *v *= sense);
     if let Some(factors) = &mut trace.factors.present {
@@ -358,7 +357,7 @@ fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
 /// A direction without end: a mechanism where λ stands still, else a ray that carries any load.
 fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sense: f64) -> Outcome {
     let trace = &mut follower.trace;
-    let (contacts, force_unit) = (trace.system.contacts, trace.system.force_unit);
+    let (contacts, force_unit) = (trace.system.contacts, trace.system.units.force);
     if direction.factor > 0.0 {
         let of = |c: usize| [0, 1].map(|i| direction.x[2 * c + i] * force_unit / direction.factor * sense);
         return Outcome::at(Status::Unbounded, None).carried_by(Some((0..contacts).map(of).collect()));
@@ -370,9 +369,9 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
     let q = &direction.x[2 * contacts..];
     let power: f64 = load.wrench.iter().flatten().zip(q).map(|(w, q)| w * q).sum();
     // p·q̇ = 1 in physical units.
-    let physical = power * force_unit * trace.system.displacement_unit * sense;
+    let physical = power * trace.system.units.energy() * sense;
     let scale = if physical.abs() > 0.0 { 1.0 / physical.abs() } else { 1.0 };
-    let motion: Vec<[f64; 3]> = trace.bodies(&direction.x).into_iter().map(|b| b.map(|v| v * scale)).collect();
+    let motion: Vec<[f64; 3]> = trace.system.motions(q).into_iter().map(|b| b.map(|v| v * scale)).collect();
     let gravity = trace.problem.load_steps[trace.state.load_step].gravity;
     let greatest = follower.limits.below(trace.state.factor, sense);
     let outcome = match (&follower.limits.greatest, gravity) {

@@ -15,7 +15,6 @@ mod next_event;
 mod point;
 mod rates;
 mod schur;
-mod system;
 mod trace;
 mod unique;
 

@@ -73,7 +73,7 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
 
 /// Goes a step along a direction and notes the events at its end.
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
-    let unit = trace.system.force_unit * trace.system.displacement_unit;
+    let unit = trace.system.units.energy();
     let openings: Vec<f64> = (0..trace.state.points.len()).map(|c| opening_rate(trace, c, direction.gaps[c])).collect();
     let mut dissipated = trace.state.energy.dissipated;
     for (c, point) in trace.state.points.iter().enumerate() {

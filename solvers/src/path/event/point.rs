@@ -1,8 +1,8 @@
 //! A contact point between events: which facets have no slack, whether it is open, what it does.
 
-use super::system::System;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
+use crate::path::system::System;
 use voussoir_core::law::{Facet, FacetMode};
 
 /// What is kept of a contact point between events.

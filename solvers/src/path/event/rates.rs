@@ -2,8 +2,8 @@
 //! their modes.
 
 use super::point::{Point, active_points};
-use super::system::{Load, System};
 use crate::contact::mode::ContactMode;
+use crate::path::system::{Load, System};
 
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
 pub const MECHANISM: f64 = 1e-8;

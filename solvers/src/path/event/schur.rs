@@ -3,8 +3,8 @@
 
 use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
-use super::system::{Load, System};
 use crate::contact::mode::ContactMode;
+use crate::path::system::{Load, System};
 use crate::rate::problem::{Rate, RateProblem};
 use nalgebra::{DMatrix, DVector};
 

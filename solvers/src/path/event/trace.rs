@@ -5,9 +5,9 @@ use super::elastic_chain::ElasticChain;
 use super::energy::{energies, rigid};
 use super::factorisation::FactorisedModes;
 use super::point::Point;
-use super::system::System;
 use crate::contact::facet::dot;
 use crate::path::energy::{EnergyBalance, WorkState, load_displacement};
+use crate::path::system::System;
 use crate::rate::solve::RateCounts;
 use voussoir_core::path::{Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
 
@@ -100,7 +100,7 @@ pub struct Trace<'a> {
 impl<'a> Trace<'a> {
     /// At the unloaded state.
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
-        let system = System::new(problem);
+        let system = System::new(problem, |_| [0.0; 2]);
         let opened = |load_step: &voussoir_core::path::LoadStep| {
             let gaps = problem.loading_gaps(&load_step.loading);
             gaps.iter().flatten().any(|g| *g != 0.0).then_some(gaps)
@@ -121,15 +121,8 @@ impl<'a> Trace<'a> {
         }
     }
 
-    /// Motions of all bodies in physical units from unknowns; held bodies stand still.
-    pub fn bodies(&self, x: &[f64]) -> Vec<[f64; 3]> {
-        let (q, u) = (&x[2 * self.system.contacts..], self.system.displacement_unit);
-        let own = |f: usize| [q[3 * f] * u, q[3 * f + 1] * u, q[3 * f + 2] * u / self.system.length];
-        self.system.free.iter().map(|free| free.map_or([0.0; 3], own)).collect()
-    }
-
     fn motion(&self) -> Vec<[f64; 3]> {
-        let mut motion = self.bodies(&self.state.x);
+        let mut motion = self.system.motions(&self.state.x[2 * self.system.contacts..]);
         let applied = self.problem.applied(self.state.load_step, self.state.factor);
         for (load_step, factor) in self.problem.load_steps.iter().zip(applied) {
             for (body, settlement) in &load_step.loading.settlements {
@@ -157,11 +150,11 @@ impl<'a> Trace<'a> {
         let applied = self.problem.applied(self.state.load_step, self.state.factor);
         for (opened, factor) in self.loading_gaps.iter().zip(applied) {
             if let (Some(opened), true) = (opened, factor != 0.0) {
-                let factor = factor / self.system.displacement_unit;
+                let factor = factor / self.system.units.displacement;
                 gap.iter_mut().flatten().zip(opened.iter().flatten()).for_each(|(g, o)| *g += factor * o);
             }
         }
-        gap.iter_mut().flatten().for_each(|g| *g *= self.system.displacement_unit);
+        gap.iter_mut().flatten().for_each(|g| *g *= self.system.units.displacement);
         gap
     }
 
@@ -172,7 +165,7 @@ impl<'a> Trace<'a> {
         PathState {
             load_step: state.load_step,
             factor: state.factor,
-            force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.force_unit)).collect(),
+            force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.units.force)).collect(),
             gap: self.gaps(),
             stored: self.last.as_ref().map_or(0.0, |(_, stored)| *stored),
             dissipated: state.energy.dissipated,
@@ -193,7 +186,7 @@ impl<'a> Trace<'a> {
             _ => 0.0,
         };
         let sum: f64 = self.state.points.iter().enumerate().map(held).sum();
-        sum * self.system.force_unit * self.system.displacement_unit
+        sum * self.system.units.energy()
     }
 
     /// Energy balance and observer. Returns whether to go on.

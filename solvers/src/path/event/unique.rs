@@ -13,11 +13,11 @@
 //!   value are two linear programs.
 
 use super::point::Point;
-use super::system::{Load, System};
 use crate::contact::facet::{dilatancy, dot, multipliers};
 use crate::contact::mode::ContactMode;
 use crate::optimise::dense_simplex::Feasibility;
 use crate::optimise::lcg::Lcg;
+use crate::path::system::{Load, System};
 use crate::rate::mechanism::mechanisms;
 use nalgebra::DMatrix;
 

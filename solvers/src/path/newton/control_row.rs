@@ -1,7 +1,7 @@
 //! The last row of the linear equations of a step: the gradient of its control.
 
 use super::control::Control;
-use super::derivatives::Hessian;
+use super::equations::Equations;
 use super::inelastic::add_plastic_work;
 use super::measure::increment_between;
 use super::monitors::by_motion;
@@ -18,7 +18,7 @@ pub(super) fn control_row(
     state: &State,
     control: &Control,
     constraint: &Constraint,
-    hessian: &Hessian,
+    equations: &Equations,
 ) -> Vec<f64> {
     let mut row = vec![0.0; system.size()];
     let mut by_gap = vec![0.0; 2 * state.gap.len()];
@@ -44,13 +44,9 @@ pub(super) fn control_row(
     if let Control::Gaps { local, .. } = control {
         by_gap.iter_mut().zip(&local.by_gap).for_each(|(w, local)| *w += local);
     }
-    add_weighted_gaps(system, &mut row, &by_gap, hessian);
+    add_weighted_gaps(system, &mut row, &by_gap, equations);
     if matches!(control, Control::Mixed { .. }) {
-        for (i, value) in load_work_gradient(system, hessian) {
-            if let Some((column, own)) = system.column(i) {
-                row[column] += value * own;
-            }
-        }
+        row.iter_mut().zip(&equations.factor).for_each(|(row, value)| *row += value);
     }
     row
 }
@@ -65,11 +61,11 @@ fn add_size_of_motion(
 ) {
     let (u, points) = (system.units(), state.gap.len());
     let value = increment_between(system, start, state).motion.max(1e-300);
-    for body in 0..system.unknowns.free.len() {
-        let Some(free) = system.unknowns.free[body] else { continue };
+    for body in 0..system.scaled.free.len() {
+        let Some(free) = system.scaled.free[body] else { continue };
         for (k, unit) in u.motion().into_iter().enumerate() {
             let delta = (state.motion[body][k] - start.motion[body][k]) / unit;
-            row[2 * points + 3 * free + k] += by * delta / (value * system.unknowns.bodies as f64);
+            row[2 * points + 3 * free + k] += by * delta / (value * system.scaled.bodies as f64);
         }
     }
     for c in 0..points {
@@ -114,7 +110,7 @@ fn add_load_displacement(system: &StepSystem, state: &State, by: f64, row: &mut 
         return;
     }
     let scale = by / load.max(1e-300);
-    let mut wrench = vec![[0.0; 3]; system.unknowns.free.len()];
+    let mut wrench = vec![[0.0; 3]; system.scaled.free.len()];
     for &(body, _, point, force) in &loading.forces {
         let own = by_motion(system, state, body, point, force);
         wrench[body].iter_mut().zip(own).for_each(|(w, own)| *w += own);
@@ -128,22 +124,21 @@ fn add_load_displacement(system: &StepSystem, state: &State, by: f64, row: &mut 
 
 /// Adds weights of the motion of a body, in the unit of displacement.
 fn add_by_motion(system: &StepSystem, body: usize, weights: [f64; 3], scale: f64, row: &mut [f64]) {
-    let Some(free) = system.unknowns.free[body] else { return };
+    let Some(free) = system.scaled.free[body] else { return };
     for (k, weight) in weights.into_iter().enumerate() {
         let unit = if k == 2 { 1.0 / system.units().length } else { 1.0 };
-        row[2 * system.unknowns.contacts + 3 * free + k] += scale * weight * unit;
+        row[2 * system.scaled.contacts + 3 * free + k] += scale * weight * unit;
     }
 }
 
 /// Adds weighted gaps to a row over the scaled unknowns.
-pub(super) fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], hessian: &Hessian) {
+pub(super) fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], equations: &Equations) {
     if by_gap.iter().all(|w| *w == 0.0) {
         return;
     }
-    let rows = &hessian.rows(&system.unknowns).gaps;
     for (i, weight) in by_gap.iter().enumerate().filter(|(_, w)| **w != 0.0) {
         let by = weight * system.units().displacement;
-        rows.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
+        equations.gaps.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
     }
 }
 
@@ -168,22 +163,17 @@ pub(super) fn control_value(system: &StepSystem, start: &State, state: &State, c
     }
 }
 
-/// Derivatives of ∂Π/∂λ in units by force and motion, where they are not zero: global index and value.
-fn load_work_gradient<'m>(system: &StepSystem, hessian: &'m Hessian) -> impl Iterator<Item = (usize, f64)> + use<'m> {
-    let unit = system.units().factor / system.units().energy();
-    hessian.factor.iter().enumerate().filter(|(_, v)| **v != 0.0).map(move |(i, value)| (i, unit * value))
-}
-
 /// ∂Π/∂λ of differences of forces and motions, in units: p·Δq + g_p·Δr (small displacements).
 fn load_work(system: &StepSystem, force: impl Fn(usize, usize) -> f64, motion: impl Fn(usize, usize) -> f64) -> f64 {
-    let Some(hessian) = &system.cache.hessian else { return 0.0 };
-    let forces = 2 * system.problem.contacts.len();
-    let by = |i: usize| match i.checked_sub(forces) {
-        None => force(i / 2, i % 2),
-        Some(k) if system.unknowns.free[k / 3].is_some() => motion(k / 3, k % 3),
-        Some(_) => 0.0,
+    let Some(equations) = &system.cache.equations else { return 0.0 };
+    let (u, forces) = (system.units(), 2 * system.scaled.contacts);
+    let by_force = |i: usize| equations.factor[i] * force(i / 2, i % 2) / u.force;
+    let by_motion = |(body, free): (usize, &Option<usize>)| -> f64 {
+        let Some(free) = free else { return 0.0 };
+        let unit = u.motion();
+        (0..3).map(|k| equations.factor[forces + 3 * free + k] * motion(body, k) / unit[k]).sum()
     };
-    load_work_gradient(system, hessian).map(|(i, value)| value * by(i)).sum()
+    (0..forces).map(by_force).sum::<f64>() + system.scaled.free.iter().enumerate().map(by_motion).sum::<f64>()
 }
 
 /// ∂Π/∂λ between two states, in units.

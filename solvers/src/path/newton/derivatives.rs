@@ -1,10 +1,5 @@
 //! First and second derivatives of the potential of [`kinematics`](super::kinematics).
 
-use super::equations::Equations;
-use super::unknowns::Unknowns;
-use std::cell::OnceCell;
-use std::rc::Rc;
-
 /// First derivatives of Π.
 #[derive(Debug, Clone)]
 pub(super) struct Gradient {
@@ -20,21 +15,15 @@ pub(super) struct Gradient {
 
 /// Second derivatives of Π over (r, q of all bodies): entry (i, j, value), both halves, and the
 /// derivative of the gradient by the factor that grows.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Hessian {
     pub entries: Vec<(usize, usize, f64)>,
     pub factor: Vec<f64>,
-    rows: OnceCell<Rc<Equations>>,
 }
 
 impl Hessian {
     /// Without entries, for so many forces and motions.
     pub fn zeros(size: usize) -> Self {
-        Hessian { factor: vec![0.0; size], ..Hessian::default() }
-    }
-
-    /// The same as rows in units, made when they are asked for first.
-    pub fn rows(&self, unknowns: &Unknowns) -> &Rc<Equations> {
-        self.rows.get_or_init(|| Rc::new(Equations::new(unknowns, &self.entries, &self.factor)))
+        Hessian { entries: Vec::new(), factor: vec![0.0; size] }
     }
 }

@@ -1,9 +1,10 @@
 //! Rows of gaps and balance in units, and of them the rows of contact points by mode.
 
-use super::unknowns::Unknowns;
+use super::derivatives::Hessian;
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::linear::csr::CsrMatrix;
+use crate::path::system::{Load, System};
 use voussoir_core::linear::Entries;
 
 /// What is added to the factorised matrix, relative to its units: refinement takes it out again.
@@ -16,35 +17,61 @@ pub(super) struct Equations {
     pub gaps: CsrMatrix,
     /// Three rows per free body.
     pub bodies: CsrMatrix,
+    /// The column of the factor, which the rows hold too.
+    pub factor: Vec<f64>,
 }
 
 /// Entries of a row that is open, of the equations or of what is added to them.
 type Open<'r> = &'r mut Vec<(usize, f64)>;
 
 impl Equations {
+    /// Of linear blocks with small displacements, whose `load` grows.
+    pub fn linear(system: &System, load: &Load) -> Self {
+        let (forces, last, unit) = (2 * system.contacts, system.size(), system.units.factor);
+        let driven = load.gap.as_flattened().iter().chain(load.wrench.as_flattened());
+        let factor: Vec<f64> = driven.map(|v| v * unit).collect();
+        let mut gaps = CsrMatrix::with_capacity(system.flexibility.entries() + system.kinematics.entries() + forces);
+        let mut bodies: Entries = Vec::with_capacity(system.kinematics.entries());
+        for i in 0..forces {
+            let row = gaps.open_row();
+            row.extend_from_slice(system.flexibility.row(i));
+            row.extend(system.kinematics.row(i).iter().map(|&(j, v)| (forces + j, v)));
+            row.extend(Some((last, factor[i])).filter(|e| e.1 != 0.0));
+            gaps.end_row();
+            bodies.extend(system.kinematics.row(i).iter().map(|&(j, v)| (j, i, v)));
+        }
+        let by_factor = factor[forces..].iter().enumerate().filter(|(_, v)| **v != 0.0);
+        bodies.extend(by_factor.map(|(row, value)| (row, last, *value)));
+        Equations { gaps, bodies: CsrMatrix::new(last - forces, &bodies), factor }
+    }
+
     /// From second derivatives of Π.
-    pub fn new(unknowns: &Unknowns, entries: &Entries, factor: &[f64]) -> Self {
-        let (u, points, last) = (unknowns.units, unknowns.contacts, unknowns.size() - 1);
-        let base = 2 * points;
-        let of_gaps = entries.iter().filter(|e| e.0 < base).count();
-        let (mut gaps, mut bodies): (Entries, Entries) = (Vec::with_capacity(of_gaps + points), Vec::new());
-        let mut place = |i: usize, column: usize, value: f64| {
-            if i < base {
-                gaps.push((i, column, value / u.displacement));
-            } else if let Some((row, _)) = unknowns.column(i) {
-                let unit = if (i - base) % 3 == 2 { u.force * u.length } else { u.force };
-                bodies.push((row - base, column, value / unit));
-            }
+    pub fn new(system: &System, hessian: &Hessian) -> Self {
+        let (u, base, last) = (system.units, 2 * system.contacts, system.size());
+        let of_gaps = hessian.entries.iter().filter(|e| e.0 < base).count();
+        let (mut gaps, mut bodies): (Entries, Entries) = (Vec::with_capacity(of_gaps + base), Vec::new());
+        let row_of = |i: usize| match i < base {
+            true => Some((i, u.displacement)),
+            false if (i - base) % 3 == 2 => Some((system.column(i)?.0, u.force * u.length)),
+            false => Some((system.column(i)?.0, u.force)),
         };
-        for &(i, j, value) in entries {
-            if let Some((column, unit)) = unknowns.column(j) {
-                place(i, column, value * unit);
+        let mut place = |row: usize, column: usize, value: f64| match row < base {
+            true => gaps.push((row, column, value)),
+            false => bodies.push((row - base, column, value)),
+        };
+        for &(i, j, value) in &hessian.entries {
+            if let (Some((row, by)), Some((column, unit))) = (row_of(i), system.column(j)) {
+                place(row, column, value * unit / by);
             }
         }
-        for (i, value) in factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-            place(i, last, value * u.factor);
+        let mut factor = vec![0.0; last];
+        for (i, value) in hessian.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+            if let Some((row, by)) = row_of(i) {
+                factor[row] = value * u.factor / by;
+                place(row, last, factor[row]);
+            }
         }
-        Equations { gaps: CsrMatrix::new(base, &gaps), bodies: CsrMatrix::new(last - base, &bodies) }
+        Equations { gaps: CsrMatrix::new(base, &gaps), bodies: CsrMatrix::new(last - base, &bodies), factor }
     }
 
     /// Adds row k of a contact point in a mode to open rows: its equation, and what is added. The latter

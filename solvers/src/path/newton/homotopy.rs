@@ -184,7 +184,7 @@ fn placed(system: &mut StepSystem, start: &State, guess: &State, shift: f64, see
     for c in 0..points {
         let noise = [random.next(), random.next()];
         let Some(law) = system.law(c) else { continue };
-        let rho = system.laws.compliance[c].map(|own| 1.0 / own.max(1e-6 * mean));
+        let rho = system.scaled.compliance[c].map(|own| 1.0 / own.max(1e-6 * mean));
         let r = state.force[c];
         let scale = shift * (r[0].hypot(r[1]) + 0.1 * typical);
         let z = [0, 1].map(|k| r[k] - rho[k] * (gap[c][k] - start.slip[c][k]) + scale * noise[k]);
@@ -213,11 +213,11 @@ fn followed_from(
     let gradient = system.gradient(&place.state);
     let residual = residual_of(system, start, &place.state, &gradient);
     let (left, constraint) = control_value(system, start, &place.state, control);
-    let hessian = system.hessian(&place.state, &gradient);
-    let row = control_row(system, start, &place.state, control, &constraint, &hessian);
+    let equations = system.equations(&place.state, &gradient);
+    let row = control_row(system, start, &place.state, control, &constraint, &equations);
     let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
     right[row.len() - 1] = -left;
-    let mut equations = UpdatedEquations::new(hessian.rows(&system.unknowns).clone(), points, row);
+    let mut equations = UpdatedEquations::new(equations, points, row);
     equations.load_rate(&right);
     let rate = tangent_without_gaps(system, &vec![0.0; right.len()]);
     let mut path = StepPath { system, equations, place, rate, gap_rate: vec![[0.0; 2]; points] };

@@ -83,11 +83,11 @@ pub(super) fn iterate(
             return Ok((state, iteration));
         }
         last_norm = norm;
-        let hessian = system.hessian(&state, &gradient);
-        let row = control_row(system, start, &state, control, &constraint, &hessian);
+        let equations = system.equations(&state, &gradient);
+        let row = control_row(system, start, &state, control, &constraint, &equations);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
-        let solution = solve_linear(system, &state, &hessian, &row, &right);
+        let solution = solve_linear(system, &state, &equations, &row, &right);
         // Modes without a solution may be on the way to ones that have one: with small
         // displacements the shifted equations, a soft bedding, show which points close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
@@ -144,8 +144,8 @@ fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
     if !system.finite() {
         return 1.0;
     }
-    let points = system.unknowns.contacts;
-    let turn = (0..system.unknowns.bodies)
+    let points = system.scaled.contacts;
+    let turn = (0..system.scaled.bodies)
         .map(|b| (step[2 * points + 3 * b + 2] * system.units().displacement / system.units().length).abs())
         .fold(0.0, f64::max);
     (LARGEST_ROTATION / turn.max(1e-300)).min(1.0)

@@ -57,8 +57,8 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
     system.count("factorisations", 1);
     let gradient = system.gradient(state);
-    let hessian = system.hessian(state, &gradient);
-    let Some(responses) = responses_of(system, &active, hessian.rows(&system.unknowns), direction) else {
+    let equations = system.equations(state, &gradient);
+    let Some(responses) = responses_of(system, &active, &equations, direction) else {
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
     let mut programs = 0;
@@ -72,7 +72,7 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
         RisingRate::Found(gaps, modes) => {
             let x = unknowns_of(&responses, &gaps, 1.0, direction);
             let modes = modes_of(system, &active, modes);
-            LimitPointTest::Tangent(tangent_from(system, &x, state, &hessian), modes)
+            LimitPointTest::Tangent(tangent_from(system, &x, state, &equations), modes)
         }
     }
 }
@@ -83,8 +83,8 @@ pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(T
     let active = active_set(system, state);
     system.count("factorisations", 1);
     let gradient = system.gradient(state);
-    let hessian = system.hessian(state, &gradient);
-    let responses = responses_of(system, &active, hessian.rows(&system.unknowns), 1.0)?;
+    let equations = system.equations(state, &gradient);
+    let responses = responses_of(system, &active, &equations, 1.0)?;
     let problem = rate_problem(system, &active, &responses);
     if problem.points.is_empty() || problem.combinations() > MOST_COMBINATIONS {
         return None;
@@ -95,7 +95,7 @@ pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(T
     system.count("rate_combinations", trials);
     let tangent = |rate: Rate| {
         let x = unknowns_of(&responses, &rate.gaps, rate.factor, 1.0);
-        (tangent_from(system, &x, state, &hessian), modes_of(system, &active, rate.modes))
+        (tangent_from(system, &x, state, &equations), modes_of(system, &active, rate.modes))
     };
     Some(rates.into_iter().map(tangent).collect())
 }

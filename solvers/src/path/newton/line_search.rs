@@ -187,10 +187,10 @@ mod tests {
                 let (left, constraint) = control_value(&system, &start, &state, &control);
                 let last = rows.len() - 1;
                 rows[last] = left;
-                let hessian = system.hessian(&state, &gradient);
-                let row = control_row(&system, &start, &state, &control, &constraint, &hessian);
+                let equations = system.equations(&state, &gradient);
+                let row = control_row(&system, &start, &state, &control, &constraint, &equations);
                 let right: Vec<f64> = rows.iter().map(|x| -x).collect();
-                let Some((step, true)) = solve_linear(&mut system, &state, &hessian, &row, &right) else { continue };
+                let Some((step, true)) = solve_linear(&mut system, &state, &equations, &row, &right) else { continue };
                 // Where all points slide to the same side the modes hold the block by nothing.
                 if step.iter().any(|x| x.abs() > 1e3) {
                     continue;

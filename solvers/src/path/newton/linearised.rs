@@ -15,7 +15,8 @@
 //! modes have no solution, and the step is refused. How it is factorised: see `border` and
 //! [`condensed`](crate::linear::condensed).
 
-use super::derivatives::{Gradient, Hessian};
+use super::derivatives::Gradient;
+use super::equations::Equations;
 use super::factors::Kept;
 use super::response::{traction_residual, traction_row};
 use super::state::State;
@@ -57,7 +58,7 @@ pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gra
         out[2 * c + 1] = rows[1];
     }
     for (body, balance) in gradient.balance.iter().enumerate() {
-        if let Some(free) = system.unknowns.free[body] {
+        if let Some(free) = system.scaled.free[body] {
             for k in 0..3 {
                 let unit = if k == 2 { u.force * u.length } else { u.force };
                 out[2 * points + 3 * free + k] = balance[k] / unit;
@@ -71,8 +72,8 @@ pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gra
     out
 }
 
-fn is_constant(system: &StepSystem, hessian: &Hessian) -> bool {
-    system.cache.hessian.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, hessian))
+fn is_constant(system: &StepSystem, equations: &Equations) -> bool {
+    system.cache.equations.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, equations))
 }
 
 /// The modes' linear equations, factorised, and whether that is done before: where nothing else than modes makes them, those of
@@ -80,10 +81,10 @@ fn is_constant(system: &StepSystem, hessian: &Hessian) -> bool {
 pub(super) fn factorised(
     system: &mut StepSystem,
     state: &State,
-    hessian: &Hessian,
+    equations: &Equations,
     row: &[f64],
 ) -> Option<(Rc<BorderedFactors>, bool)> {
-    let again = system.laws.responses.is_empty() && is_constant(system, hessian);
+    let again = system.laws.responses.is_empty() && is_constant(system, equations);
     let directions: Vec<[f64; 4]> = system
         .laws
         .polygons
@@ -97,8 +98,7 @@ pub(super) fn factorised(
     {
         return Some((kept.held.clone(), true));
     }
-    let equations = hessian.rows(&system.unknowns);
-    let capacity = hessian.entries.len();
+    let capacity = equations.gaps.entries() + equations.bodies.entries();
     let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(capacity));
     for (c, mode) in state.mode.iter().enumerate() {
         let answer = system.laws.responses.is(c).then(|| traction_row(system, state, c));
@@ -125,18 +125,18 @@ pub(super) fn factorised(
 pub(super) fn solve_linear(
     system: &mut StepSystem,
     state: &State,
-    hessian: &Hessian,
+    equations: &Equations,
     row: &[f64],
     right: &[f64],
 ) -> Option<(Vec<f64>, bool)> {
-    let (held, again) = factorised(system, state, hessian, row)?;
+    let (held, again) = factorised(system, state, equations, row)?;
     let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
     if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
         return found;
     }
     // Another unknown held may serve this control better.
     system.cache.factors.last = None;
-    let (held, _) = factorised(system, state, hessian, row)?;
+    let (held, _) = factorised(system, state, equations, row)?;
     refined(&BorderedSystem::new(held, row)?, right)
 }
 

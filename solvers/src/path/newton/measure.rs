@@ -18,10 +18,10 @@ pub(super) fn load_displacement(system: &StepSystem, motion: &[[f64; 3]], factor
 pub(super) fn increment_between(system: &StepSystem, start: &State, state: &State) -> Increment {
     let u = system.units();
     let mut motion = 0.0;
-    for body in (0..system.unknowns.free.len()).filter(|b| system.unknowns.free[*b].is_some()) {
+    for body in (0..system.scaled.free.len()).filter(|b| system.scaled.free[*b].is_some()) {
         for k in 0..3 {
             let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-            motion += ((state.motion[body][k] - start.motion[body][k]) / unit).powi(2) / system.unknowns.bodies as f64;
+            motion += ((state.motion[body][k] - start.motion[body][k]) / unit).powi(2) / system.scaled.bodies as f64;
         }
     }
     let mut dissipation = dissipated_by_tractions(system, state);

@@ -22,8 +22,8 @@ pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<T
         return None;
     }
     let gradient = system.gradient(state);
-    let hessian = system.hessian(state, &gradient);
-    let (points, bodies) = (state.gap.len(), 3 * system.unknowns.bodies);
+    let equations = system.equations(state, &gradient);
+    let (points, bodies) = (state.gap.len(), 3 * system.scaled.bodies);
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let mut flows: Vec<(usize, [f64; 2])> = Vec::new();
     for c in 0..points {
@@ -35,18 +35,16 @@ pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<T
             }
         }
     }
-    // Rows of G in the units of the unknowns.
-    let mut rows: Vec<(usize, [Vec<f64>; 2])> =
-        (0..points).map(|c| (c, [vec![0.0; bodies], vec![0.0; bodies]])).collect();
-    for &(i, j, value) in hessian.entries.iter().filter(|e| e.0 < 2 * points && e.1 >= 2 * points) {
-        if let Some((column, unit)) = system.column(j) {
-            rows[i / 2].1[i % 2][column - 2 * points] += value * unit / system.units().displacement;
-        }
-    }
+    let row = |i: usize| {
+        let mut row = vec![0.0; bodies];
+        system.scaled.kinematics.row(i).iter().for_each(|&(j, v)| row[j] += v);
+        row
+    };
+    let rows: Vec<(usize, [Vec<f64>; 2])> = (0..points).map(|c| (c, [row(2 * c), row(2 * c + 1)])).collect();
     let works = |j: usize| {
         let mut motion = vec![0.0; bodies];
         motion[j] = 1.0;
-        load_displacement(system, &motion_of(system, &motion), 0.0) / system.units().displacement
+        load_displacement(system, &system.scaled.motions(&motion), 0.0) / system.units().displacement
     };
     let power: Vec<f64> = (0..bodies).map(works).collect();
     let mut program = mechanisms(&rows, &flows, &power)?;
@@ -58,13 +56,5 @@ pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<T
     let mut x = vec![0.0; 2 * points];
     x.extend(values);
     x.push(0.0);
-    Some(tangent_from(system, &x, state, &hessian))
-}
-
-/// Motions of all bodies by those of the free ones in the units of the unknowns.
-fn motion_of(system: &StepSystem, values: &[f64]) -> Vec<[f64; 3]> {
-    let u = system.units();
-    let unit = [u.displacement, u.displacement, u.displacement / u.length];
-    let of = |free: &Option<usize>| free.map_or([0.0; 3], |f| [0, 1, 2].map(|k| values[3 * f + k] * unit[k]));
-    system.unknowns.free.iter().map(of).collect()
+    Some(tangent_from(system, &x, state, &equations))
 }

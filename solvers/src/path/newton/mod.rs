@@ -50,7 +50,6 @@ mod termination;
 mod tracer;
 mod tractions;
 mod trial;
-mod unknowns;
 mod updated_equations;
 
 use self::monitors::resolve;

@@ -58,7 +58,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
     let size = mode.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut anchor = from.motion.clone();
     for (body, q) in anchor.iter_mut().enumerate() {
-        let Some(free) = system.unknowns.free[body] else { continue };
+        let Some(free) = system.scaled.free[body] else { continue };
         (0..3).for_each(|k| q[k] += sense * PUSH * u.motion()[k] * mode[3 * free + k] / size);
     }
     let mut rate = (2.0 * curvature.abs()).max(LEAST);
@@ -117,7 +117,7 @@ fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64
 /// Euclidean distance of the motions of two states in their units.
 fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
     let units = system.units().motion();
-    let free = (0..a.motion.len()).filter(|body| system.unknowns.free[*body].is_some());
+    let free = (0..a.motion.len()).filter(|body| system.scaled.free[*body].is_some());
     let squares = free.flat_map(|body| (0..3).map(move |k| (body, k)));
     squares.map(|(body, k)| ((a.motion[body][k] - b.motion[body][k]) / units[k]).powi(2)).sum::<f64>().sqrt()
 }
@@ -126,7 +126,7 @@ fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
 fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 {
     let units = system.units().motion();
     let of_body = |body: usize| {
-        let free = system.unknowns.free[body]?;
+        let free = system.scaled.free[body]?;
         let moved = |k: usize| (state.motion[body][k] - from.motion[body][k]) / units[k];
         Some((0..3).map(|k| moved(k) * mode[3 * free + k]).sum::<f64>())
     };

@@ -30,7 +30,7 @@ const WEAK: f64 = 1e-9;
 /// factorisation.
 pub(super) fn second_order_work(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
     let held = held_factor(system, state)?;
-    let (first, motions) = (2 * system.unknowns.contacts, 3 * system.unknowns.bodies);
+    let (first, motions) = (2 * system.scaled.contacts, 3 * system.scaled.bodies);
     if motions == 0 {
         return None;
     }
@@ -54,10 +54,10 @@ pub(super) fn second_order_work(system: &mut StepSystem, state: &State) -> Optio
 /// The equations with the factor held.
 fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem> {
     let gradient = system.gradient(state);
-    let hessian = system.hessian(state, &gradient);
+    let equations = system.equations(state, &gradient);
     let mut row = vec![0.0; system.size()];
     row[system.size() - 1] = 1.0;
-    let (held, _) = factorised(system, state, &hessian, &row)?;
+    let (held, _) = factorised(system, state, &equations, &row)?;
     BorderedSystem::new(held, &row)
 }
 

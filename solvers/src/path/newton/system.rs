@@ -2,20 +2,21 @@
 
 use super::blocks::{YieldingBlock, undeformed};
 use super::control::MonitorWeights;
-use super::derivatives::{Gradient, Hessian};
+use super::derivatives::Gradient;
+use super::equations::Equations;
 use super::factors::Factorised;
 use super::geometry::Geometry;
 use super::kinematics::{gradient, hessian};
 use super::loads::StagedLoads;
 use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
-use super::unknowns::{Units, Unknowns};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
-use crate::path::energy::load_size;
+use crate::path::system::{Load, System, Units};
 use std::rc::Rc;
+use voussoir_core::law::TractionPoint;
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{Loading, PathProblem};
+use voussoir_core::path::PathProblem;
 
 /// Laws of the contact points.
 pub(super) struct Laws {
@@ -25,15 +26,13 @@ pub(super) struct Laws {
     pub polygon_of: Vec<Option<usize>>,
     /// Of tractions from gaps.
     pub responses: Responses,
-    /// Own compliance of every contact point, normal and tangential \[m/N\].
-    pub compliance: Vec<[f64; 2]>,
 }
 
 /// What is computed once for many iterations.
 #[derive(Default)]
 pub(super) struct Cache {
-    /// Second derivatives with small displacements, of the present load step.
-    pub hessian: Option<Rc<Hessian>>,
+    /// Gaps and balance of linear blocks with small displacements, of the present load step.
+    pub equations: Option<Rc<Equations>>,
     pub factors: Factorised,
 }
 
@@ -42,7 +41,8 @@ pub(super) struct StepSystem<'a> {
     pub problem: &'a PathProblem,
     pub geometry: Geometry<'a>,
     pub laws: Laws,
-    pub unknowns: Unknowns,
+    /// The problem in its units, with the unit of the factor that grows now.
+    pub scaled: System,
     pub loads: StagedLoads<'a>,
     /// Undeformed bodies whose material yields.
     blocks: Vec<Option<YieldingBlock>>,
@@ -82,66 +82,34 @@ impl StepFailure {
     }
 }
 
-/// Compliance of every contact point with all else held.
-fn own_compliance(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
+/// What laws of tractions from gaps add to the compliance of contact points before anything has moved.
+fn softening(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
     let untouched = responses.update(&vec![[0.0; 2]; problem.contacts.len()], &problem.untouched())?;
-    let of_point = |(index, c): (usize, &voussoir_core::path::Contact)| {
-        let mut own = c.compliance;
-        for side in [c.minus, c.plus] {
-            if let (Some(slot), Some(flexibility)) = (side.slot, &problem.bodies[side.body].flexibility) {
-                let block = flexibility.fixed_view::<2, 2>(2 * slot, 2 * slot);
-                own[0] += (block * c.normal).dot(&c.normal);
-                own[1] += (block * c.tangent).dot(&c.tangent);
-            }
-        }
-        match untouched.points.get(index).filter(|_| responses.is(index)) {
-            Some(point) => [0, 1].map(|k| {
-                let stiffness = -point.tangent[k][k] * c.area;
-                own[k] + if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
-            }),
-            None => own,
-        }
+    let of_point = |(point, c): (&TractionPoint, &voussoir_core::path::Contact)| {
+        [0, 1].map(|k| {
+            let stiffness = -point.tangent[k][k] * c.area;
+            if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+        })
     };
-    Ok(problem.contacts.iter().enumerate().map(of_point).collect())
-}
-
-/// Greatest displacement of a point by settlements.
-fn settlement_size<'l>(loadings: impl Iterator<Item = &'l Loading>, length: f64) -> f64 {
-    let size = |s: &(usize, [f64; 3])| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * length);
-    loadings.flat_map(|loading| &loading.settlements).map(size).fold(0.0, f64::max)
+    Ok(untouched.points.iter().zip(&problem.contacts).map(of_point).collect())
 }
 
 impl<'a> StepSystem<'a> {
     pub fn new(problem: &'a PathProblem, finite: bool) -> Result<Self, String> {
         let responses = Responses::new(problem);
-        let compliance = own_compliance(problem, &responses)?;
-        let (mut mean, mut count) = (0.0, 0);
-        for c in compliance.iter().flatten().filter(|c| **c > 0.0) {
-            mean += c;
-            count += 1;
-        }
-        if count == 0 {
+        let softening = softening(problem, &responses)?;
+        let own = |c: usize| softening.get(c).copied().filter(|_| responses.is(c)).unwrap_or_default();
+        let scaled = System::new(problem, own);
+        if scaled.compliance.iter().flatten().all(|c| *c <= 0.0) {
             return Err("nothing in the scene deforms: rigid blocks without joint compliance have no path before their collapse; limit analysis answers that".into());
         }
-        mean /= f64::from(count);
-        let mut bodies = 0;
-        let number = |held: bool| {
-            bodies += usize::from(!held);
-            (!held).then(|| bodies - 1)
-        };
-        let free = problem.bodies.iter().map(|body| body.held).map(number).collect();
-        let size = problem.load_steps.iter().map(|d| load_size(problem, &d.loading)).find(|s| *s > 0.0);
-        let settlement = settlement_size(problem.load_steps.iter().map(|d| &d.loading), problem.length);
-        let force = size.unwrap_or(settlement / mean);
-        let force = if force > 0.0 { force } else { 1.0 };
-        let units = Units { force, displacement: force * mean, length: problem.length, factor: 1.0 };
         let (facets, polygon_of) = problem.shared_facets();
         let polygons = facets.into_iter().map(YieldPolygon::new).collect();
         Ok(StepSystem {
             geometry: Geometry::new(problem, finite),
             problem,
-            laws: Laws { polygons, polygon_of, responses, compliance },
-            unknowns: Unknowns { units, contacts: problem.contacts.len(), free, bodies },
+            laws: Laws { polygons, polygon_of, responses },
+            scaled,
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
@@ -155,35 +123,19 @@ impl<'a> StepSystem<'a> {
 
     /// Units of the unknowns.
     pub fn units(&self) -> Units {
-        self.unknowns.units
+        self.scaled.units
     }
 
     /// Number of unknowns.
     pub fn size(&self) -> usize {
-        self.unknowns.size()
-    }
-
-    /// Column of an index over all bodies, and its unit; `None` for held bodies.
-    pub fn column(&self, index: usize) -> Option<(usize, f64)> {
-        self.unknowns.column(index)
+        self.scaled.size() + 1
     }
 
     /// Begins a load step.
     pub fn load(&mut self, loads: StagedLoads<'a>) {
-        let size = load_size(self.problem, loads.growing);
-        let settlement = loads
-            .growing
-            .settlements
-            .iter()
-            .map(|s| s.1[0].hypot(s.1[1]).max(s.1[2].abs() * self.unknowns.units.length))
-            .fold(0.0, f64::max);
-        self.unknowns.units.factor = match (size, settlement) {
-            (s, _) if s > 0.0 => self.unknowns.units.force / s,
-            (_, s) if s > 0.0 => self.unknowns.units.displacement / s,
-            _ => 1.0,
-        };
+        self.scaled.units.factor = self.scaled.units.of_factor(self.problem, loads.growing);
         self.loads = loads;
-        self.cache.hessian = None;
+        self.cache.equations = None;
         self.cache.factors.forget();
     }
 
@@ -214,7 +166,7 @@ impl<'a> StepSystem<'a> {
 
     /// Forces and a factor that are rounding of the loads become nothing (small displacements).
     pub fn drop_rounding(&self, state: &mut State, start: f64) {
-        let u = self.unknowns.units;
+        let u = self.scaled.units;
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
         if self.loads.earlier.is_empty()
             && largest <= 1e-10 * u.force
@@ -253,15 +205,15 @@ impl<'a> StepSystem<'a> {
 
     /// ρ of a contact point: the inverse of its own compliance \[N/m\].
     pub fn stiffness(&self, contact: usize) -> [f64; 2] {
-        let mean = self.unknowns.units.displacement / self.unknowns.units.force;
-        self.laws.compliance[contact].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean })
+        let mean = self.scaled.units.displacement / self.scaled.units.force;
+        self.scaled.compliance[contact].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean })
     }
 
     /// Motions with the held bodies where their settlements put them.
     pub fn settle(&self, motion: &mut [[f64; 3]], factor: f64) {
         let settled = self.loads.at(factor).settled(motion.len());
         for (body, motion) in motion.iter_mut().enumerate() {
-            if self.unknowns.free[body].is_none() {
+            if self.scaled.free[body].is_none() {
                 *motion = settled[body];
             }
         }
@@ -273,19 +225,17 @@ impl<'a> StepSystem<'a> {
         gradient(&self.geometry, &state.place(&loads))
     }
 
-    /// Second derivatives of Π at a state.
-    pub fn hessian(&mut self, state: &State, gradient: &Gradient) -> Rc<Hessian> {
-        let yields = state.yields();
-        if let Some(constant) = self.cache.hessian.as_ref().filter(|_| !yields) {
-            return constant.clone();
+    /// Gaps and balance linearised at a state.
+    pub fn equations(&mut self, state: &State, gradient: &Gradient) -> Rc<Equations> {
+        if self.finite() || state.yields() {
+            let loads = self.loads.at(state.factor);
+            return Rc::new(Equations::new(&self.scaled, &hessian(&self.geometry, &state.place(&loads), gradient)));
         }
-        let loads = self.loads.at(state.factor);
-        let hessian = hessian(&self.geometry, &state.place(&loads), gradient);
-        let hessian = Rc::new(hessian);
-        if !self.finite() && !yields {
-            self.cache.hessian = Some(hessian.clone());
-        }
-        hessian
+        let linear = || {
+            let load = Load::new(&self.scaled, self.problem, self.loads.growing);
+            Rc::new(Equations::linear(&self.scaled, &load))
+        };
+        self.cache.equations.get_or_insert_with(linear).clone()
     }
 
     /// Δg of a step at a contact point.

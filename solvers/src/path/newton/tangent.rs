@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::control_row::{add_weighted_gaps, control_row, control_value};
-use super::derivatives::Hessian;
+use super::equations::Equations;
 use super::linearised::solve_linear;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
@@ -22,7 +22,7 @@ fn add_step(system: &StepSystem, force: &mut [[f64; 2]], motion: &mut [[f64; 3]]
         (0..2).for_each(|k| force[k] += share * step[2 * c + k] * u.force);
     }
     for (body, motion) in motion.iter_mut().enumerate() {
-        let Some(free) = system.unknowns.free[body] else { continue };
+        let Some(free) = system.scaled.free[body] else { continue };
         for (k, motion) in motion.iter_mut().enumerate() {
             let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
             *motion += share * step[2 * points + 3 * free + k] * unit;
@@ -69,17 +69,17 @@ pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State)
 /// Tangent of a converged state with its modes held, per unit of the control's gradient.
 pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
     let gradient = system.gradient(state);
-    let hessian = system.hessian(state, &gradient);
+    let equations = system.equations(state, &gradient);
     let (_, constraint) = control_value(system, start, state, control);
-    let row = control_row(system, start, state, control, &constraint, &hessian);
-    tangent_of_modes(system, state, &hessian, &row)
+    let row = control_row(system, start, state, control, &constraint, &equations);
+    tangent_of_modes(system, state, &equations, &row)
 }
 
 /// Tangent with other modes than the state's, per unit of the sum of the multipliers of the points
 /// that change: the branch on which they yield. `None` where there is none.
 pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes: &[ContactMode]) -> Option<Tangent> {
     let gradient = system.gradient(state);
-    let hessian = system.hessian(state, &gradient);
+    let equations = system.equations(state, &gradient);
     let mut by_gap = vec![0.0; 2 * state.gap.len()];
     for c in (0..state.gap.len()).filter(|c| modes[*c] != state.mode[*c]) {
         let flow = match (modes[c], system.law(c)) {
@@ -89,24 +89,24 @@ pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes:
         (0..2).for_each(|k| by_gap[2 * c + k] = -flow[k] / system.units().displacement);
     }
     let mut row = vec![0.0; system.size()];
-    add_weighted_gaps(system, &mut row, &by_gap, &hessian);
+    add_weighted_gaps(system, &mut row, &by_gap, &equations);
     let mut other = state.clone();
     other.mode = modes.to_vec();
-    tangent_of_modes(system, &other, &hessian, &row)
+    tangent_of_modes(system, &other, &equations, &row)
 }
 
 /// Tangent of a state with its modes held, per unit of `row`.
-fn tangent_of_modes(system: &mut StepSystem, state: &State, hessian: &Hessian, row: &[f64]) -> Option<Tangent> {
+fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Equations, row: &[f64]) -> Option<Tangent> {
     let mut right = vec![0.0; system.size()];
     right[system.size() - 1] = 1.0;
-    let (x, _) = solve_linear(system, state, hessian, row, &right).filter(|(_, solved)| *solved)?;
-    Some(tangent_from(system, &x, state, hessian))
+    let (x, _) = solve_linear(system, state, equations, row, &right).filter(|(_, solved)| *solved)?;
+    Some(tangent_from(system, &x, state, equations))
 }
 
 /// Forces, motions and the factor of a solution of the linear equations, without the gaps.
 pub(super) fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
     let points = system.problem.contacts.len();
-    let (mut force, mut motion) = (vec![[0.0; 2]; points], vec![[0.0; 3]; system.unknowns.free.len()]);
+    let (mut force, mut motion) = (vec![[0.0; 2]; points], vec![[0.0; 3]; system.scaled.free.len()]);
     add_step(system, &mut force, &mut motion, x, 1.0);
     let factor = x[x.len() - 1] * system.units().factor;
     for (body, settlement) in &system.loads.growing.settlements {
@@ -116,8 +116,8 @@ pub(super) fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
 }
 
 /// The rate of a solution of the linear equations.
-pub(super) fn tangent_from(system: &StepSystem, x: &[f64], state: &State, hessian: &Hessian) -> Tangent {
-    let rows = &hessian.rows(&system.unknowns).gaps;
+pub(super) fn tangent_from(system: &StepSystem, x: &[f64], state: &State, equations: &Equations) -> Tangent {
+    let rows = &equations.gaps;
     let along = |i: usize| rows.row_dot(i, x) * system.units().displacement;
     let gap = (0..state.gap.len()).map(|c| [along(2 * c), along(2 * c + 1)]).collect();
     Tangent { gap, ..tangent_without_gaps(system, x) }

@@ -66,7 +66,7 @@ impl LoadedStudy for PointStudy {
 
     /// Drives all points again: every number must be the same.
     fn verify_stored(&self, stored: &StoredResults, _observer: &dyn Observer) -> Result<Verification, String> {
-        let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
+        let json: Json = serde_json::from_reader(stored.results()?).map_err(|error| error.to_string())?;
         let entries = json["cases"].as_array().ok_or("there is no list of cases")?;
         let only = json.get("only_cases").map(|_| stored_ids(&json));
         let wanted = self.cases.iter().filter(|case| only.as_ref().is_none_or(|ids| ids.contains(&case.id)));
@@ -91,6 +91,7 @@ impl LoadedStudy for PointStudy {
             stalled: driven.iter().filter(|result| result.status == PathStatus::Stalled).count(),
             findings,
             files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes()))),
+            made: made.into_iter().map(|(name, _)| name).collect(),
             of: self.cases.len(),
             how: "checked: every number and word against driving the point again; tables and figures against those of the \
                   study. Not checked: counters, version",

@@ -28,8 +28,9 @@ pub fn results_page(
     let mut body = format!("<h1>{}</h1>\n{}", escape(title), text(&contents.introduction));
     body += &claims(answers, &text);
     for (place, part) in parts.list().iter().enumerate() {
-        body += &format!("<section id=\"{0}\">\n<h2>{0}</h2>\n", escape(&part.folder));
-        body += &contents.text.get(place).map(|words| text(words)).unwrap_or_default();
+        let words = contents.text.get(place).map_or("", |words| words.trim());
+        body += &format!("<section id=\"{}\">\n{}", escape(&part.folder), heading(words, &part.folder));
+        body += &text(words);
         body += &answered(parts, place, part);
         body += "</section>\n";
     }
@@ -47,6 +48,12 @@ pub fn results_page(
         escape(version)
     );
     page::whole(title, &body, &[])
+}
+
+/// The heading of a part: its text's own, or else the name of its study; none where nothing stands under it but what
+/// was answered.
+fn heading(words: &str, study: &str) -> String {
+    if words.is_empty() || words.starts_with('#') { String::new() } else { format!("<h2>{}</h2>\n", escape(study)) }
 }
 
 /// What the numbers say of the claims, the verdict first, the tests behind it to open.
@@ -128,7 +135,8 @@ fn answered(parts: &Parts, place: usize, part: &Part) -> String {
         count => format!("<strong class=\"bad\">{count} not certified</strong>"),
     };
     let mut body = format!(
-        "<p class=\"quiet\">{} cases: {}; {proof}. <a href=\"{}/report.html\">All cases of this study</a>.</p>\n",
+        "<p class=\"quiet\"><code>{}</code>, {} cases: {}; {proof}. <a href=\"{}/report.html\">All cases of this study</a>.</p>\n",
+        escape(&part.folder),
         parts.cases(place).len(),
         escape(&words.join(", ")),
         escape(&part.folder).replace(' ', "%20")

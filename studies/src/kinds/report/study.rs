@@ -177,11 +177,9 @@ impl LoadedStudy for ReportStudy {
 
     /// The page and the verdicts must be those that the results of the parts give; the parts are verified apart.
     fn verify_stored(&self, stored: &StoredResults, _observer: &dyn Observer) -> Result<Verification, String> {
-        let json: Json = serde_json::from_str(stored.results).map_err(|error| error.to_string())?;
-        let text = |part: &Part| {
-            (stored.file)(&format!("{}/results.json", part.folder)).and_then(|bytes| String::from_utf8(bytes).ok())
-        };
-        let results: Vec<String> = self.parts.iter().map(|part| text(part).unwrap_or_default()).collect();
+        let json: Json = serde_json::from_reader(stored.results()?).map_err(|error| error.to_string())?;
+        let text = |part: &Part| stored.text(&format!("{}/results.json", part.folder)).unwrap_or_default();
+        let results: Vec<String> = self.parts.iter().map(text).collect();
         let made = self.output(&results, json["version"].as_str().unwrap_or_default(), json["date"].as_str());
         let again = made.files.iter().find(|(name, _)| name == "results.json");
         let again: Json = again.and_then(|(_, bytes)| serde_json::from_slice(bytes).ok()).unwrap_or_default();
@@ -191,6 +189,7 @@ impl LoadedStudy for ReportStudy {
             stalled: 0,
             findings,
             files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))),
+            made: made.files.into_iter().map(|(name, _)| name).collect(),
             of: self.contents.claims.len(),
             how: "checked: verdicts, charts and page against the results of the parts, each of which is verified by itself",
         })

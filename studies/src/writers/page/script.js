@@ -1,236 +1,160 @@
-'use strict';
-(() => {
-  const make = (name, attributes, parent) => {
-    const svg = ['svg', 'polygon', 'polyline', 'line', 'circle', 'g'].includes(name);
-    const element = svg ? document.createElementNS('http://www.w3.org/2000/svg', name) : document.createElement(name);
-    for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
-    if (parent) parent.append(element);
-    return element;
-  };
-  const short = x => x === 0 ? '0' : Math.abs(x) >= 1e7 || 1e-4 > Math.abs(x) ? x.toExponential(3) : String(+x.toPrecision(5));
-
-  // Tables: a button in each head sorts, a field above filters rows.
-  const number = text => {
-    const found = text.replace(/[≥≤–]/g, '').trim().match(/^[-+]?[\d.]+(e[-+]?\d+)?/i);
-    return found ? parseFloat(found[0]) * ({ kN: 1e3, MN: 1e6, ms: 1e-3, 'µs': 1e-6 }[text.trim().split(' ')[1]] || 1) : NaN;
-  };
-  for (const table of document.querySelectorAll('.wide > table')) {
-    const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
-    if (2 > body.rows.length) continue;
-    const first = [...body.rows];
-    heads.forEach((head, column) => {
-      const button = make('button', { type: 'button', title: 'sort by this column' });
-      button.textContent = head.textContent;
-      head.replaceChildren(button);
-      button.addEventListener('click', () => {
-        const next = { ascending: 'descending', descending: null }[head.getAttribute('aria-sort')];
-        const sense = next === undefined ? 'ascending' : next;
-        heads.forEach(other => other.removeAttribute('aria-sort'));
-        if (sense) head.setAttribute('aria-sort', sense);
-        const way = sense === 'descending' ? -1 : 1;
-        const cell = row => row.cells[column].textContent;
-        const order = (a, b) => {
-          const [x, y] = [number(cell(a)), number(cell(b))];
-          if (isNaN(x) || isNaN(y)) return isNaN(x) && isNaN(y) ? way * cell(a).localeCompare(cell(b)) : isNaN(x) ? 1 : -1;
-          return way * (x - y);
-        };
-        body.append(...(sense ? [...first].sort(order) : first));
-      });
+// What makes a report answer: sorting, filtering, values under the pointer, drawings that move, printing.
+// Tables: a button in each head sorts, a field above filters rows.
+const number = text => {
+  const found = text.replace(/[≥≤–]/g, '').trim().match(/^[-+]?[\d.]+(e[-+]?\d+)?/i);
+  return found ? parseFloat(found[0]) * ({ kN: 1e3, MN: 1e6, ms: 1e-3, 'µs': 1e-6 }[text.trim().split(' ')[1]] || 1) : NaN;
+};
+for (const table of document.querySelectorAll('.wide > table')) {
+  const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
+  if (2 > body.rows.length) continue;
+  const first = [...body.rows];
+  heads.forEach((head, column) => {
+    const button = make('button', { type: 'button', title: 'sort by this column' });
+    button.textContent = head.textContent;
+    head.replaceChildren(button);
+    button.addEventListener('click', () => {
+      const next = { ascending: 'descending', descending: null }[head.getAttribute('aria-sort')];
+      const sense = next === undefined ? 'ascending' : next;
+      heads.forEach(other => other.removeAttribute('aria-sort'));
+      if (sense) head.setAttribute('aria-sort', sense);
+      const way = sense === 'descending' ? -1 : 1;
+      const cell = row => row.cells[column].textContent;
+      const order = (a, b) => {
+        const [x, y] = [number(cell(a)), number(cell(b))];
+        if (isNaN(x) || isNaN(y)) return isNaN(x) && isNaN(y) ? way * cell(a).localeCompare(cell(b)) : isNaN(x) ? 1 : -1;
+        return way * (x - y);
+      };
+      body.append(...(sense ? [...first].sort(order) : first));
     });
-    if (first.length > 7) {
-      const label = make('label', { class: 'filter' });
-      label.textContent = 'Rows with ';
-      const field = make('input', { type: 'search', placeholder: 'words, or > 500', 'aria-label': 'filter rows' }, label);
-      table.parentElement.before(label);
-      field.addEventListener('input', () => {
-        const words = field.value.toLowerCase().split(/\s+(?=[^\d\s])/).map(word => word.trim()).filter(Boolean);
-        const fits = (row, word) => {
-          const bound = word.match(/^([<>])\s*([-\d.e]+)$/);
-          if (!bound) return row.textContent.toLowerCase().includes(word);
-          const load = heads.findIndex(head => head.textContent.startsWith('load factor'));
-          const value = number(row.cells[load > -1 ? load : 0].textContent);
-          return bound[1] === '>' ? value > +bound[2] : +bound[2] > value;
-        };
-        for (const row of first) row.hidden = !words.every(word => fits(row, word));
-      });
-    }
-  }
-
-  // Cases: blocks, how they move, and the states of a path.
-  const store = document.getElementById('cases');
-  const cases = new Map(store ? JSON.parse(store.textContent).map(own => [own.id, own]) : []);
-  const placed = (own, body, [x, y, turn]) => {
-    const points = own.bodies[body], [cx, cy] = own.centres[body], c = Math.cos(turn), s = Math.sin(turn);
-    const out = [];
-    for (let i = 0; points.length > i; i += 2) {
-      const [dx, dy] = [points[i] - cx, points[i + 1] - cy];
-      out.push([cx + x + c * dx - s * dy, cy + y + s * dx + c * dy]);
-    }
-    return out;
-  };
-  const text = points => points.map(([x, y]) => x.toFixed(4) + ',' + (-y).toFixed(4)).join(' ');
-  const frame = own => {
-    let box = [1e99, 1e99, -1e99, -1e99];
-    for (const points of own.bodies) for (let i = 0; points.length > i; i += 2) {
-      box = [Math.min(box[0], points[i]), Math.min(box[1], -points[i + 1]), Math.max(box[2], points[i]), Math.max(box[3], -points[i + 1])];
-    }
-    const margin = 0.08 * Math.max(box[2] - box[0], box[3] - box[1]);
-    return [box[0] - margin, box[1] - margin, box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin].map(x => x.toFixed(3)).join(' ');
-  };
-  // The picture of a case with each body displaced; `line` is a thrust line, `joints` what presses there.
-  const draw = (svg, own, displaced, line, joints) => {
-    svg.replaceChildren();
-    svg.setAttribute('viewBox', frame(own));
-    own.bodies.forEach((points, body) => {
-      if (displaced && own.free[body]) make('polygon', { class: 'ghost', points: text(placed(own, body, [0, 0, 0])) }, svg);
-    });
-    own.bodies.forEach((points, body) => {
-      if (own.free[body]) make('polygon', { class: 'stone', points: text(placed(own, body, displaced ? displaced[body] : [0, 0, 0])) }, svg);
-    });
-    for (const piece of joints || []) make(piece.open ? 'polyline' : 'polygon', { class: piece.open ? 'open' : 'stress', points: text(piece.points) }, svg);
-    for (const piece of line || []) make('polyline', { class: 'thrust', points: text(piece) }, svg);
-  };
-  const pieces = line => {
-    const out = [[]];
-    for (const point of line || []) point ? out[out.length - 1].push(point) : out.push([]);
-    return out.filter(piece => piece.length > 1);
-  };
-  // Where a joint's points went with the block on its minus side.
-  const follow = (own, joint, displaced, [x, y]) => {
-    const body = own.joints[joint][0], [cx, cy] = own.centres[body], [u, v, turn] = displaced[body];
-    const c = Math.cos(turn), s = Math.sin(turn);
-    return [cx + u + c * (x - cx) - s * (y - cy), cy + v + s * (x - cx) + c * (y - cy)];
-  };
-  // Diagrams of contact stress, and joints that are open at an end.
-  const pressures = (own, state, moved) => {
-    const out = [];
-    let greatest = 1e-300;
-    for (const joint of state.stress) for (const [, pressure] of joint) greatest = Math.max(greatest, pressure);
-    state.stress.forEach((points, joint) => {
-      const [, , ax, ay, bx, by] = own.joints[joint];
-      const long = Math.hypot(bx - ax, by - ay), n = [(by - ay) / long, (ax - bx) / long];
-      const at = (share, off) => follow(own, joint, moved, [ax + share * (bx - ax) + off * n[0], ay + share * (by - ay) + off * n[1]]);
-      const pressed = points.filter(([, pressure]) => pressure > 1e-6 * greatest);
-      if (pressed.length) out.push({ points: [...points.map(([share]) => at(share, 0)), ...points.slice().reverse().map(([share, pressure]) => at(share, 0.5 * long * pressure / greatest))] });
-      const open = (from, to) => to - from > 0.05 && out.push({ open: true, points: [at(from, 0), at(to, 0)] });
-      if (pressed.length) {
-        open(0, Math.min(...pressed.map(p => p[0])) - 0.001);
-        open(Math.max(...pressed.map(p => p[0])) + 0.001, 1);
-      }
-    });
-    return out;
-  };
-
-  for (const place of document.querySelectorAll('.moving')) {
-    const own = cases.get(+place.dataset.case);
-    if (!own) continue;
-    const svg = make('svg', { role: 'img', 'aria-label': 'moving drawing' }, place);
-    const label = make('label', {}, place), path = own.states && own.states.length > 1;
-    label.append(path ? 'State ' : 'Motion ');
-    const slider = make('input', { type: 'range', min: 0, max: path ? own.states.length - 1 : 100, value: path ? own.peak || 0 : 0 }, label);
-    const said = make('output', {}, label);
-    const magnify = make('label', {}, place);
-    let factor;
-    if (path) {
-      magnify.append(' displacements × ');
-      factor = make('input', { type: 'number', min: 1, value: own.magnify || 1, style: 'width:5em' }, magnify);
-    }
-    const chart = place.closest('details') && place.closest('details').querySelector('svg .plot');
-    let cursor;
-    const show = () => {
-      if (!path) {
-        const share = slider.value / 100 * own.scale;
-        const moved = own.motion.map(([x, y, turn]) => [x * share, y * share, turn * share]);
-        draw(svg, own, moved, slider.value > 0 ? [] : pieces(own.thrust));
-        said.textContent = slider.value > 0 ? ' moving' : ' at rest, with the thrust line';
-        return;
-      }
-      const state = own.states[slider.value], times = Math.max(1, +factor.value || 1);
-      const moved = own.bodies.map((_, body) => state.bodies[body].map(u => u * times));
-      const line = state.thrust.map((point, joint) => point && follow(own, joint, moved, point));
-      draw(svg, own, moved, pieces(line), pressures(own, state, moved));
-      said.textContent = ` ${state.stage}, λ = ${short(state.factor)}, ${short(state.displacement * 1e3)} mm`;
-      if (chart) {
-        if (!cursor) cursor = make('circle', { r: 6, fill: 'none', stroke: '#c8102e', 'stroke-width': 3, class: 'cursor' }, chart);
-        const [x, y] = [axis(chart.dataset.x), axis(chart.dataset.y)];
-        cursor.setAttribute('cx', x.place(state.displacement * 1e3));
-        cursor.setAttribute('cy', y.place(state.factor));
-        cursor.setAttribute('visibility', state.live ? 'visible' : 'hidden');
-      }
-    };
-    slider.addEventListener('input', show);
-    if (factor) factor.addEventListener('input', show);
-    show();
-  }
-
-  // Charts: the nearest point under the pointer, or with arrow keys, with its values and its case's drawing.
-  function axis(description) {
-    const [low, high, from, to, log] = description.split(' ').map(Number);
-    const f = log ? Math.log10 : x => x;
-    return { place: value => from + (f(value) - f(low)) / (f(high) - f(low)) * (to - from) };
-  }
-  const tip = make('div', { class: 'tip', hidden: '' }, document.body);
-  for (const plot of document.querySelectorAll('svg .plot')) {
-    const svg = plot.ownerSVGElement, x = axis(plot.dataset.x), y = axis(plot.dataset.y);
-    const points = [];
-    for (const line of plot.querySelectorAll('.series')) {
-      const ids = (line.dataset.cases || '').split(' ').filter(Boolean).map(Number);
-      (line.dataset.points || '').split(' ').filter(Boolean).forEach((pair, index) => {
-        const [vx, vy] = pair.split(',').map(Number);
-        points.push({ px: x.place(vx), py: y.place(vy), vx, vy, name: line.dataset.name, id: ids[index] });
-      });
-    }
-    if (!points.length) continue;
-    svg.setAttribute('tabindex', '0');
-    svg.setAttribute('role', 'img');
-    svg.setAttribute('aria-label', 'chart; arrow keys step from point to point');
-    const ring = make('circle', { r: 7, fill: 'none', stroke: '#000', 'stroke-width': 1.5, visibility: 'hidden' }, plot);
-    let now = 0;
-    const show = (point, left, top) => {
-      ring.setAttribute('cx', point.px);
-      ring.setAttribute('cy', point.py);
-      ring.setAttribute('visibility', 'visible');
-      tip.textContent = `${point.name}: ${point.vy} at ${point.vx}`;
-      if (point.id !== undefined) {
-        tip.append(`, case ${point.id}`);
-        const own = cases.get(point.id);
-        if (own) {
-          const share = 0.6 * (own.scale || 0);
-          draw(make('svg', { class: 'moving' }, make('div', { class: 'moving', 'data-drawn': '' }, tip)), own, own.motion && own.motion.map(m => m.map(u => u * share)), own.motion ? [] : pieces(own.thrust));
-        }
-      }
-      tip.hidden = false;
-      const room = tip.getBoundingClientRect();
-      tip.style.left = Math.max(4, Math.min(left + 14, innerWidth - room.width - 4)) + 'px';
-      tip.style.top = Math.max(4, top + 14 + room.height > innerHeight ? top - room.height - 10 : top + 14) + 'px';
-    };
-    const hide = () => {
-      ring.setAttribute('visibility', 'hidden');
-      tip.hidden = true;
-    };
-    svg.addEventListener('pointermove', event => {
-      const matrix = svg.getScreenCTM().inverse(), at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
-      const far = point => (point.px - at.x) ** 2 + (point.py - at.y) ** 2;
-      now = points.reduce((best, point, i) => far(points[best]) > far(point) ? i : best, 0);
-      far(points[now]) > 1600 ? hide() : show(points[now], event.clientX, event.clientY);
-    });
-    svg.addEventListener('pointerleave', hide);
-    svg.addEventListener('blur', hide);
-    svg.addEventListener('keydown', event => {
-      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-      if (!step) return;
-      event.preventDefault();
-      now = (now + step + points.length) % points.length;
-      const at = new DOMPoint(points[now].px, points[now].py).matrixTransform(svg.getScreenCTM());
-      show(points[now], at.x, at.y);
-    });
-  }
-
-  // On paper everything is open.
-  let closed = [];
-  addEventListener('beforeprint', () => {
-    closed = [...document.querySelectorAll('details:not([open])')];
-    closed.forEach(one => { one.open = true; });
   });
-  addEventListener('afterprint', () => closed.forEach(one => { one.open = false; }));
-})();
+  if (first.length > 7) {
+    const label = make('label', { class: 'filter' });
+    label.textContent = 'Rows with ';
+    const field = make('input', { type: 'search', placeholder: 'words, or > 500', 'aria-label': 'filter rows' }, label);
+    table.parentElement.before(label);
+    field.addEventListener('input', () => {
+      const words = field.value.toLowerCase().split(/\s+(?=[^\d\s])/).map(word => word.trim()).filter(Boolean);
+      const fits = (row, word) => {
+        const bound = word.match(/^([<>])\s*([-\d.e]+)$/);
+        if (!bound) return row.textContent.toLowerCase().includes(word);
+        const load = heads.findIndex(head => head.textContent.startsWith('load factor'));
+        const value = number(row.cells[load > -1 ? load : 0].textContent);
+        return bound[1] === '>' ? value > +bound[2] : +bound[2] > value;
+      };
+      for (const row of first) row.hidden = !words.every(word => fits(row, word));
+    });
+  }
+}
+
+for (const place of document.querySelectorAll('.moving')) {
+  const own = cases.get(+place.dataset.case);
+  if (!own) continue;
+  const svg = make('svg', { role: 'img', 'aria-label': 'moving drawing' }, place);
+  const label = make('label', {}, place), path = own.states && own.states.length > 1;
+  label.append(path ? 'State ' : 'Motion ');
+  const slider = make('input', { type: 'range', min: 0, max: path ? own.states.length - 1 : 100, value: path ? own.peak || 0 : 0 }, label);
+  const said = make('output', {}, label);
+  const magnify = make('label', {}, place);
+  let factor;
+  if (path) {
+    magnify.append(' displacements × ');
+    factor = make('input', { type: 'number', min: 1, value: own.magnify || 1, style: 'width:5em' }, magnify);
+  }
+  const chart = place.closest('details') && place.closest('details').querySelector('svg .plot');
+  let cursor;
+  const show = () => {
+    if (!path) {
+      const share = slider.value / 100 * own.scale;
+      const moved = own.motion.map(([x, y, turn]) => [x * share, y * share, turn * share]);
+      draw(svg, own, moved, slider.value > 0 ? [] : pieces(own.thrust));
+      said.textContent = slider.value > 0 ? ' moving' : ' at rest, with the thrust line';
+      return;
+    }
+    const state = own.states[slider.value], times = Math.max(1, +factor.value || 1);
+    const moved = own.bodies.map((_, body) => state.bodies[body].map(u => u * times));
+    const line = state.thrust.map((point, joint) => point && follow(own, joint, moved, point));
+    draw(svg, own, moved, pieces(line), pressures(own, state, moved));
+    said.textContent = ` ${state.stage}, λ = ${short(state.factor)}, ${short(state.displacement * 1e3)} mm`;
+    if (chart) {
+      if (!cursor) cursor = make('circle', { r: 6, fill: 'none', stroke: '#c8102e', 'stroke-width': 3, class: 'cursor' }, chart);
+      const [x, y] = [axis(chart.dataset.x), axis(chart.dataset.y)];
+      cursor.setAttribute('cx', x.place(state.displacement * 1e3));
+      cursor.setAttribute('cy', y.place(state.factor));
+      cursor.setAttribute('visibility', state.live ? 'visible' : 'hidden');
+    }
+  };
+  slider.addEventListener('input', show);
+  if (factor) factor.addEventListener('input', show);
+  show();
+}
+
+// Charts: the nearest point under the pointer, or with arrow keys, with its values and its case's drawing.
+function axis(description) {
+  const [low, high, from, to, log] = description.split(' ').map(Number);
+  const f = log ? Math.log10 : x => x;
+  return { place: value => from + (f(value) - f(low)) / (f(high) - f(low)) * (to - from) };
+}
+const tip = make('div', { class: 'tip', hidden: '' }, document.body);
+for (const plot of document.querySelectorAll('svg .plot')) {
+  const svg = plot.ownerSVGElement, x = axis(plot.dataset.x), y = axis(plot.dataset.y);
+  const points = [];
+  for (const line of plot.querySelectorAll('.series')) {
+    const ids = (line.dataset.cases || '').split(' ').filter(Boolean).map(Number);
+    (line.dataset.points || '').split(' ').filter(Boolean).forEach((pair, index) => {
+      const [vx, vy] = pair.split(',').map(Number);
+      points.push({ px: x.place(vx), py: y.place(vy), vx, vy, name: line.dataset.name, id: ids[index] });
+    });
+  }
+  if (!points.length) continue;
+  svg.setAttribute('tabindex', '0');
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('aria-label', 'chart; arrow keys step from point to point');
+  const ring = make('circle', { r: 7, fill: 'none', stroke: '#000', 'stroke-width': 1.5, visibility: 'hidden' }, plot);
+  let now = 0;
+  const show = (point, left, top) => {
+    ring.setAttribute('cx', point.px);
+    ring.setAttribute('cy', point.py);
+    ring.setAttribute('visibility', 'visible');
+    tip.textContent = `${point.name}: ${point.vy} at ${point.vx}`;
+    if (point.id !== undefined) {
+      tip.append(`, case ${point.id}`);
+      const own = cases.get(point.id);
+      if (own) {
+        const share = 0.6 * (own.scale || 0);
+        draw(make('svg', { class: 'moving' }, make('div', { class: 'moving', 'data-drawn': '' }, tip)), own, own.motion && own.motion.map(m => m.map(u => u * share)), own.motion ? [] : pieces(own.thrust));
+      }
+    }
+    tip.hidden = false;
+    const room = tip.getBoundingClientRect();
+    tip.style.left = Math.max(4, Math.min(left + 14, innerWidth - room.width - 4)) + 'px';
+    tip.style.top = Math.max(4, top + 14 + room.height > innerHeight ? top - room.height - 10 : top + 14) + 'px';
+  };
+  const hide = () => {
+    ring.setAttribute('visibility', 'hidden');
+    tip.hidden = true;
+  };
+  svg.addEventListener('pointermove', event => {
+    const matrix = svg.getScreenCTM().inverse(), at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
+    const far = point => (point.px - at.x) ** 2 + (point.py - at.y) ** 2;
+    now = points.reduce((best, point, i) => far(points[best]) > far(point) ? i : best, 0);
+    far(points[now]) > 1600 ? hide() : show(points[now], event.clientX, event.clientY);
+  });
+  svg.addEventListener('pointerleave', hide);
+  svg.addEventListener('blur', hide);
+  svg.addEventListener('keydown', event => {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    now = (now + step + points.length) % points.length;
+    const at = new DOMPoint(points[now].px, points[now].py).matrixTransform(svg.getScreenCTM());
+    show(points[now], at.x, at.y);
+  });
+}
+
+// On paper everything is open.
+let closed = [];
+addEventListener('beforeprint', () => {
+  closed = [...document.querySelectorAll('details:not([open])')];
+  closed.forEach(one => { one.open = true; });
+});
+addEventListener('afterprint', () => closed.forEach(one => { one.open = false; }));

@@ -62,7 +62,39 @@ pub struct Bridge {
     pub axles: Vec<Axle>,
     pub at: f64,
     pub lost: Vec<Lost>,
+    /// Loads spread as the stress of a half-plane, cut off under the angles of spread.
+    pub half_plane: bool,
+    pub factors: Factors,
 }
+
+/// Partial factors: weights and loads are multiplied, strengths and tangents divided.
+#[derive(Debug, Clone)]
+pub struct Factors {
+    pub masonry_weight: f64,
+    pub fill_weight: f64,
+    pub friction: f64,
+    pub compressive_strength: f64,
+    pub fill_friction: f64,
+    pub fill_cohesion: f64,
+    pub backing_strength: f64,
+    pub loads: f64,
+}
+
+impl Factors {
+    const NONE: Factors = Factors {
+        masonry_weight: 1.0,
+        fill_weight: 1.0,
+        friction: 1.0,
+        compressive_strength: 1.0,
+        fill_friction: 1.0,
+        fill_cohesion: 1.0,
+        backing_strength: 1.0,
+        loads: 1.0,
+    };
+}
+
+/// Seeds from here on have partial factors and loads that spread as in a half-plane besides.
+pub const MORE: u64 = 10_000;
 
 /// A linear congruential generator (Knuth's constants).
 struct Random(u64);
@@ -146,7 +178,7 @@ impl Bridge {
         } else {
             Vec::new()
         };
-        Bridge {
+        let mut bridge = Bridge {
             width: r.between(2.0, 6.0),
             density: r.between(1800.0, 2600.0),
             friction: r.between(0.5, 0.9),
@@ -172,7 +204,44 @@ impl Bridge {
             at: total * r.between(0.05, 0.9),
             spans,
             lost,
+            half_plane: false,
+            factors: Factors::NONE,
+        };
+        if seed >= MORE {
+            bridge.half_plane = r.chance(0.6);
+            if r.chance(0.6) {
+                let mut factor = |most: f64| r.between(1.0, most);
+                bridge.factors = Factors {
+                    masonry_weight: factor(1.3),
+                    fill_weight: factor(1.4),
+                    friction: factor(1.2),
+                    compressive_strength: factor(2.5),
+                    fill_friction: factor(1.4),
+                    fill_cohesion: factor(1.6),
+                    backing_strength: factor(1.5),
+                    loads: factor(2.0),
+                };
+            }
         }
+        bridge
+    }
+
+    /// The bridge whose characteristic values are the design values of this one.
+    pub fn design(&self) -> Bridge {
+        let (f, mut design) = (&self.factors, self.clone());
+        design.factors = Factors::NONE;
+        design.density *= f.masonry_weight;
+        design.friction /= f.friction;
+        design.ring_friction /= f.friction;
+        design.crushing = self.crushing.map(|strength| strength / f.compressive_strength);
+        for soil in &mut design.soils {
+            soil.density *= f.fill_weight;
+            soil.friction_angle = (soil.friction_angle.to_radians().tan() / f.fill_friction).atan().to_degrees();
+            soil.cohesion /= f.fill_cohesion;
+            soil.backing = soil.backing.map(|strength| strength / f.backing_strength);
+        }
+        design.axles.iter_mut().for_each(|axle| axle.force *= f.loads);
+        design
     }
 
     /// The study of the same numbers.
@@ -234,6 +303,19 @@ impl Bridge {
             "]\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{{ kind = \"vehicle\", vehicle = \"cart\", at = {:?}, across = \"{across}\" }}]\n",
             self.at
         );
+        let f = &self.factors;
+        let _ = write!(
+            text,
+            "[factors]\nmasonry_weight = {:?}\nfill_weight = {:?}\nfriction = {:?}\ncompressive_strength = {:?}\nfill_friction = {:?}\nfill_cohesion = {:?}\nbacking_strength = {:?}\nloads = {{ live = {:?} }}\n",
+            f.masonry_weight,
+            f.fill_weight,
+            f.friction,
+            f.compressive_strength,
+            f.fill_friction,
+            f.fill_cohesion,
+            f.backing_strength,
+            f.loads
+        );
         text
     }
 
@@ -249,7 +331,8 @@ impl Bridge {
             last.cohesion
         );
         if self.spreads {
-            let _ = writeln!(text, "dispersion = {{ law = \"uniform\", angle = {:?} }}", last.spread);
+            let law = if self.half_plane { "boussinesq" } else { "uniform" };
+            let _ = writeln!(text, "dispersion = {{ law = \"{law}\", angle = {:?} }}", last.spread);
         }
         if let Some([m_p, m_c]) = self.passive {
             let _ = writeln!(

@@ -139,14 +139,36 @@ impl Bridge {
                 out.push((under.0, x, force));
                 continue;
             }
-            for (block, face, _) in &parts.faces {
-                let (low, high) = (face[0][0].max(from), face[1][0].min(to));
-                if high > low {
-                    out.push((*block, (low + high) / 2.0, force * (high - low) / (to - from)));
+            let depth = self.road_at(x) - at(&under.1, x);
+            for (from, to, share) in self.patches([x, length / 2.0, reach, depth]) {
+                for (block, face, _) in &parts.faces {
+                    let (low, high) = (face[0][0].max(from), face[1][0].min(to));
+                    if high > low {
+                        out.push((*block, (low + high) / 2.0, force * share * (high - low) / (to - from)));
+                    }
                 }
             }
         }
         out
+    }
+
+    /// Patches of even pressure as (from, to, share) of a patch about x with this half width.
+    fn patches(&self, [x, half, reach, depth]: [f64; 4]) -> Vec<(f64, f64, f64)> {
+        let most = half + reach;
+        if !self.half_plane || reach <= 0.0 || depth <= 0.0 {
+            return vec![(x - most, x + most, 1.0)];
+        }
+        // Share of the load to the left of u; of a line load where the patch has no width.
+        let left = |u: f64| {
+            let of = |u: f64| u * (u / depth).atan();
+            match half {
+                0.0 => (u / depth).atan() + u * depth / (u * u + depth * depth),
+                _ => (of(u + half) - of(u - half)) / (2.0 * half),
+            }
+        };
+        let place = |i: i32| most * f64::from(2 * i - 40) / 40.0;
+        let whole = left(most) - left(-most);
+        (0..40).map(|i| (x + place(i), x + place(i + 1), (left(place(i + 1)) - left(place(i))) / whole)).collect()
     }
 
     /// The greatest λ; `None` where there is none, or no greatest one.

@@ -7,7 +7,7 @@ use super::redundants::{MOST_WEAK, Open, closing};
 use crate::contact::mode::ContactMode;
 use crate::path::event::force_method::Sections;
 use crate::path::event::rates::{Rates, largest};
-use crate::path::event::system::{Load, System};
+use crate::path::system::{Load, System};
 use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
 use voussoir_core::path::PathProblem;
 

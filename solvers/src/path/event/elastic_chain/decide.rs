@@ -3,8 +3,8 @@
 use super::chain::{ChainRates, ElasticChain};
 use crate::contact::mode::ContactMode;
 use crate::path::event::rates::{Rates, largest, leaving};
-use crate::path::event::system::{Load, System};
 use crate::path::event::trace::Trace;
+use crate::path::system::{Load, System};
 use nalgebra::DMatrix;
 
 /// Rounds of the active set, and those in which all points change at once.

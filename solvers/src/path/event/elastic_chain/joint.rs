@@ -3,7 +3,7 @@
 use super::dense::add_product;
 use crate::contact::mode::ContactMode;
 use crate::path::event::force_method::{Section, Sections};
-use crate::path::event::system::System;
+use crate::path::system::System;
 use nalgebra::{DMatrix, Vector3};
 use std::rc::Rc;
 

@@ -5,8 +5,8 @@ use super::examine::{Change, examine};
 use super::section::Sections;
 use super::state::{Hit, Run};
 use crate::path::event::next_event::{MOMENT, arrive, stepped};
-use crate::path::event::system::Load;
 use crate::path::event::trace::Trace;
+use crate::path::system::Load;
 use nalgebra::{DVector, Vector3};
 
 /// Points of the active set from which flow that is not associated is not examined for other rates.
@@ -232,7 +232,7 @@ fn record(run: &mut Run, trace: &mut Trace) -> bool {
     }
     let [work, moved, factor] = run.since;
     let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
-    trace.state.energy.work += (work - trapezoid) * trace.system.force_unit * trace.system.displacement_unit;
+    trace.state.energy.work += (work - trapezoid) * trace.system.units.energy();
     run.since = [0.0, 0.0, trace.state.factor];
     trace.record()
 }

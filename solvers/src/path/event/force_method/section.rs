@@ -1,6 +1,6 @@
 //! The assembly as sections between bodies: which section forces statics leaves open.
 
-use crate::path::event::system::System;
+use crate::path::system::System;
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3xX, Vector3};
 use std::collections::BTreeMap;
 use voussoir_core::path::PathProblem;
@@ -74,7 +74,7 @@ impl Sections {
         let mut poles = vec![[0.0; 2]; system.bodies];
         for (free, body) in system.free.iter().zip(&problem.bodies) {
             if let Some(free) = free {
-                poles[*free] = [body.pole.x / system.length, body.pole.y / system.length];
+                poles[*free] = [body.pole.x / system.units.length, body.pole.y / system.units.length];
             }
         }
         let mut groups: BTreeMap<[Option<usize>; 2], Vec<usize>> = BTreeMap::new();
@@ -94,7 +94,7 @@ impl Sections {
                 let p = problem.contacts[c].position;
                 centre = [centre[0] + p.x, centre[1] + p.y];
             }
-            let centre = centre.map(|x| x / contacts.len() as f64 / system.length);
+            let centre = centre.map(|x| x / contacts.len() as f64 / system.units.length);
             let mut places = Vec::with_capacity(contacts.len());
             for &c in &contacts {
                 of[c] = all.len();

@@ -5,8 +5,8 @@ use super::joint::Joint;
 use super::progress::Progress;
 use super::section::Sections;
 use crate::contact::mode::ContactMode;
-use crate::path::event::system::Load;
 use crate::path::event::trace::Trace;
+use crate::path::system::Load;
 use nalgebra::Vector3;
 
 /// What is nearest: arc until then, rate with which it comes, contact point, facet or `usize::MAX`.
@@ -62,7 +62,7 @@ impl<'s> Run<'s> {
     /// an unknown of its own. Returns by how much each opens, which is left to the caller; nothing where nothing
     /// has moved.
     pub fn update(&mut self, trace: &mut Trace, e: usize, step: Option<(Vector3<f64>, f64)>) -> Vec<f64> {
-        let unit = trace.system.force_unit * trace.system.displacement_unit;
+        let unit = trace.system.units.energy();
         let state = (trace.system.facets.as_slice(), trace.state.points.as_slice());
         let section = &self.sections.all[e];
         let gained = self.joints[e].update(section, state, &self.progress, step, &trace.state.x);

@@ -1,0 +1,339 @@
+//! A behaviour: what it says of itself, checked against what the study gives, and a step of it.
+
+use crate::data::{API_VERSION, BehaviourData, CONSISTENT_TANGENT, Integrate, MESSAGE, State};
+use crate::library::{Symbols, open};
+use std::collections::BTreeMap;
+use std::ffi::{CStr, c_char};
+use std::sync::{LazyLock, Mutex, PoisonError};
+use voussoir_core::law::{Effect, UpdateBranch, UpdateFailure};
+use voussoir_core::plugin::nearest;
+
+/// What a study says of a behaviour.
+pub(crate) struct Request<'a> {
+    pub library: &'a str,
+    pub behaviour: &'a str,
+    pub properties: &'a BTreeMap<String, f64>,
+    pub variables: &'a BTreeMap<String, f64>,
+    /// \[K\].
+    pub temperature: f64,
+    /// \[kg/m³\].
+    pub density: f64,
+}
+
+/// Which behaviours a kind of law takes.
+pub(crate) struct Family {
+    /// Modelling hypothesis.
+    pub hypothesis: &'static str,
+    /// `_BehaviourType` and `_BehaviourKinematic`.
+    pub kind: [u16; 2],
+    /// In words.
+    pub words: &'static str,
+    /// Gradient and force.
+    pub names: [&'static str; 2],
+    /// Numbers of a scalar, a symmetric tensor, a vector and a tensor.
+    pub sizes: [usize; 4],
+}
+
+/// A behaviour with its parameters.
+#[derive(Debug)]
+pub(crate) struct Behaviour {
+    integrate: Integrate,
+    properties: Vec<f64>,
+    external: Vec<f64>,
+    density: f64,
+    /// Numbers of its own state.
+    internal: usize,
+    /// Names of the whole state.
+    pub names: &'static [&'static str],
+    /// Whether it says what it stores and dissipates.
+    energies: bool,
+}
+
+/// What a step gives, in the order and sign of the interface.
+pub(crate) struct Step<const N: usize> {
+    pub forces: [f64; N],
+    pub tangent: [[f64; N]; N],
+    pub branch: UpdateBranch,
+    pub stored: f64,
+    pub dissipated: f64,
+}
+
+/// The state of the behaviour changed.
+const INELASTIC: UpdateBranch = UpdateBranch::new("inelastic", Effect::Yielding);
+
+/// Key and what is wrong with it.
+type Wrong = Vec<(String, String)>;
+
+fn wrong<T>(key: &str, message: String) -> Result<T, Wrong> {
+    Err(vec![(key.into(), message)])
+}
+
+/// Texts and lists of texts that live as long as the program, each only once.
+#[derive(Default)]
+struct Kept {
+    texts: Vec<&'static str>,
+    lists: Vec<&'static [&'static str]>,
+}
+
+static KEPT: LazyLock<Mutex<Kept>> = LazyLock::new(Mutex::default);
+
+impl Kept {
+    fn text(&mut self, text: &str) -> &'static str {
+        if let Some(own) = self.texts.iter().find(|own| **own == text) {
+            return own;
+        }
+        let own: &'static str = Box::leak(text.to_owned().into_boxed_str());
+        self.texts.push(own);
+        own
+    }
+
+    fn list(&mut self, texts: &[String]) -> &'static [&'static str] {
+        if let Some(own) = self.lists.iter().find(|own| own.iter().eq(texts.iter())) {
+            return own;
+        }
+        let own: &'static [&'static str] = Vec::leak(texts.iter().map(|text| self.text(text)).collect());
+        self.lists.push(own);
+        own
+    }
+}
+
+/// Messages that are kept word by word; a library may number its own without end.
+const MESSAGES: usize = 1000;
+
+fn message(text: &str) -> &'static str {
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.texts.len() < MESSAGES { kept.text(text) } else { "the external behaviour could not integrate the step" }
+}
+
+/// Values in the order of `names`, each given and no other.
+fn ordered(key: &str, names: &[String], given: &BTreeMap<String, f64>) -> Result<Vec<f64>, Wrong> {
+    let mut complaints = Vec::new();
+    for name in given.keys().filter(|name| !names.contains(name)) {
+        let meant = nearest(name, names.iter().map(String::as_str));
+        let meant = meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"));
+        complaints.push((format!("{key}.{name}"), format!("the behaviour has no such entry{meant}")));
+    }
+    let missing: Vec<&str> = names.iter().filter(|name| !given.contains_key(*name)).map(String::as_str).collect();
+    if !missing.is_empty() {
+        complaints.push((key.into(), format!("the behaviour needs {}", missing.join(", "))));
+    }
+    if !complaints.is_empty() {
+        return Err(complaints);
+    }
+    Ok(names.iter().map(|name| given[name]).collect())
+}
+
+impl Behaviour {
+    /// Opens and checks.
+    pub fn load<const N: usize>(request: &Request, family: &Family) -> Result<Self, Wrong> {
+        let library = open(request.library).or_else(|why| wrong("library", why))?;
+        let symbols = Symbols { library, behaviour: request.behaviour, hypothesis: family.hypothesis };
+        let energies = check_family(&symbols, request, family)?;
+        let mut names = symbols.names("MaterialProperties").ok_or_else(|| missing("MaterialProperties"))?;
+        if symbols.number("requiresStiffnessTensor") == Some(1) {
+            names.splice(0..0, ["YoungModulus".to_string(), "PoissonRatio".into()]);
+        }
+        let properties = ordered("properties", &names, request.properties)?;
+        let mut names = symbols.names("ExternalStateVariables").ok_or_else(|| missing("ExternalStateVariables"))?;
+        // The temperature comes first, whether the library lists it or not.
+        if symbols.number("TemperatureRemovedFromExternalStateVariables") == Some(0) {
+            names.retain(|name| name != "Temperature");
+        }
+        let mut external = vec![request.temperature];
+        external.extend(ordered("variables", &names, request.variables)?);
+        let variables = symbols.names("InternalStateVariables").ok_or_else(|| missing("InternalStateVariables"))?;
+        let types = symbols
+            .types("InternalStateVariables", variables.len())
+            .ok_or_else(|| missing("InternalStateVariablesTypes"))?;
+        let mut state = Vec::new();
+        for (name, kind) in variables.iter().zip(types) {
+            let size = usize::try_from(kind).ok().and_then(|kind| family.sizes.get(kind));
+            let Some(&size) = size else {
+                return wrong(
+                    "behaviour",
+                    format!("its internal variable {name} is of a type that is not known, {kind}"),
+                );
+            };
+            state.extend((0..size).map(|i| if size == 1 { format!("{name} [-]") } else { format!("{name}_{i} [-]") }));
+        }
+        let internal = state.len();
+        state.extend((0..N).map(|i| format!("gradient_{i} [-]")).chain((0..N).map(|i| format!("force_{i} [Pa]"))));
+        state.extend(["stored [J]".to_string(), "dissipated [J]".into()]);
+        let names = KEPT.lock().unwrap_or_else(PoisonError::into_inner).list(&state);
+        let Some(integrate) = symbols.function() else {
+            let symbol = format!("{}_{}", request.behaviour, family.hypothesis);
+            return wrong("behaviour", format!("the library has no function {symbol}"));
+        };
+        let behaviour =
+            Behaviour { integrate, properties, external, density: request.density, internal, names, energies };
+        behaviour.at_rest::<N>()?;
+        Ok(behaviour)
+    }
+
+    /// The tangent of the untouched behaviour.
+    pub fn at_rest<const N: usize>(&self) -> Result<[[f64; N]; N], Wrong> {
+        let old = vec![0.0; self.names.len()];
+        let mut new = old.clone();
+        match self.step([0.0; N], 0.0, &old, &mut new) {
+            Err(why) => wrong("behaviour", format!("it refuses a step from rest to rest: {why}")),
+            Ok(step) if (0..N).any(|i| step.tangent[i][i] <= 0.0) => {
+                wrong("behaviour", format!("its tangent at rest is not stiff: {:?}", step.tangent))
+            }
+            Ok(step) if step.forces.iter().any(|force| *force != 0.0) => {
+                wrong("behaviour", format!("it carries {:?} at rest", step.forces))
+            }
+            Ok(step) => Ok(step.tangent),
+        }
+    }
+
+    /// A step. State: the behaviour's own, then gradients, forces and energies at the start of the step.
+    pub fn step<const N: usize>(
+        &self,
+        gradients: [f64; N],
+        time_step: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<Step<N>, UpdateFailure> {
+        const LARGEST: usize = 6;
+        if !gradients.iter().chain(old).all(|x| x.is_finite()) {
+            return Err(UpdateFailure::NotFinite);
+        }
+        if N > LARGEST || old.len() != self.names.len() || new.len() != old.len() {
+            return Err(UpdateFailure::WrongSize);
+        }
+        new.copy_from_slice(old);
+        let (own, rest) = old.split_at(self.internal);
+        let before: [f64; N] = std::array::from_fn(|i| rest[i]);
+        let mut from: [f64; N] = std::array::from_fn(|i| rest[N + i]);
+        let (mut stored_from, mut dissipated_from) = (rest[2 * N], rest[2 * N + 1]);
+        let (mut forces, mut stored, mut dissipated) = (from, stored_from, dissipated_from);
+        let mut entries = [0.0; LARGEST * LARGEST];
+        entries[0] = CONSISTENT_TANGENT;
+        let (mut factor, mut speed) = (1.0, 0.0);
+        let mut message: [c_char; MESSAGE] = [0; MESSAGE];
+        let (mass_density, material_properties) = (&raw const self.density, self.properties.as_ptr());
+        let external_variables = self.external.as_ptr();
+        let mut data = BehaviourData {
+            error_message: message.as_mut_ptr(),
+            time_step,
+            tangent: entries.as_mut_ptr(),
+            time_step_factor: &raw mut factor,
+            speed_of_sound: &raw mut speed,
+            start: State {
+                gradients: before.as_ptr(),
+                forces: from.as_mut_ptr(),
+                mass_density,
+                material_properties,
+                internal_variables: own.as_ptr().cast_mut(),
+                stored_energy: &raw mut stored_from,
+                dissipated_energy: &raw mut dissipated_from,
+                external_variables,
+            },
+            end: State {
+                gradients: gradients.as_ptr(),
+                forces: forces.as_mut_ptr(),
+                mass_density,
+                material_properties,
+                internal_variables: new.as_mut_ptr(),
+                stored_energy: &raw mut stored,
+                dissipated_energy: &raw mut dissipated,
+                external_variables,
+            },
+        };
+        // SAFETY: every pointer is to as many numbers as the library has said that it has (`load`), alive until after the call;
+        // the library reads the start and writes the end of the step, as its interface says.
+        let code = unsafe { (self.integrate)(&raw mut data) };
+        if code != 1 {
+            return Err(UpdateFailure::Law(refusal(code, &message)));
+        }
+        let tangent: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| entries[i * N + j]));
+        let work: f64 = (0..N).map(|i| 0.5 * (rest[N + i] + forces[i]) * (gradients[i] - before[i])).sum();
+        if !self.energies {
+            // Nothing is known of what is dissipated: all work counts as stored.
+            (stored, dissipated) = (rest[2 * N] + work, 0.0);
+        }
+        let lost = dissipated - rest[2 * N + 1];
+        let inelastic = new[..self.internal] != old[..self.internal];
+        for i in 0..N {
+            (new[self.internal + i], new[self.internal + N + i]) = (gradients[i], forces[i]);
+        }
+        (new[self.internal + 2 * N], new[self.internal + 2 * N + 1]) = (stored, dissipated);
+        if !new.iter().chain(tangent.as_flattened()).all(|x| x.is_finite()) {
+            return Err(UpdateFailure::Law("the external behaviour gives a number that is not finite"));
+        }
+        let branch = if inelastic { INELASTIC } else { UpdateBranch::ELASTIC };
+        Ok(Step { forces, tangent, branch, stored, dissipated: lost })
+    }
+}
+
+/// Why a step was refused.
+fn refusal(code: i32, said: &[c_char; MESSAGE]) -> &'static str {
+    let mut own = *said;
+    own[MESSAGE - 1] = 0;
+    // SAFETY: the last character is zero, so the text ends within the buffer.
+    let said = unsafe { CStr::from_ptr(own.as_ptr()) }.to_string_lossy().into_owned();
+    match (code, said.is_empty()) {
+        (0, true) => "the external behaviour calls its result unreliable",
+        (_, true) => "the external behaviour could not integrate the step",
+        (0, false) => message(&format!("the external behaviour calls its result unreliable: {said}")),
+        (_, false) => message(&format!("the external behaviour could not integrate the step: {said}")),
+    }
+}
+
+fn missing(symbol: &str) -> Wrong {
+    vec![(
+        "library".into(),
+        format!("the library does not say its {symbol}: it is no library of MFront's generic interface"),
+    )]
+}
+
+/// Whether the behaviour says its energies; an error where it is of another kind.
+fn check_family(symbols: &Symbols, request: &Request, family: &Family) -> Result<bool, Wrong> {
+    let name = request.behaviour;
+    if symbols.text("mfront_ept").is_none() || symbols.number("mfront_mkt") != Some(1) {
+        return wrong("behaviour", format!("the library has no behaviour called {name}"));
+    }
+    match symbols.text("mfront_interface").as_deref() {
+        Some("Generic") => {}
+        other => {
+            let found = other.unwrap_or("an unknown one");
+            return wrong("behaviour", format!("{name} is compiled for the interface {found}, not for Generic"));
+        }
+    }
+    let version = symbols.number("api_version").unwrap_or(0);
+    if version != API_VERSION {
+        return wrong(
+            "behaviour",
+            format!(
+                "{name} has version {version} of the generic interface; version {API_VERSION} is read (TFEL 4 and later)"
+            ),
+        );
+    }
+    if let Some(units) = symbols.text("unit_system").filter(|units| !units.is_empty() && units != "SI") {
+        return wrong("behaviour", format!("{name} counts in the units {units}, not in SI"));
+    }
+    let kind = [symbols.number("BehaviourType"), symbols.number("BehaviourKinematic")];
+    if kind != family.kind.map(Some) {
+        return wrong("behaviour", format!("{name} is no {}", family.words));
+    }
+    let hypotheses = symbols.names("ModellingHypotheses").ok_or_else(|| missing("ModellingHypotheses"))?;
+    if !hypotheses.iter().any(|own| own == family.hypothesis) {
+        return wrong(
+            "behaviour",
+            format!("{name} is not compiled for {}, only for {}", family.hypothesis, hypotheses.join(", ")),
+        );
+    }
+    if symbols.number("SymmetryType").unwrap_or(0) != 0 || symbols.number("ElasticSymmetryType").unwrap_or(0) != 0 {
+        return wrong("behaviour", format!("{name} is orthotropic, which is not read"));
+    }
+    if symbols.number("requiresThermalExpansionCoefficientTensor") == Some(1) {
+        return wrong("behaviour", format!("{name} expands with temperature, which is not read"));
+    }
+    for (list, expected) in ["Gradients", "ThermodynamicForces"].iter().zip(family.names) {
+        if symbols.names(list).is_none_or(|own| own != [expected]) {
+            return wrong("behaviour", format!("{name} has other {list} than {expected}"));
+        }
+    }
+    let says = |symbol| symbols.number(symbol) == Some(1);
+    Ok(says("ComputesInternalEnergy") && says("ComputesDissipatedEnergy"))
+}

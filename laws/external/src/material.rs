@@ -1,0 +1,145 @@
+//! `external` of materials: a behaviour of small strains in space. The library orders tensors xx, yy, zz, xy, xz, yz, with √2 on
+//! what is off the diagonal.
+
+use crate::behaviour::{Behaviour, Family, Request};
+use crate::joint::{BEHAVIOUR, LIBRARY, PROPERTIES, TEMPERATURE, VARIABLES, room};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc;
+use voussoir_core::law::{BulkMaterial, Elasticity, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt};
+use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
+
+/// A behaviour of small strains of a shared library.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExternalMaterial {
+    /// Path of the library.
+    pub library: String,
+    /// Name of the behaviour.
+    pub behaviour: String,
+    /// Material properties by their names in the library.
+    #[serde(default)]
+    pub properties: BTreeMap<String, f64>,
+    /// Temperature \[K\].
+    #[serde(default = "room")]
+    pub temperature: f64,
+    /// External state variables by their names in the library, without the temperature.
+    #[serde(default)]
+    pub variables: BTreeMap<String, f64>,
+    /// ρ \[kg/m³\].
+    pub density: f64,
+}
+
+const FAMILY: Family = Family {
+    hypothesis: "Tridimensional",
+    kind: [1, 1],
+    words: "behaviour of small strains",
+    names: ["Strain", "Stress"],
+    sizes: [1, 6, 3, 9],
+};
+
+/// Place in the library's order of each of our components, and what our engineering strains are multiplied by to be the
+/// library's; its stresses are multiplied by the same to be ours.
+const PLACES: [(usize, f64); 6] =
+    [(0, 1.0), (1, 1.0), (2, 1.0), (3, FRAC_1_SQRT_2), (5, FRAC_1_SQRT_2), (4, FRAC_1_SQRT_2)];
+
+fn ours(tangent: &[[f64; 6]; 6]) -> [Voigt; 6] {
+    PLACES.map(|(row, by)| PLACES.map(|(column, along)| by * along * tangent[row][column]))
+}
+
+impl ExternalMaterial {
+    fn load(&self) -> Result<Behaviour, Vec<(String, String)>> {
+        let request = Request {
+            library: &self.library,
+            behaviour: &self.behaviour,
+            properties: &self.properties,
+            variables: &self.variables,
+            temperature: self.temperature,
+            density: self.density,
+        };
+        Behaviour::load::<6>(&request, &FAMILY)
+    }
+}
+
+#[typetag::serde(name = "external")]
+impl BulkMaterial for ExternalMaterial {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn elasticity(&self) -> Option<Elasticity> {
+        let stiffness = ours(&self.load().ok()?.at_rest::<6>().ok()?);
+        let modulus = stiffness[0][0];
+        Some(Elasticity { modulus, relative: stiffness.map(|row| row.map(|entry| entry / modulus)) })
+    }
+
+    fn inelastic(&self) -> Option<Arc<dyn StressUpdate>> {
+        Some(Arc::new(ExternalUpdate(self.load().ok()?)))
+    }
+}
+
+#[derive(Debug)]
+struct ExternalUpdate(Behaviour);
+
+impl StressUpdate for ExternalUpdate {
+    fn state_size(&self) -> usize {
+        self.0.names.len()
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        self.0.names
+    }
+
+    fn update_point(
+        &self,
+        strain: &Voigt,
+        context: &UpdateContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<StressPoint, UpdateFailure> {
+        let mut theirs = [0.0; 6];
+        for ((place, by), own) in PLACES.iter().zip(strain) {
+            theirs[*place] = by * own;
+        }
+        let step = self.0.step(theirs, context.time_step, old, new)?;
+        Ok(StressPoint {
+            stress: PLACES.map(|(place, by)| by * step.forces[place]),
+            tangent: ours(&step.tangent),
+            branch: step.branch,
+            stored: step.stored,
+            dissipated: step.dissipated,
+        })
+    }
+}
+
+/// Why there is no behaviour, for cards.
+fn complaints(law: &ExternalMaterial) -> Vec<(String, String)> {
+    law.load().err().unwrap_or_default()
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::BulkMaterial,
+        tag: "external",
+        summary: "a behaviour of small strains of a shared library, by MFront's generic interface",
+        parameters: &[
+            LIBRARY,
+            BEHAVIOUR,
+            PROPERTIES,
+            TEMPERATURE,
+            VARIABLES,
+            Parameter::number("density", Quantity::Density, Range::NON_NEGATIVE, "mass per volume"),
+        ],
+        provides: &[Capability::STRESS_UPDATE],
+        sources: &["Helfer et al. 2020, J. Open Source Softw. 5(48) (the generic interface)"],
+        file: file!(),
+        page: include_str!("external.md"),
+        check: |value| check_as::<ExternalMaterial>(value, complaints),
+        ..Card::BLANK
+    }
+}

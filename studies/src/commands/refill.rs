@@ -1,0 +1,71 @@
+//! From results.json back to a journal, so that `--resume` of a finished run finds its cases finished.
+
+use super::by_case::no_access;
+use super::folder::{JOURNAL, ResultFolder};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Write};
+
+/// Writes the cases of results.json as lines of a journal, where there is no journal yet. Read as it is written: a case stands
+/// between two lines of four blanks and a brace. Of a file that somebody has laid out otherwise nothing is taken.
+pub fn refill(folder: &ResultFolder) -> Result<(), u8> {
+    let (results, journal) = (folder.path().join("results.json"), folder.path().join(JOURNAL));
+    if journal.exists() || !results.exists() {
+        return Ok(());
+    }
+    let file = File::open(&results).map_err(|error| no_access(&results, error))?;
+    let mut aside = folder.aside(JOURNAL)?;
+    let copied = lines_of_cases(&mut BufReader::with_capacity(1 << 16, file), &mut aside);
+    aside.done(copied)
+}
+
+fn lines_of_cases(from: &mut dyn BufRead, to: &mut dyn Write) -> io::Result<()> {
+    let (mut line, mut case) = (String::new(), String::new());
+    let mut within = false;
+    while from.read_line(&mut line)? > 0 {
+        match line.trim_end() {
+            "    {" => {
+                within = true;
+                case.clear();
+                case.push('{');
+            }
+            "    }" | "    }," if within => {
+                within = false;
+                case.push('}');
+                // Texts hold no line ends, so that a case is one line without its indentation.
+                if serde_json::from_str::<serde::de::IgnoredAny>(&case).is_ok() {
+                    writeln!(to, "{case}")?;
+                }
+            }
+            own if within => case.push_str(own.trim_start()),
+            _ => {}
+        }
+        line.clear();
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// What is written in results.json comes back case by case, number by number; other layouts give nothing.
+    #[test]
+    fn cases_come_back_from_results() {
+        let cases = [
+            json!({ "id": 0, "load_factor": 0.1 + 0.2, "notes": ["a \" {", "    {\n    }"], "hinges": [{ "joint": 1 }, {}] }),
+            json!({ "id": 1, "load_factor": null, "notes": [] }),
+        ];
+        let whole = json!({ "study": "s", "only_cases": [{ "id": 7 }], "cases": cases });
+        let journal = |text: String| {
+            let mut out = Vec::new();
+            lines_of_cases(&mut text.as_bytes(), &mut out).expect("written");
+            String::from_utf8(out).expect("text")
+        };
+        let lines = journal(serde_json::to_string_pretty(&json!({ "study": "s", "cases": cases })).expect("JSON"));
+        let back: Vec<serde_json::Value> =
+            lines.lines().map(|line| serde_json::from_str(line).expect("a case")).collect();
+        assert_eq!(back, cases);
+        assert_eq!(journal(serde_json::to_string(&whole).expect("JSON")), "");
+    }
+}

@@ -1,0 +1,112 @@
+//! `voussoir serve`: a study in a browser on this machine, following its sliders.
+
+use super::codes::{FINE, NO_ACCESS, say};
+use super::files;
+use super::http::{Answer, Gate, received};
+use super::open::open;
+use crate::serve::{Asked, Session};
+use crate::solve::Observer;
+use serde_json::Value as Json;
+use std::collections::hash_map::RandomState;
+use std::hash::{BuildHasher, Hasher};
+use std::path::Path;
+use std::time::{Duration, Instant};
+use tiny_http::Server;
+
+/// Connections served side by side.
+const SIDE_BY_SIDE: usize = 4;
+/// A path that takes longer is not followed.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Cancels a path that takes too long for a slider.
+struct Patience(Instant);
+
+impl Observer for Patience {
+    fn cancelled(&self) -> bool {
+        self.0.elapsed() > PATIENCE
+    }
+}
+
+/// 128 bits that nobody else on the machine can guess: two outputs of hashes keyed by the operating system's random
+/// numbers.
+fn token() -> String {
+    let half = || RandomState::new().build_hasher().finish();
+    format!("{:016x}{:016x}", half(), half())
+}
+
+/// Serves a study until Ctrl-C.
+pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> u8 {
+    let session = match files::overrides(sets).and_then(|sets| files::session(path, &sets)) {
+        Ok(session) => session,
+        Err(code) => return code,
+    };
+    let (server, port) = match Server::http("127.0.0.1:0") {
+        Ok(server) => match server.server_addr().to_ip() {
+            Some(address) => (server, address.port()),
+            None => return refused("it has no address"),
+        },
+        Err(error) => return refused(error),
+    };
+    // Where signals cannot be caught the system's own way ends it.
+    drop(ctrlc::set_handler(|| {
+        eprintln!("\nvoussoir: serving has ended");
+        std::process::exit(i32::from(FINE));
+    }));
+    let token = token();
+    let place = format!("http://127.0.0.1:{port}/?token={token}");
+    say(format!("{}: serving at {place}", session.name()));
+    say("Ctrl-C ends it; only this machine can reach it, and only with the whole address");
+    if in_browser {
+        open(&place);
+    }
+    let gate = Gate { port, token };
+    std::thread::scope(|scope| {
+        for _ in 0..SIDE_BY_SIDE {
+            scope.spawn(|| {
+                while received(&server, &gate, &|method, path, query, body| route(&session, method, path, query, body))
+                {
+                }
+            });
+        }
+    });
+    FINE
+}
+
+fn refused(why: impl std::fmt::Display) -> u8 {
+    eprintln!("voussoir: cannot serve on 127.0.0.1: {why}");
+    NO_ACCESS
+}
+
+/// What a request that has passed the gate gets.
+fn route(session: &Session, method: &str, path: &str, query: &[(String, String)], body: &[u8]) -> Answer {
+    let patience = Patience(Instant::now());
+    let asked = || serde_json::from_slice::<Asked>(body).map_err(|error| Answer::text(400, error.to_string()));
+    match (method, path) {
+        ("GET", "/") => {
+            let case = query.iter().find(|(key, _)| key == "case").map_or(Ok(0), |(_, id)| id.parse());
+            match case.map_err(|_| "case must be a whole number".to_string()).and_then(|id| session.page(id)) {
+                Ok(page) => Answer::page(page),
+                Err(why) => Answer::text(404, why),
+            }
+        }
+        ("POST", "/answer") => {
+            asked().map_or_else(|wrong| wrong, |asked| Answer::json(&session.answer(&asked, &patience)))
+        }
+        ("POST", "/report") => asked().map_or_else(
+            |wrong| wrong,
+            |asked| session.report(&asked, &patience).map_or_else(|why| Answer::text(200, why), Answer::page),
+        ),
+        (_, "/" | "/answer" | "/report") => Answer::text(405, "use GET for the page, POST for answers".to_string()),
+        _ => Answer::text(404, "there is nothing here".to_string()),
+    }
+}
+
+impl Answer {
+    fn json(value: &Json) -> Self {
+        Answer { code: 200, kind: "application/json", body: value.to_string().into_bytes() }
+    }
+
+    fn page(html: String) -> Self {
+        Answer { code: 200, kind: "text/html; charset=utf-8", body: html.into_bytes() }
+    }
+}

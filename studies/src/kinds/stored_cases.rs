@@ -1,0 +1,103 @@
+//! results.json read from its beginning to its end, one case at a time: what is held does not grow with their number.
+
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value as Json};
+use std::fmt;
+use std::io::{BufReader, Read};
+
+/// Hands over each case, and returns what stands beside them; an error where it is no results file.
+pub(super) fn read_cases(file: impl Read, take: &mut dyn FnMut(Json)) -> Result<Map<String, Json>, String> {
+    let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
+    let whole = Whole(take).deserialize(&mut text).map_err(|error| error.to_string())?;
+    text.end().map_err(|error| error.to_string())?;
+    Ok(whole)
+}
+
+/// The whole file.
+struct Whole<'a>(&'a mut dyn FnMut(Json));
+
+impl<'de> DeserializeSeed<'de> for Whole<'_> {
+    type Value = Map<String, Json>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Whole<'_> {
+    type Value = Map<String, Json>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("results of a study")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let (mut beside, mut listed) = (Map::new(), false);
+        while let Some(key) = map.next_key::<String>()? {
+            if (key == "cases" && listed) || beside.contains_key(&key) {
+                return Err(A::Error::custom(format!("\"{key}\" stands there twice")));
+            }
+            if key == "cases" {
+                map.next_value_seed(Cases(&mut *self.0))?;
+                listed = true;
+            } else {
+                beside.insert(key, map.next_value()?);
+            }
+        }
+        if listed { Ok(beside) } else { Err(A::Error::custom("there is no list of cases")) }
+    }
+}
+
+/// The list of cases.
+struct Cases<'a>(&'a mut dyn FnMut(Json));
+
+impl<'de> DeserializeSeed<'de> for Cases<'_> {
+    type Value = IgnoredAny;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Cases<'_> {
+    type Value = IgnoredAny;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a list of cases")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<IgnoredAny, A::Error> {
+        while let Some(case) = list.next_element()? {
+            (self.0)(case);
+        }
+        Ok(IgnoredAny)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn cases_come_one_by_one_and_the_rest_stays() {
+        let read = |text: &str| {
+            let mut cases = Vec::new();
+            read_cases(text.as_bytes(), &mut |case| cases.push(case)).map(|beside| (Json::from(beside), cases))
+        };
+        let (beside, cases) = read(r#"{ "study": "a", "cases": [1, { "b": 0.1 }], "own": [] }"#).expect("results");
+        assert_eq!((beside, cases), (json!({ "study": "a", "own": [] }), vec![json!(1), json!({ "b": 0.1 })]));
+        for wrong in [
+            "",
+            "[]",
+            "{}",
+            r#"{ "cases": 1 }"#,
+            r#"{ "cases": [1, }"#,
+            r#"{ "cases": [], "cases": [] }"#,
+            r#"{ "study": "a", "cases": [], "study": "b" }"#,
+            r#"{ "cases": [] } x"#,
+        ] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! The answer to a case as data for the page's script.
+
+use super::handles::handles;
+use crate::config::document::Node;
+use crate::figures::format::{format_number, headline, hinge_list, kind_words};
+use crate::results::CaseResult;
+use crate::study::Case;
+use crate::writers::live::case_data;
+use serde_json::{Value as Json, json};
+use voussoir_core::limit::Status;
+use voussoir_core::model::{Assembly, PointForce, Stage};
+
+/// More forces of a stage than this are thinned.
+const ARROWS: usize = 40;
+
+/// Everything that the page shows of a result; `toml` is the study file of the case.
+pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String) -> Json {
+    let mechanism = result.mechanism.as_ref().map(|mechanism| {
+        let joints = hinge_list(mechanism);
+        let hinges =
+            if joints.is_empty() { String::new() } else { format!(", hinges at joints {}", joints.join(", ")) };
+        let unique = if mechanism.unique == Some(false) { ", not the only one" } else { "" };
+        format!("{}{hinges}{unique}", kind_words(mechanism.kind))
+    });
+    json!({
+        "drawing": case_data(&case.assembly, result),
+        "headline": headline(result, &case.stages),
+        "status": result.status,
+        "load_factor": result.load_factor,
+        "solver": result.solver,
+        "certified": result.certificate.passed && result.status != Status::Stalled,
+        "proof": proof(result),
+        "mechanism": mechanism,
+        "hinges": result.mechanism.iter().flat_map(|own| &own.hinges).map(|hinge| json!(hinge.point)).collect::<Json>(),
+        "arrows": arrows(&case.assembly, &case.stages),
+        "handles": handles(case, root),
+        "notes": result.notes,
+        "seconds": result.seconds,
+        "toml": toml,
+    })
+}
+
+/// What proves the answer, in one sentence.
+fn proof(result: &CaseResult) -> String {
+    let bounds = result.bounds.map(|[low, high]| {
+        format!(
+            "an admissible field carries λ = {}, a mechanism bounds it at {}",
+            format_number(low, 7),
+            format_number(high, 7)
+        )
+    });
+    let words = match (result.status, bounds) {
+        (Status::Stalled, _) => "not proven".into(),
+        (_, Some(bounds)) => bounds,
+        (Status::Unbounded, _) => "weightless struts carry the load alone".into(),
+        (Status::NoEquilibrium, _) => "a motion on which the loads do more work than is dissipated".into(),
+        _ => "equilibrium, strengths and contact hold at every state".to_string(),
+    };
+    let worst = result.certificate.residuals.values().fold(0.0_f64, |worst, residual| worst.max(residual.abs()));
+    let checked = if result.certificate.passed { "certificate passed" } else { "certificate failed" };
+    format!("{words}; {checked}, greatest residual {worst:.0e}")
+}
+
+/// Forces of all stages as [x, y, share of the greatest in x, in y, whether of the last stage].
+fn arrows(assembly: &Assembly, stages: &[Stage]) -> Json {
+    let size = assembly.size();
+    let mut out = Vec::new();
+    for (index, stage) in stages.iter().enumerate() {
+        let forces: Vec<&PointForce> = stage.forces.iter().filter(|force| force.force.norm() > 0.0).collect();
+        let greatest = forces.iter().map(|force| force.force.norm()).fold(0.0, f64::max);
+        for force in forces.iter().step_by(forces.len().div_ceil(ARROWS).max(1)) {
+            let share = force.force / greatest;
+            let tidy = |x: f64| if size > 0.0 { (x / size * 1e6).round() * size / 1e6 } else { x };
+            out.push(json!([tidy(force.point.x), tidy(force.point.y), share.x, share.y, index + 1 == stages.len()]));
+        }
+    }
+    out.into()
+}

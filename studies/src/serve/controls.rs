@@ -1,0 +1,186 @@
+//! Sliders for the numbers of a case: ranges from the schema, steps from the values.
+
+use crate::figures::format::{escape, format_short};
+use crate::figures::words::words_of_key;
+use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
+use serde_json::Value as Json;
+use std::fmt::Write;
+use voussoir_core::plugin::{Quantity, Range};
+
+/// Longer lists of numbers have no sliders.
+const LONGEST: usize = 12;
+/// Parts of a slider's way.
+const PARTS: f64 = 500.0;
+
+/// Headings with the table under them.
+const GROUPS: [(&str, &str); 6] = [
+    ("Geometry", "scene"),
+    ("Materials", "materials"),
+    ("Joints", "joints"),
+    ("Vehicles", "vehicles"),
+    ("Stages and loads", "stages"),
+    ("Partial factors", "factors"),
+];
+
+/// A slider's ends and its step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Track {
+    pub from: f64,
+    pub to: f64,
+    pub step: f64,
+}
+
+/// 1, 2 or 5 times a power of ten, at most `x > 0`.
+fn tidy_below(x: f64) -> f64 {
+    let power = 10f64.powf(x.log10().floor());
+    let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= x * (1.0 + 1e-12)).unwrap_or(1.0);
+    // Written and read, so that 1e-3 is what it says.
+    format!("{:e}", digit * power).parse().unwrap_or(power)
+}
+
+/// How far a number goes where neither its value nor its range says so, in the unit of its quantity.
+fn usual(quantity: Quantity) -> f64 {
+    match quantity {
+        Quantity::Ratio | Quantity::Length => 1.0,
+        Quantity::Degrees => 45.0,
+        Quantity::Radians => 0.1,
+        Quantity::Force => 1e4,
+        Quantity::Stress => 1e6,
+        Quantity::Stiffness => 1e11,
+        Quantity::Density => 2500.0,
+        Quantity::Acceleration => 10.0,
+        Quantity::EnergyPerArea => 100.0,
+    }
+}
+
+/// The track of a slider: the range of the schema where it is finite, else up to three times the value.
+pub(super) fn track(kind: NumberKind, value: f64) -> Track {
+    match kind {
+        NumberKind::Whole(min, max) => {
+            let most = (3.0 * value.max(3.0)).min(max as f64).max(value);
+            Track { from: (min as f64).max(value.min(0.0)), to: most, step: 1.0 }
+        }
+        NumberKind::Real(quantity, range) => real_track(quantity, range, value),
+    }
+}
+
+fn real_track(quantity: Quantity, range: Range, value: f64) -> Track {
+    let far = if value == 0.0 { usual(quantity) } else { 3.0 * value.abs() };
+    let from = if range.min.is_finite() {
+        range.min
+    } else if value > 0.0 {
+        0.0
+    } else {
+        -far
+    };
+    // A range that ends a little beyond the value is shown whole.
+    let to = if range.max.is_finite() && range.max - from <= 20.0 * far {
+        range.max
+    } else if value < 0.0 && range.min.is_infinite() {
+        0.0
+    } else {
+        far.max(from + f64::MIN_POSITIVE)
+    };
+    let step = tidy_below((to - from) / PARTS);
+    let open = |end: f64, is_open: bool, inwards: f64| if is_open && end.is_finite() { end + inwards } else { end };
+    let from = if from == range.min { open(from, range.min_open, step) } else { from };
+    let to = if to == range.max { open(to, range.max_open, -step) } else { to };
+    Track { from: from.min(value), to: to.max(value), step }
+}
+
+/// What stands before a slider: names that a user has given, and the entry of a list.
+fn before(key: &NumericKey) -> String {
+    let names: Vec<&str> = key.key.split('.').collect();
+    match names.as_slice() {
+        ["materials" | "joints" | "vehicles", name, ..] => format!("{}: ", name.trim_matches('"')),
+        _ => String::new(),
+    }
+}
+
+fn words(key: &NumericKey, resolved: &Json) -> String {
+    let names: Vec<&str> = key.key.split('.').collect();
+    let mut words = format!("{}{}", before(key), words_of_key(&key.key));
+    if let ["stages", stage, rest @ ..] = names.as_slice() {
+        let entry = stage.parse::<usize>().ok().map(|index| &resolved["stages"][index]);
+        let name = entry.and_then(|entry| entry["name"].as_str()).unwrap_or(stage);
+        words = format!("{name}: {words}");
+        if let ["loads", load, ..] = rest
+            && entry.and_then(|entry| entry["loads"].as_array()).is_some_and(|loads| loads.len() > 1)
+        {
+            let number = load.parse::<usize>().map_or(0, |index| index + 1);
+            words += &format!(", load {number}");
+        }
+    }
+    if let Some(index) = names.last().and_then(|name| name.parse::<usize>().ok()) {
+        let vector = names.iter().rev().nth(1).is_some_and(|name| {
+            ["force", "point", "displacement", "acceleration", "gravity"].contains(name) && index < 2
+        });
+        words += &if vector { [" in x", " in y"][index].into() } else { format!(", number {}", index + 1) };
+    }
+    words
+}
+
+fn control(key: &NumericKey, resolved: &Json) -> String {
+    let unit = if key.unit().is_empty() { String::new() } else { format!(" [{}]", key.unit()) };
+    let label = format!("{}{unit}", words(key, resolved));
+    let (label, name) = (escape(&label), escape(&key.key));
+    let field = |value: &str| {
+        format!(
+            "<input type=\"text\" inputmode=\"decimal\" data-key=\"{name}\" value=\"{value}\" placeholder=\"not given\" \
+             aria-label=\"{label}, exactly\" title=\"{name}: {}\">",
+            escape(key.doc)
+        )
+    };
+    let Some(value) = key.value else {
+        return format!("<div class=\"control\"><span>{label}</span>{}</div>\n", field(""));
+    };
+    let Track { from, to, step } = track(key.kind, value);
+    format!(
+        "<div class=\"control\"><span>{label}</span><input type=\"range\" data-key=\"{name}\" min=\"{from}\" \
+         max=\"{to}\" step=\"any\" data-step=\"{step}\" value=\"{value}\" aria-label=\"{label}\">{}</div>\n",
+        field(&format_short(value, 12))
+    )
+}
+
+/// The controls of a case as HTML: sliders for its numbers, fields for those that are optional and not given.
+pub(super) fn controls(resolved: &Json) -> String {
+    let keys = numeric_keys(study_keys(), resolved, LONGEST);
+    let mut text = String::new();
+    for (heading, table) in GROUPS {
+        let own = |key: &&NumericKey| key.key.split('.').next() == Some(table);
+        let (given, absent): (Vec<&NumericKey>, Vec<&NumericKey>) =
+            keys.iter().filter(own).partition(|key| key.value.is_some());
+        if given.is_empty() && absent.is_empty() {
+            continue;
+        }
+        let _ = writeln!(text, "<fieldset><legend>{heading}</legend>");
+        given.iter().for_each(|key| text += &control(key, resolved));
+        if !absent.is_empty() {
+            text += "<details><summary>not given</summary>\n";
+            absent.iter().for_each(|key| text += &control(key, resolved));
+            text += "</details>\n";
+        }
+        text += "</fieldset>\n";
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tracks_stay_within_the_range_and_reach_the_value() {
+        let real = |range, value| track(NumberKind::Real(Quantity::Ratio, range), value);
+        assert_eq!(real(Range::POSITIVE, 2.0), Track { from: 0.01, to: 6.0, step: 0.01 });
+        assert_eq!(real(Range::ANY, -1000.0), Track { from: -3000.0, to: 0.0, step: 5.0 });
+        assert_eq!(real(Range::new(0.0, false, 0.5, true), 0.2), Track { from: 0.0, to: 0.499, step: 0.001 });
+        assert_eq!(track(NumberKind::Whole(1, 100_000), 15.0), Track { from: 1.0, to: 45.0, step: 1.0 });
+        for (range, value) in
+            [(Range::ANY, 0.0), (Range::NON_NEGATIVE, 0.0), (Range::POSITIVE, 1e-9), (Range::ANY, 7e12)]
+        {
+            let Track { from, to, step } = real(range, value);
+            assert!(from <= value && value <= to && step > 0.0, "{from} {value} {to} {step}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Loads that can be dragged: where each stands, and which keys follow.
+
+use crate::config::document::Node;
+use crate::config::dotted_key::join;
+use crate::study::Case;
+use serde_json::{Value as Json, json};
+use voussoir_core::model::Assembly;
+use voussoir_core::model::geometry::Vec2;
+
+/// Where span fractions begin and how long the span is \[m\].
+fn span(assembly: &Assembly) -> Option<(f64, f64)> {
+    match (&assembly.bridge, &assembly.arch) {
+        (Some(bridge), _) => Some((bridge.springings[0], bridge.springings[1] - bridge.springings[0])),
+        (None, Some(arch)) => Some((assembly.joints.first()?.ends[0].x, arch.span)),
+        (None, None) => None,
+    }
+}
+
+/// The loads of all stages that have a place, each with its place \[m\], the keys that move it, and how much of a key
+/// is a metre. `vertical` is the key of its height where it has one.
+pub(super) fn handles(case: &Case, root: &Node) -> Json {
+    let mut out = Vec::new();
+    for (stage, node) in
+        root.table().and_then(|table| table.get("stages")?.array()).unwrap_or_default().iter().enumerate()
+    {
+        let loads = node.table().and_then(|table| table.get("loads")?.array()).unwrap_or_default();
+        for index in 0..loads.len() {
+            let key = join(&join(&join("stages", &stage.to_string()), "loads"), &index.to_string());
+            let load = &case.resolved["stages"][stage]["loads"][index];
+            out.extend(handle(case, stage, &key, load));
+        }
+    }
+    out.into()
+}
+
+fn handle(case: &Case, stage: usize, key: &str, load: &Json) -> Option<Json> {
+    let span = span(&case.assembly);
+    let at_fraction = |fraction: f64| span.map(|(left, long)| left + fraction * long);
+    let number = |name: &str| load[name].as_f64();
+    let (x, keys, per_metre, vertical) = if let Some(fraction) = number("span_fraction") {
+        (at_fraction(fraction)?, vec!["span_fraction"], 1.0 / span?.1, None)
+    } else {
+        match load["kind"].as_str()? {
+            "strip" => {
+                let (from, to) = (number("from")?, number("to")?);
+                (at_fraction((from + to) / 2.0)?, vec!["from", "to"], 1.0 / span?.1, None)
+            }
+            "axles" => (at_fraction(number("at")?)?, vec!["at"], 1.0 / span?.1, None),
+            "vehicle" => (number("at")?, vec!["at"], 1.0, None),
+            "point" => (load["point"][0].as_f64()?, vec!["point.0"], 1.0, Some("point.1")),
+            _ => return None,
+        }
+    };
+    // At the height of the nearest force of its stage.
+    let forces = case.stages.get(stage)?.forces.iter();
+    let far = |point: &Vec2| (point.x - x).abs();
+    let y = forces.map(|force| force.point).min_by(|a, b| far(a).total_cmp(&far(b))).map_or(0.0, |point| point.y);
+    let whole: Vec<String> = keys.iter().map(|name| format!("{key}.{name}")).collect();
+    let values: Option<Vec<f64>> =
+        keys.iter().map(|name| load.pointer(&format!("/{}", name.replace('.', "/"))).and_then(Json::as_f64)).collect();
+    Some(json!({
+        "x": x, "y": y, "keys": whole, "values": values?, "per_metre": per_metre,
+        "vertical": vertical.map(|name| format!("{key}.{name}")),
+    }))
+}

@@ -1,0 +1,149 @@
+//! What is served: one case of a study, with the numbers that the page has changed.
+
+use super::{answer, page};
+use crate::config::diagnostic::LocatedDiagnostic;
+use crate::config::document::{Node, Value, from_json};
+use crate::config::origin::Origin;
+use crate::config::overlay::set;
+use crate::solve::{Observer, solve_unless_cancelled};
+use crate::study::{Study, StudyFile, StudySource, Sweep, value_of};
+use crate::writers::StudyOutput;
+use crate::writers::report::report_html;
+use serde::Deserialize;
+use serde_json::{Value as Json, json};
+
+/// A study with a scene whose cases can be looked at.
+#[derive(Debug)]
+pub struct Session {
+    sweep: Sweep,
+}
+
+/// What a page asks for.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// Id of the case.
+    pub case: usize,
+    /// Dotted keys with the values they take: numbers in SI units, or texts such as `"25 MPa"`.
+    #[serde(default)]
+    pub set: Vec<(String, Json)>,
+}
+
+/// At most so many cases of a drawn report.
+const DRAWN: usize = 40;
+/// Labels of more cases are not listed.
+const LISTED: usize = 500;
+
+impl Session {
+    /// Reads a study; every mistake in its first case and its axes.
+    pub fn read(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
+        Ok(Session { sweep: StudyFile::read(source)?.sweep_unchecked()? })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.sweep.name
+    }
+
+    /// What is done with its cases; here each is looked at by itself.
+    pub fn kind(&self) -> &str {
+        &self.sweep.kind
+    }
+
+    /// Number of cases.
+    pub fn count(&self) -> usize {
+        self.sweep.count()
+    }
+
+    /// Variant, scene and swept values of each case; `None` where they are too many to choose from.
+    pub fn labels(&self) -> Option<Vec<String>> {
+        let label = |id: usize| {
+            let case = self.sweep.expansion.case(id).ok()?;
+            let swept = case.parameters.iter().map(|(key, value)| {
+                format!("{} = {}", key.rsplit('.').next().unwrap_or(key), crate::figures::format::format_value(value))
+            });
+            let words: Vec<String> = case.variant.into_iter().chain(case.scene).chain(swept).collect();
+            Some(if words.is_empty() { format!("case {id}") } else { words.join(", ") })
+        };
+        (self.count() <= LISTED).then(|| (0..self.count()).map(|id| label(id).unwrap_or_default()).collect())
+    }
+
+    /// The study file of what is asked for, with one case.
+    fn root(&self, asked: &Asked) -> Result<Node, Vec<LocatedDiagnostic>> {
+        let mut root = self.sweep.expansion.case(asked.case)?.root;
+        let run = Node { value: Value::String("run".into()), origin: root.place("kind") };
+        set(&mut root, "kind", run, &Origin::Value).map_err(|wrong| vec![*wrong])?;
+        let mut wrong = Vec::new();
+        for (key, value) in &asked.set {
+            let origin = Origin::Set(key.as_str().into());
+            let node = match value {
+                Json::String(text) => value_of(text, &origin),
+                other => from_json(other)?,
+            };
+            wrong.extend(set(&mut root, key, placed(node, &origin), &origin).err().map(|wrong| *wrong));
+        }
+        if wrong.is_empty() { Ok(root) } else { Err(wrong) }
+    }
+
+    fn study(&self, asked: &Asked) -> Result<(Node, Study), Vec<LocatedDiagnostic>> {
+        if asked.case >= self.count() {
+            let message = format!("the study \"{}\" has cases 0 to {}", self.name(), self.count().saturating_sub(1));
+            return Err(vec![LocatedDiagnostic::new(&Origin::Value, "case", message)]);
+        }
+        let root = self.root(asked)?;
+        let source = StudySource { root: root.clone(), sets: Vec::new(), diagnostics: Vec::new() };
+        Ok((root, Study::from_source(source)?))
+    }
+
+    /// The answer as the page's script draws it: `mistakes` with the text of the diagnostics where the input is
+    /// wrong, `slow` where the observer has cancelled.
+    pub fn answer(&self, asked: &Asked, observer: &dyn Observer) -> Json {
+        let (root, study) = match self.study(asked) {
+            Ok(study) => study,
+            Err(wrong) => return json!({ "mistakes": lines(&wrong) }),
+        };
+        let Some(case) = study.cases.first() else { return json!({ "mistakes": "the study has no case" }) };
+        let toml = toml::to_string(&root.to_toml()).unwrap_or_default();
+        match solve_unless_cancelled(case, observer) {
+            Some(result) => answer::answer(case, &result, &root, toml),
+            None => json!({
+                "slow": "this takes too long to follow a slider: copy the study file and give it to voussoir run",
+                "toml": toml,
+            }),
+        }
+    }
+
+    /// The report of what is asked for, as `run` writes it; an error is text for the reader.
+    pub fn report(&self, asked: &Asked, observer: &dyn Observer) -> Result<String, String> {
+        let (_, study) = self.study(asked).map_err(|wrong| lines(&wrong))?;
+        let result = study.cases.first().and_then(|case| solve_unless_cancelled(case, observer));
+        let result = result.ok_or("this takes too long here: copy the study file and give it to voussoir run")?;
+        let results = study.results(env!("CARGO_PKG_VERSION"), vec![result]);
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| study.case_of(&case.label)).collect();
+        Ok(report_html(&StudyOutput::new(&study, &results, &cases), DRAWN))
+    }
+
+    /// The page of a case, with sliders at the values of the study file.
+    pub fn page(&self, case: usize) -> Result<String, String> {
+        let (_, study) = self.study(&Asked { case, set: Vec::new() }).map_err(|wrong| lines(&wrong))?;
+        let first = study.cases.first().ok_or("the study has no case")?;
+        Ok(page::page(&page::Shown {
+            name: self.name(),
+            kind: self.kind(),
+            case,
+            count: self.count(),
+            labels: self.labels(),
+            resolved: &first.resolved,
+        }))
+    }
+}
+
+/// A value that stands where it was set.
+fn placed(mut node: Node, origin: &Origin) -> Node {
+    node.set_origin(origin);
+    node
+}
+
+fn lines(wrong: &[LocatedDiagnostic]) -> String {
+    wrong.iter().map(LocatedDiagnostic::to_string).collect::<Vec<_>>().join("\n")
+}

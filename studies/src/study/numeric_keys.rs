@@ -1,0 +1,171 @@
+//! The numbers of a checked case by dotted key, with what the schema says of each: for sliders, and for derivatives
+//! of a load factor.
+
+use crate::config::common_keys::common_parameters;
+use crate::config::dotted_key::join;
+use serde_json::Value as Json;
+use voussoir_core::plugin::{Parameter, PluginKind, Quantity, Range, Shape, candidate};
+
+/// Tables of a study file whose numbers say what stands there and what it carries; not how it is solved or written.
+const TABLES: [&str; 6] = ["scene", "materials", "joints", "vehicles", "stages", "factors"];
+/// Tables below these that steer solvers.
+const STEERING: [&str; 5] = ["continuation", "stop", "solver", "factor_min", "factor_max"];
+
+/// What values a number may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NumberKind {
+    /// Any number of a range, in the quantity's unit.
+    Real(Quantity, Range),
+    /// A whole number between two.
+    Whole(i64, i64),
+}
+
+/// A number of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NumericKey {
+    /// Its dotted key; entries of lists by index.
+    pub key: String,
+    /// What it may be.
+    pub kind: NumberKind,
+    /// What it is, in SI units; `None` for a key that is optional and not given.
+    pub value: Option<f64>,
+    /// What the schema says of it.
+    pub doc: &'static str,
+}
+
+impl NumericKey {
+    /// The unit, empty for a ratio or a whole number.
+    pub fn unit(&self) -> &'static str {
+        match self.kind {
+            NumberKind::Real(quantity, _) => quantity.unit(),
+            NumberKind::Whole(..) => "",
+        }
+    }
+}
+
+/// The numbers of a checked case ([`super::Case::resolved`]) in the order of the schema. Optional numbers that are
+/// not given are listed too where they stand in a table by themselves. Lists of more than `longest` numbers or
+/// tables are left out: they are data, not parameters. `keys` are those of study files ([`super::study_keys`]).
+pub fn numeric_keys(keys: &[Parameter], resolved: &Json, longest: usize) -> Vec<NumericKey> {
+    let mut walk = Walk { longest, found: Vec::new() };
+    for parameter in keys.iter().filter(|parameter| TABLES.contains(&parameter.name)) {
+        if let Some(value) = resolved.get(parameter.name) {
+            walk.shape(parameter.name, &parameter.shape, value, parameter.doc);
+        }
+    }
+    walk.found
+}
+
+struct Walk {
+    longest: usize,
+    found: Vec<NumericKey>,
+}
+
+impl Walk {
+    fn number(&mut self, key: &str, kind: NumberKind, value: &Json, doc: &'static str) {
+        self.found.push(NumericKey { key: key.into(), kind, value: value.as_f64(), doc });
+    }
+
+    fn shape(&mut self, key: &str, shape: &Shape, value: &Json, doc: &'static str) {
+        match (shape, value) {
+            (Shape::Number(quantity, range), Json::Number(_)) => {
+                self.number(key, NumberKind::Real(*quantity, *range), value, doc);
+            }
+            (Shape::Integer { min, max }, Json::Number(_)) => {
+                self.number(key, NumberKind::Whole(*min, *max), value, doc);
+            }
+            (Shape::Either(shapes), _) => {
+                if let Some(fitting) = shapes.iter().find(|shape| outer_form(shape, value)) {
+                    self.shape(key, fitting, value, doc);
+                }
+            }
+            (Shape::List { of, .. }, Json::Array(items)) if items.len() <= self.longest => {
+                for (index, item) in items.iter().enumerate() {
+                    self.shape(&join(key, &index.to_string()), of, item, doc);
+                }
+            }
+            (Shape::Tuple(shapes), Json::Array(items)) => {
+                for (index, (of, item)) in shapes.iter().zip(items).enumerate() {
+                    self.shape(&join(key, &index.to_string()), of, item, doc);
+                }
+            }
+            (Shape::Map(of), Json::Object(map)) => {
+                for (name, item) in map {
+                    self.shape(&join(key, name), of, item, doc);
+                }
+            }
+            (Shape::Table(parameters), Json::Object(_)) => self.table(key, parameters, value),
+            (Shape::Tagged { key: tag, variants }, Json::Object(map)) => {
+                let word = map.get(*tag).and_then(Json::as_str);
+                if let Some(variant) = variants.iter().find(|variant| Some(variant.tag) == word) {
+                    self.table(key, variant.parameters, value);
+                }
+            }
+            (Shape::Plugin(kind), Json::Object(_)) => self.plugin(key, *kind, value),
+            _ => {}
+        }
+    }
+
+    fn plugin(&mut self, key: &str, kind: PluginKind, value: &Json) {
+        let tag = value[kind.tag_key()].as_str().unwrap_or_default();
+        let Some(card) = candidate(kind, tag) else { return };
+        self.table(key, card.parameters, value);
+        let common = common_parameters(kind).iter();
+        let common: Vec<Parameter> =
+            common.filter(|common| card.parameters.iter().all(|own| own.name != common.name)).copied().collect();
+        self.table(key, &common, value);
+    }
+
+    fn table(&mut self, key: &str, parameters: &[Parameter], value: &Json) {
+        for parameter in parameters.iter().filter(|parameter| !STEERING.contains(&parameter.name)) {
+            let key = join(key, parameter.name);
+            match (value.get(parameter.name), plain_number(&parameter.shape)) {
+                (Some(given), _) if !given.is_null() => self.shape(&key, &parameter.shape, given, parameter.doc),
+                (_, Some(kind)) => self.number(&key, kind, &Json::Null, parameter.doc),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// The number that a key may hold by itself; a whole number that is not given counts something else.
+fn plain_number(shape: &Shape) -> Option<NumberKind> {
+    match shape {
+        Shape::Number(quantity, range) => Some(NumberKind::Real(*quantity, *range)),
+        Shape::Either(shapes) => shapes.iter().find_map(plain_number),
+        _ => None,
+    }
+}
+
+/// Whether a checked value has the outer form of a shape.
+fn outer_form(shape: &Shape, value: &Json) -> bool {
+    match shape {
+        Shape::Number(..) | Shape::Integer { .. } => value.is_number(),
+        Shape::List { .. } | Shape::Tuple(_) => value.is_array(),
+        Shape::Table(_) | Shape::Map(_) | Shape::Tagged { .. } | Shape::Plugin(_) => value.is_object(),
+        Shape::Either(shapes) => shapes.iter().any(|shape| outer_form(shape, value)),
+        Shape::Boolean => value.is_boolean(),
+        Shape::Text | Shape::Choice(_) | Shape::Reference(_) => value.is_string(),
+        Shape::Free => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{load, study_keys};
+
+    #[test]
+    fn every_number_of_an_arch_is_found_with_its_range_and_unit() {
+        let text = include_str!("../commands/new/arch.toml");
+        let study = load(text, "arch.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+        let keys = numeric_keys(study_keys(), &study.cases[0].resolved, 12);
+        let of = |key: &str| keys.iter().find(|own| own.key == key).unwrap_or_else(|| panic!("{key} in {keys:?}"));
+        assert_eq!((of("scene.profile.span").unit(), of("scene.profile.span").value.is_some()), ("m", true));
+        assert!(matches!(of("scene.voussoirs").kind, NumberKind::Whole(..)));
+        assert_eq!((of("scene.springing").unit(), of("scene.springing").value), ("deg", None));
+        assert_eq!(of("materials.stone.density").unit(), "kg/m3");
+        assert_eq!(of("stages.1.loads.0.force.1").unit(), "N");
+        assert!(keys.iter().all(|key| !key.key.contains("solver") && key.value.is_none_or(f64::is_finite)));
+    }
+}

@@ -1,0 +1,74 @@
+// How a case is drawn: its blocks, how they move, what presses. Used by every part of the page's script.
+const make = (name, attributes, parent) => {
+  const svg = ['svg', 'polygon', 'polyline', 'line', 'circle', 'g'].includes(name);
+  const element = svg ? document.createElementNS('http://www.w3.org/2000/svg', name) : document.createElement(name);
+  for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
+  if (parent) parent.append(element);
+  return element;
+};
+const short = x => x === 0 ? '0' : Math.abs(x) >= 1e7 || 1e-4 > Math.abs(x) ? x.toExponential(3) : String(+x.toPrecision(5));
+
+// Cases: blocks, how they move, and the states of a path.
+const store = document.getElementById('cases');
+const cases = new Map(store ? JSON.parse(store.textContent).map(own => [own.id, own]) : []);
+const placed = (own, body, [x, y, turn]) => {
+  const points = own.bodies[body], [cx, cy] = own.centres[body], c = Math.cos(turn), s = Math.sin(turn);
+  const out = [];
+  for (let i = 0; points.length > i; i += 2) {
+    const [dx, dy] = [points[i] - cx, points[i + 1] - cy];
+    out.push([cx + x + c * dx - s * dy, cy + y + s * dx + c * dy]);
+  }
+  return out;
+};
+const text = points => points.map(([x, y]) => x.toFixed(4) + ',' + (-y).toFixed(4)).join(' ');
+const frame = own => {
+  let box = [1e99, 1e99, -1e99, -1e99];
+  for (const points of own.bodies) for (let i = 0; points.length > i; i += 2) {
+    box = [Math.min(box[0], points[i]), Math.min(box[1], -points[i + 1]), Math.max(box[2], points[i]), Math.max(box[3], -points[i + 1])];
+  }
+  const margin = 0.08 * Math.max(box[2] - box[0], box[3] - box[1]);
+  return [box[0] - margin, box[1] - margin, box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin].map(x => x.toFixed(3)).join(' ');
+};
+// The picture of a case with each body displaced; `line` is a thrust line, `joints` what presses there.
+const draw = (svg, own, displaced, line, joints) => {
+  svg.replaceChildren();
+  svg.setAttribute('viewBox', frame(own));
+  own.bodies.forEach((points, body) => {
+    if (displaced && own.free[body]) make('polygon', { class: 'ghost', points: text(placed(own, body, [0, 0, 0])) }, svg);
+  });
+  own.bodies.forEach((points, body) => {
+    if (own.free[body]) make('polygon', { class: 'stone', points: text(placed(own, body, displaced ? displaced[body] : [0, 0, 0])) }, svg);
+  });
+  for (const piece of joints || []) make(piece.open ? 'polyline' : 'polygon', { class: piece.open ? 'open' : 'stress', points: text(piece.points) }, svg);
+  for (const piece of line || []) make('polyline', { class: 'thrust', points: text(piece) }, svg);
+};
+const pieces = line => {
+  const out = [[]];
+  for (const point of line || []) point ? out[out.length - 1].push(point) : out.push([]);
+  return out.filter(piece => piece.length > 1);
+};
+// Where a joint's points went with the block on its minus side.
+const follow = (own, joint, displaced, [x, y]) => {
+  const body = own.joints[joint][0], [cx, cy] = own.centres[body], [u, v, turn] = displaced[body];
+  const c = Math.cos(turn), s = Math.sin(turn);
+  return [cx + u + c * (x - cx) - s * (y - cy), cy + v + s * (x - cx) + c * (y - cy)];
+};
+// Diagrams of contact stress, and joints that are open at an end.
+const pressures = (own, state, moved) => {
+  const out = [];
+  let greatest = 1e-300;
+  for (const joint of state.stress) for (const [, pressure] of joint) greatest = Math.max(greatest, pressure);
+  state.stress.forEach((points, joint) => {
+    const [, , ax, ay, bx, by] = own.joints[joint];
+    const long = Math.hypot(bx - ax, by - ay), n = [(by - ay) / long, (ax - bx) / long];
+    const at = (share, off) => follow(own, joint, moved, [ax + share * (bx - ax) + off * n[0], ay + share * (by - ay) + off * n[1]]);
+    const pressed = points.filter(([, pressure]) => pressure > 1e-6 * greatest);
+    if (pressed.length) out.push({ points: [...points.map(([share]) => at(share, 0)), ...points.slice().reverse().map(([share, pressure]) => at(share, 0.5 * long * pressure / greatest))] });
+    const open = (from, to) => to - from > 0.05 && out.push({ open: true, points: [at(from, 0), at(to, 0)] });
+    if (pressed.length) {
+      open(0, Math.min(...pressed.map(p => p[0])) - 0.001);
+      open(Math.max(...pressed.map(p => p[0])) + 0.001, 1);
+    }
+  });
+  return out;
+};

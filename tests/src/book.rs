@@ -1,0 +1,295 @@
+//! The book: the pages of `docs/`, with those that nobody writes by hand. Plug-ins come from their cards, the keys of a study
+//! file from its schema, the table of verification from the tests themselves, so none of them can be out of date.
+
+use serde_json::{Map, Value as Json};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use voussoir::core::plugin::{Card, Need, Parameter, PluginKind, Shape, cards_of};
+use voussoir::kinds::json_schema::json_schema;
+
+/// Root of the tree.
+fn tree() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Chapters by part: file and title. Pages of `docs/` and made ones.
+const PARTS: [(&str, &[(&str, &str)]); 6] = [
+    (
+        "Using it",
+        &[
+            ("study_files.md", "Study files"),
+            ("keys.md", "Every key"),
+            ("verifying.md", "What a result is worth"),
+            ("reports.md", "Reports"),
+            ("glossary.md", "Glossary"),
+        ],
+    ),
+    (
+        "Mechanics",
+        &[
+            ("flow_rule.md", "Flow rules"),
+            ("elastic_paths.md", "Elastic paths"),
+            ("finite_displacements.md", "Finite displacements"),
+            ("crushing.md", "Crushing"),
+            ("softening.md", "Softening joints"),
+            ("bridges.md", "Bridges"),
+            ("point_driver.md", "One point"),
+        ],
+    ),
+    (
+        "Plug-ins",
+        &[
+            ("laws.md", "Laws of joints"),
+            ("materials.md", "Materials"),
+            ("solvers.md", "Solvers"),
+            ("scenes.md", "Scenes and loads"),
+            ("outputs.md", "Study kinds and writers"),
+        ],
+    ),
+    (
+        "Programs and machines",
+        &[("library.md", "From Rust"), ("python.md", "Python"), ("clusters.md", "Several machines")],
+    ),
+    (
+        "Changing it",
+        &[("architecture.md", "Architecture"), ("adding_a_law.md", "Adding a law"), ("conformance.md", "Conformance")],
+    ),
+    ("Proof", &[("verification.md", "Every test"), ("performance.md", "Performance")]),
+];
+
+/// Which plug-ins stand on which made page.
+const PLUGINS: [(&str, &str, &[PluginKind]); 5] = [
+    ("laws.md", "Laws of joints", &[PluginKind::InterfaceLaw]),
+    ("materials.md", "Materials", &[PluginKind::BulkMaterial]),
+    ("solvers.md", "Solvers", &[PluginKind::LimitSolver, PluginKind::PathSolver, PluginKind::Continuation]),
+    (
+        "scenes.md",
+        "Scenes and loads",
+        &[PluginKind::Scene, PluginKind::LoadKind, PluginKind::Dispersion, PluginKind::FillResistance],
+    ),
+    ("outputs.md", "Study kinds and writers", &[PluginKind::StudyKind, PluginKind::Writer]),
+];
+
+/// The book's sources by file name; figures stand beside the pages in `docs/` and are not among them.
+pub fn book() -> BTreeMap<String, String> {
+    let mut pages = BTreeMap::new();
+    let docs = tree().join("docs");
+    let files = std::fs::read_dir(&docs).expect("docs/").map(|entry| entry.expect("a file").path());
+    for path in files.filter(|path| path.extension().is_some_and(|ending| ending == "md")) {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        pages.insert(name, std::fs::read_to_string(&path).expect("a page"));
+    }
+    pages.insert("index.md".into(), std::fs::read_to_string(tree().join("README.md")).expect("the README"));
+    for (file, title, kinds) in PLUGINS {
+        pages.insert(file.into(), plugins(title, kinds));
+    }
+    pages.insert("keys.md".into(), keys());
+    pages.insert("verification.md".into(), verification());
+    pages.values_mut().for_each(|page| *page = own_links(page));
+    pages.insert("SUMMARY.md".into(), summary());
+    pages
+}
+
+fn summary() -> String {
+    let mut text = "# Summary\n\n[Voussoir](index.md)\n".to_string();
+    for (part, chapters) in PARTS {
+        text += &format!("\n# {part}\n\n");
+        chapters.iter().for_each(|(file, title)| text += &format!("- [{title}]({file})\n"));
+    }
+    text
+}
+
+/// Links between pages stay, those into the tree become the name of the file.
+fn own_links(page: &str) -> String {
+    let mut text = String::new();
+    let mut rest = page;
+    while let Some(at) = rest.find("](") {
+        let (before, after) = rest.split_at(at + 2);
+        let Some(end) = after.find(')') else { break };
+        let link = &after[..end];
+        let local = link.strip_prefix("docs/").unwrap_or(link);
+        let outside = local.starts_with("../") || (link == local && local.contains('/'));
+        if local.contains("://") || !outside {
+            text += &format!("{before}{local})");
+        } else {
+            let opened = before.rfind('[').unwrap_or(0);
+            let shown = &before[opened + 1..before.len() - 2];
+            let figure = before[..opened].ends_with('!');
+            text += &before[..opened - usize::from(figure)];
+            text += &format!("{shown} (`{}`)", local.trim_start_matches("../"));
+        }
+        rest = &after[end + 1..];
+    }
+    text + rest
+}
+
+fn plugins(title: &str, kinds: &[PluginKind]) -> String {
+    let mut text = format!("# {title}\n\nFrom the cards of the plug-ins, as `voussoir explain TAG` prints them.\n");
+    for kind in kinds {
+        if kinds.len() > 1 {
+            let plural = kind.plural().replace('_', " ");
+            text += &format!("\n## {}{}\n", plural[..1].to_uppercase(), &plural[1..]);
+        }
+        for card in cards_of(*kind) {
+            text += &of_card(card, kind.tag_key());
+        }
+    }
+    text
+}
+
+fn of_card(card: &Card, key: &str) -> String {
+    let mut text = format!("\n### `{}`\n\n`{key} = \"{}\"`: {}.\n", card.tag, card.tag, card.summary);
+    if !card.parameters.is_empty() {
+        text += "\n| key | unit | | |\n|---|---|---|---|\n";
+        card.parameters.iter().for_each(|parameter| text += &row(parameter));
+    }
+    // The page's own heading is the tag, which stands above.
+    let page = card.page.trim_start();
+    let body = if page.starts_with('#') { page.split_once('\n').map_or("", |(_, body)| body) } else { page };
+    format!("{text}\n{}\n", body.trim())
+}
+
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+fn row(parameter: &Parameter) -> String {
+    let unit = match &parameter.shape {
+        Shape::Number(quantity, range) => format!("{} ({})", quantity.unit(), range.describe()),
+        Shape::Choice(words) => words.join(", "),
+        _ => String::new(),
+    };
+    let need = match parameter.need {
+        Need::Required => "required".into(),
+        Need::Optional(otherwise) => format!("if absent: {otherwise}"),
+        Need::Default(value) => format!("default {value}"),
+    };
+    format!("| `{}` | {} | {} | {} |\n", parameter.name, cell(&unit), cell(parameter.doc), cell(&need))
+}
+
+fn keys() -> String {
+    let schema = json_schema();
+    let mut text =
+        "# Every key\n\nFrom the JSON Schema that `voussoir schema` prints. A list in a list of tables is written \
+                    `[[stages]]`; tables that name a plug-in have its keys besides.\n"
+            .to_string();
+    for (definition, title) in
+        [("study", "A study with a scene"), ("point_study", "kind = \"point\""), ("report_study", "kind = \"report\"")]
+    {
+        text += &format!("\n## {title}\n\n| key | type | |\n|---|---|---|\n");
+        text += &key_rows(&schema["$defs"][definition], "");
+    }
+    text
+}
+
+fn key_rows(schema: &Json, prefix: &str) -> String {
+    let empty = Map::new();
+    let mut text = String::new();
+    for (key, value) in schema["properties"].as_object().unwrap_or(&empty) {
+        let path = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+        let doc = value["description"].as_str().unwrap_or_default();
+        let default = match &value["default"] {
+            Json::Null | Json::Object(_) => String::new(),
+            default => format!("; default `{default}`"),
+        };
+        text += &format!("| `{path}` | {} | {}{} |\n", shape_word(value), cell(doc), cell(&default));
+        text += &key_rows(value, &path);
+        text += &key_rows(&value["items"], &format!("{path}[]"));
+        text += &key_rows(&value["additionalProperties"], &format!("{path}.NAME"));
+    }
+    text
+}
+
+fn shape_word(value: &Json) -> String {
+    if let Some(to) = value["$ref"].as_str() {
+        return to.trim_start_matches("#/$defs/").replace('_', " ");
+    }
+    if let Some(any) = value["anyOf"].as_array() {
+        let mut words: Vec<String> = any.iter().map(shape_word).collect();
+        words.dedup();
+        return words.join(" or ");
+    }
+    if let Some(words) = value["enum"].as_array() {
+        return words
+            .iter()
+            .map(|word| format!("`{}`", word.as_str().unwrap_or_default()))
+            .collect::<Vec<_>>()
+            .join(", ");
+    }
+    value["type"].as_str().unwrap_or("any").to_string()
+}
+
+/// What a folder of tests is for.
+const FOLDERS: [(&str, &str); 8] = [
+    ("verification", "somebody else's answers: closed forms, published numbers, independent programs"),
+    ("invariance", "what must not matter: units, places, mirror images, numbering"),
+    ("conformance", "what every plug-in must keep, and laws with faults that must be found"),
+    ("stress", "random scenes"),
+    ("files", "what is written and read back, and forged results"),
+    ("messages", "wrong input, word for word"),
+    ("regression", "our own last answers and counts of work"),
+    ("architecture", "the house"),
+];
+
+fn verification() -> String {
+    let mut text = "# Every test\n\nFrom the tests themselves: what each proves, and the widest relative difference that it lets pass \
+                    where it compares numbers with `assert_close`. Long forms, which are run by hand, are marked so.\n"
+        .to_string();
+    for (folder, kind) in FOLDERS {
+        text += &format!("\n## {}{}: {kind}\n", folder[..1].to_uppercase(), &folder[1..]);
+        let mut files = Vec::new();
+        collect(&tree().join("tests/tests").join(folder), &mut files);
+        files.sort();
+        for path in files {
+            let source = std::fs::read_to_string(&path).expect("a test");
+            let tests = tests_of(&source);
+            if tests.is_empty() {
+                continue;
+            }
+            let name = path.strip_prefix(tree().join("tests/tests")).expect("below").display().to_string();
+            let head: Vec<&str> = source.lines().map_while(|line| line.strip_prefix("//!")).map(str::trim).collect();
+            text +=
+                &format!("\n### `{name}`\n\n{}\n\n| test | what it proves | within |\n|---|---|---|\n", head.join(" "));
+            tests.iter().for_each(|test| text += test);
+        }
+    }
+    text
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()) {
+        if entry.is_dir() {
+            collect(&entry, files);
+        } else if entry.extension().is_some_and(|ending| ending == "rs") {
+            files.push(entry);
+        }
+    }
+}
+
+/// A row for each test of a file.
+fn tests_of(source: &str) -> Vec<String> {
+    let lines: Vec<&str> = source.lines().collect();
+    let mut rows = Vec::new();
+    for at in (0..lines.len()).filter(|at| lines[*at] == "#[test]") {
+        let above = lines[..at].iter().rev().take_while(|line| line.starts_with("///") || line.starts_with("#["));
+        let mut said: Vec<&str> = above.filter_map(|line| line.strip_prefix("///")).map(str::trim).collect();
+        said.reverse();
+        let Some(open) = (at..lines.len()).find(|line| lines[*line].starts_with("fn ")) else { continue };
+        let by_hand = lines[at..open].iter().any(|line| line.starts_with("#[ignore"));
+        let name = lines[open].trim_start_matches("fn ").split('(').next().unwrap_or_default();
+        let end = (open..lines.len()).find(|line| lines[*line] == "}").unwrap_or(lines.len());
+        let within = widest(&lines[open..end].concat()).map_or(String::new(), |most| format!("{most:.0e}"));
+        let statement = if said.is_empty() { name.replace('_', " ") } else { said.join(" ") };
+        let mark = if by_hand { " (by hand)" } else { "" };
+        rows.push(format!("| `{name}`{mark} | {} | {within} |\n", cell(&statement)));
+    }
+    rows
+}
+
+/// The greatest third argument of `assert_close` that is a number.
+fn widest(body: &str) -> Option<f64> {
+    let calls = body.split("assert_close(").skip(1);
+    let arguments =
+        calls.filter_map(|call| call.split(");").next()?.rsplit(',').find_map(|last| last.trim().parse().ok()));
+    arguments.filter(|most: &f64| *most < 1.0).reduce(f64::max)
+}

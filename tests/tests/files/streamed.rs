@@ -1,0 +1,83 @@
+//! Results of very many cases are verified from file to file: what is forged, missing, doubled or foreign is found there too.
+
+use serde_json::{Value, json};
+use std::io::{Cursor, Read};
+use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults};
+use voussoir::solve::Unobserved;
+use voussoir::study::{StudyFile, StudySource, Sweep};
+use voussoir_tests::Arch;
+
+/// Five cases as if they were too many to be held.
+fn sweep() -> Sweep {
+    let arch = Arch { voussoirs: 7, ends: "jointed", ..Arch::default() };
+    let text = arch.study() + "[sweep]\n\"scene.width\" = { list = [1.0, 2.0, 3.0, 4.0, 5.0] }\n";
+    let source = StudySource::parse(&text, "test.toml", &[]).expect("a study");
+    StudyFile::read(source).and_then(StudyFile::sweep).expect("a sweep")
+}
+
+/// What `verify` says of results.json and results.csv.
+fn findings(sweep: &Sweep, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
+    let bytes = |name: &str| match name {
+        "results.json" => Some(results.to_vec()),
+        "results.csv" => table.map(<[u8]>::to_vec),
+        _ => None,
+    };
+    let file = |name: &str| Some(Box::new(Cursor::new(bytes(name)?)) as Box<dyn Read>);
+    match sweep.verify_stored(&StoredResults { jobs: 2, file: &file }, &Unobserved) {
+        Ok(found) => found.findings.into_iter().map(|(id, why)| format!("{id}: {why}")).chain(found.files).collect(),
+        Err(why) => vec![why],
+    }
+}
+
+#[test]
+fn what_is_forged_is_found() {
+    let sweep = sweep();
+    let output = sweep.run(&RunRequest { wanted: (0..5).collect(), jobs: 1, ..RunRequest::default() }, &Unobserved);
+    let bytes = |name: &str| &output.files.iter().find(|(own, _)| own == name).expect("a file").1;
+    let (results, table) = (bytes("results.json"), bytes("results.csv"));
+    assert_eq!(findings(&sweep, results, Some(table)), Vec::<String>::new());
+    assert_eq!(findings(&sweep, results, None), Vec::<String>::new());
+    let original: Value = serde_json::from_slice(results).expect("JSON");
+    let found = |change: &dyn Fn(&mut Value)| {
+        let mut changed = original.clone();
+        change(&mut changed);
+        findings(&sweep, changed.to_string().as_bytes(), None)
+    };
+    let list = |value: &mut Value| value["cases"].as_array_mut().expect("cases").clone();
+    let forgeries: [(&str, &dyn Fn(&mut Value)); 9] = [
+        ("3: load_factor", &|v| v["cases"][3]["load_factor"] = json!(1.0)),
+        ("2: status", &|v| v["cases"][2]["status"] = json!("stands")),
+        ("4: is missing", &|v| v["cases"] = list(v)[..4].into()),
+        ("1: is missing", &|v| v["cases"] = [&list(v)[..1], &list(v)[2..]].concat().into()),
+        ("4: stands twice", &|v| v["cases"] = [&list(v)[..], &list(v)[4..]].concat().into()),
+        ("1: stands twice, or after", &|v| v["cases"].as_array_mut().expect("cases").swap(1, 2)),
+        ("0: results of", &|v| v["study"] = json!("another")),
+        ("0: worsts is not in", &|v| v["worsts"] = json!([])),
+        ("0: only_cases", &|v| v["only_cases"] = json!([0, 1, 2, 3, 4])),
+    ];
+    for (why, change) in forgeries {
+        let found = found(change);
+        assert!(found.iter().any(|line| line.starts_with(why)), "{why}: {found:?}");
+    }
+    let fewer = found(&|v| {
+        v["cases"] = list(v)[..2].into();
+        v["only_cases"] = json!([0, 1, 2]);
+    });
+    assert!(!fewer.is_empty(), "cases that were asked for are not there");
+    let chosen = found(&|v| {
+        v["cases"] = list(v)[..2].into();
+        v["only_cases"] = json!([0, 1]);
+    });
+    assert_eq!(chosen, Vec::<String>::new(), "a run of two cases");
+    // The table: a cell, a row more, a row less, another header.
+    let text = String::from_utf8(table.clone()).expect("text");
+    let last = text.trim_end().rfind('\n').expect("rows");
+    for forged in
+        [text.replacen("four_hinge", "five_hinge", 1), text.clone() + "5\n", text[..=last].into(), String::new()]
+    {
+        assert_eq!(findings(&sweep, results, Some(forged.as_bytes())), ["results.csv is not what results.json gives"]);
+    }
+    // Files that were cut short.
+    assert!(!findings(&sweep, &results[..results.len() / 2], None).is_empty());
+    assert!(!findings(&sweep, b"", None).is_empty());
+}
