@@ -56,7 +56,10 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
         "Changing it",
         &[("architecture.md", "Architecture"), ("adding_a_law.md", "Adding a law"), ("conformance.md", "Conformance")],
     ),
-    ("Proof", &[("verification.md", "Every test"), ("performance.md", "Performance")]),
+    (
+        "Proof",
+        &[("verification.md", "Every test"), ("random_scenes.md", "Random scenes"), ("performance.md", "Performance")],
+    ),
 ];
 
 /// Which plug-ins stand on which made page.

@@ -406,3 +406,42 @@ loads = [{{ kind = "body", acceleration = {acceleration:?} }}]
         assert_eq!(answer.unique, Some(unique), "{acceleration:?}");
     }
 }
+
+/// A wall of 62 dry bricks on compliant joints under its weight (1950 contact points, all at the apex of their friction at
+/// the beginning): the exact path does not take up a dense problem of that size, which never ended, but says so.
+#[test]
+fn an_exact_path_gives_up_a_dense_problem_of_friction_at_once() {
+    let result = answered(
+        r#"name = "wall"
+[scene]
+scene = "wall"
+width = 0.24
+brick = [0.5, 0.25]
+courses = 8
+bricks = 8
+openings = [{ from = [1.25, 0.5], to = [2.25, 1.5] }]
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = 0.577
+normal_stiffness = 1e10
+shear_stiffness = 4e9
+[[stages]]
+name = "dead"
+gravity = 9.81
+[solver]
+solver = "event_path"
+"#,
+    );
+    assert_eq!(result.status, Status::Stalled);
+    assert!(
+        result.notes.iter().any(|note| note.contains("1950 contact points in its active set")),
+        "{:?}",
+        result.notes
+    );
+    assert!(result.counters["factorisations"] < 200, "{:?}", result.counters);
+}
