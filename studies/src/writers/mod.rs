@@ -18,7 +18,7 @@ pub mod record;
 mod register;
 pub mod report;
 pub mod results_json;
-pub mod sensitivities;
+pub mod sensitivities_csv;
 pub mod stream;
 mod study_output;
 pub mod table;

@@ -4,7 +4,7 @@ use super::comparison::{comparison_rows, figure};
 use super::live::case_data;
 use super::page;
 use super::register::register;
-use super::sensitivities;
+use super::sensitivities_csv;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
@@ -68,7 +68,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     if study.output.figures.anything() {
         body += &figures(study, drawn);
     }
-    body += &sensitivities::table(cases);
+    body += &sensitivities_csv::table(cases);
     body += &paths(study, drawn);
     body += &certificates(cases);
     body += &format!(
