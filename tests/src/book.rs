@@ -29,6 +29,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
         "Mechanics",
         &[
             ("flow_rule.md", "Flow rules"),
+            ("sensitivities.md", "Sensitivities of limit loads"),
             ("elastic_paths.md", "Elastic paths"),
             ("finite_displacements.md", "Finite displacements"),
             ("crushing.md", "Crushing"),
