@@ -40,7 +40,7 @@ class Table(dict[str, Any]):
         """
         import polars
 
-        polars.DataFrame(dict(self), nan_to_null=True).write_parquet(path)
+        polars.DataFrame(dict(self), nan_to_null=True).write_parquet(os.fspath(path))
 
     def _repr_html_(self) -> str:
         names = [name for name in self if name not in ("case_hash", "seconds", "notes")]
