@@ -1,9 +1,11 @@
-//! Sparse factorisations: the only files that know faer.
+//! Sparse factorisations (those of faer: the only files that know it), and one along a chain of bodies.
 
 mod entries;
+mod frontal;
 mod ldlt;
 mod lu;
 
 pub use self::entries::Entries;
+pub use self::frontal::FrontalLu;
 pub use self::ldlt::SparseLdlt;
 pub use self::lu::{Analysis, SparseLu};

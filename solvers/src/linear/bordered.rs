@@ -15,10 +15,9 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use super::condensed::{Condensed, pair};
+use super::condensed::{Condensed, Elimination, pair};
 use super::csr::CsrMatrix;
 use std::rc::Rc;
-use voussoir_core::linear::Analysis;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
@@ -69,7 +68,7 @@ impl BorderedFactors {
         mut shifts: CsrMatrix,
         contacts: usize,
         control: &[f64],
-        analysis: &mut Analysis,
+        elimination: &mut Elimination,
     ) -> Option<Self> {
         let size = control.len();
         let last = size - 1;
@@ -77,7 +76,7 @@ impl BorderedFactors {
         if let Some(few) = few(control) {
             rows.open_row().extend(&few);
             rows.end_row();
-            let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
+            let equations = Condensed::of(rows, &shifts, contacts, elimination)?;
             return Some(BorderedFactors { equations, last: Last::Control(few) });
         }
         let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
@@ -85,7 +84,7 @@ impl BorderedFactors {
         for again in [true, false] {
             rows.open_row().push((held, 1.0));
             rows.end_row();
-            let equations = Condensed::of(rows, &shifts, contacts, analysis)?;
+            let equations = Condensed::of(rows, &shifts, contacts, elimination)?;
             if let Some(w) = equations.apply(&end) {
                 let most = 2 * contacts + greatest(&w[2 * contacts..]);
                 if !again || w[held].abs() >= MOVES * w[most].abs() {

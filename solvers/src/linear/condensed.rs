@@ -16,10 +16,53 @@
 //! refinement leave the accuracy of the equations before condensation.
 
 use super::csr::CsrMatrix;
-use voussoir_core::linear::{Analysis, Entries, SparseLu};
+use std::sync::Arc;
+use voussoir_core::linear::{Analysis, Entries, FrontalLu, SparseLu};
 
 /// Own equations of a point must be at least this strong, relative to the others in its rows.
 const STRONG: f64 = 1e-3;
+
+/// How condensed equations are factorised.
+#[derive(Default)]
+pub struct Elimination {
+    /// Ranks of the unknowns along a chain, where they form one.
+    chain: Option<Arc<[usize]>>,
+    /// What the factorisation before leaves, where they do not.
+    analysis: Analysis,
+}
+
+impl Elimination {
+    /// Along a chain, where the unknowns form one; an unknown more is the last.
+    pub fn along(chain: Option<Arc<[usize]>>) -> Self {
+        Elimination { chain, analysis: Analysis::default() }
+    }
+
+    /// Factorises equations, row by row, of the unknowns that are `kept`.
+    fn factorise(&mut self, kept: &[usize], entries: &Entries) -> Option<Reduced> {
+        let Some(chain) = &self.chain else {
+            return SparseLu::analysed(kept.len(), entries, &mut self.analysis)
+                .map(|factors| Reduced::Sparse(Box::new(factors)));
+        };
+        let last = chain.iter().copied().max().unwrap_or(0);
+        let rank: Vec<usize> = kept.iter().map(|i| chain.get(*i).copied().unwrap_or(last)).collect();
+        FrontalLu::new(kept.len(), entries, &rank).map(Reduced::Frontal)
+    }
+}
+
+/// Factors of condensed equations.
+enum Reduced {
+    Sparse(Box<SparseLu>),
+    Frontal(FrontalLu),
+}
+
+impl Reduced {
+    fn solve(&self, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        match self {
+            Reduced::Sparse(factors) => factors.solve(rights, 0),
+            Reduced::Frontal(factors) => factors.solve(rights),
+        }
+    }
+}
 
 /// A contact point whose forces are condensed out.
 struct Point {
@@ -29,6 +72,8 @@ struct Point {
     inverse: [[f64; 2]; 2],
     /// Where its E begins and ends among all.
     across: [usize; 2],
+    /// Whether all of its E is added.
+    added: bool,
 }
 
 impl Point {
@@ -53,7 +98,7 @@ pub struct Condensed {
     kept: Vec<usize>,
     /// Position of every index among them; `usize::MAX` where it is condensed out.
     place: Vec<usize>,
-    reduced: SparseLu,
+    reduced: Reduced,
 }
 
 /// A value in one of two places.
@@ -86,13 +131,18 @@ impl Condensed {
     /// Condenses and factorises equations of `size` unknowns, the first of which belong to `contacts`
     /// points, with something added that refinement takes out again. `None` where they are singular in
     /// their pattern.
-    pub fn new(size: usize, contacts: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
+    pub fn new(
+        size: usize,
+        contacts: usize,
+        (entries, shift): (&Entries, &Entries),
+        elimination: &mut Elimination,
+    ) -> Option<Self> {
         let (rows, shifts) = (CsrMatrix::new(size, entries), CsrMatrix::new(size, shift));
-        Condensed::of(rows, &shifts, contacts, &mut Analysis::default())
+        Condensed::of(rows, &shifts, contacts, elimination)
     }
 
-    /// The same from rows, by the analysis of what was factorised before.
-    pub fn of(rows: CsrMatrix, shifts: &CsrMatrix, contacts: usize, analysis: &mut Analysis) -> Option<Self> {
+    /// The same from rows.
+    pub fn of(rows: CsrMatrix, shifts: &CsrMatrix, contacts: usize, elimination: &mut Elimination) -> Option<Self> {
         let size = rows.len();
         let forces = 2 * contacts;
         let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
@@ -105,7 +155,8 @@ impl Condensed {
         for c in (0..contacts).filter(|c| alone[*c]) {
             if let Some(inverse) = own_inverse([0, 1].map(|k| both(2 * c + k)), forces) {
                 of[c] = Some(points.len());
-                points.push(Point { first: 2 * c, inverse, across: [0; 2] });
+                let added = (2 * c..2 * c + 2).all(|i| rows.row(i).iter().all(|e| e.0 < forces));
+                points.push(Point { first: 2 * c, inverse, across: [0; 2], added });
             }
         }
         let kept: Vec<usize> = (0..size).filter(|i| *i >= forces || of[i / 2].is_none()).collect();
@@ -124,14 +175,19 @@ impl Condensed {
             }
             point.across = [begin, across.len()];
         }
-        let mut reduced: Entries = Vec::new();
+        let mut reduced: Entries = Vec::with_capacity(rows.entries() + shifts.entries());
         let mut row = vec![0.0; kept.len()];
         let mut met = vec![usize::MAX; kept.len()];
         let mut down: (Vec<usize>, Vec<(usize, [f64; 2])>) = (vec![0], Vec::new());
         let mut columns: Vec<usize> = Vec::new();
         for (k, &i) in kept.iter().enumerate() {
             columns.clear();
+            // Gaps hold few entries twice, and factorisations add them up.
             let mut sum = |j: usize, value: f64| {
+                if i < forces {
+                    reduced.push((k, j, value));
+                    return;
+                }
                 if met[j] != k {
                     (met[j], row[j]) = (k, 0.0);
                     columns.push(j);
@@ -150,6 +206,11 @@ impl Condensed {
             }
             for &(point, f) in &down.1[begin..] {
                 let point: &Point = &points[point];
+                // What is added need not reach the gaps of other points: refinement takes it out, and the unknowns of
+                // a chain stay neighbours.
+                if point.added && i < forces {
+                    continue;
+                }
                 let [a, b] = point.inverse;
                 let by = [f[0] * a[0] + f[1] * b[0], f[0] * a[1] + f[1] * b[1]];
                 for &(j, e) in &across[point.across[0]..point.across[1]] {
@@ -159,7 +220,7 @@ impl Condensed {
             down.0.push(down.1.len());
             reduced.extend(columns.iter().map(|&j| (k, j, row[j])));
         }
-        let reduced = SparseLu::analysed(kept.len(), &reduced, analysis)?;
+        let reduced = elimination.factorise(&kept, &reduced)?;
         Some(Condensed { rows, points, across, down, of, kept, place, reduced })
     }
 
@@ -175,7 +236,7 @@ impl Condensed {
             self.kept.iter().enumerate().map(|(k, i)| right[*i] - by_forces(k)).collect()
         };
         let rights: Vec<Vec<f64>> = rights.iter().map(reduced).collect();
-        self.reduced.solve(&rights, 0)
+        self.reduced.solve(&rights)
     }
 
     /// y for unit right-hand sides of the two rows of a contact point.
@@ -195,7 +256,7 @@ impl Condensed {
                 }
             }
         }
-        let mut columns = self.reduced.solve(&rights, 0)?.into_iter();
+        let mut columns = self.reduced.solve(&rights)?.into_iter();
         Some([columns.next()?, columns.next()?])
     }
 

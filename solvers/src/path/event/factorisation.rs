@@ -11,7 +11,7 @@
 
 use crate::contact::facet::across;
 use crate::contact::mode::ContactMode;
-use crate::linear::condensed::Condensed;
+use crate::linear::condensed::{Condensed, Elimination};
 use crate::linear::updated::UpdatedFactorisation;
 use crate::path::system::{Load, System};
 use nalgebra::DMatrix;
@@ -66,7 +66,12 @@ impl FactorisedModes {
         for row in 0..2 * nc {
             entries.extend(system.kinematics.row(row).iter().map(|&(j, v)| (2 * nc + j, row, v)));
         }
-        let equations = Condensed::new(system.size(), nc, &entries, &regularisation)?;
+        let equations = Condensed::new(
+            system.size(),
+            nc,
+            (&entries, &regularisation),
+            &mut Elimination::along(system.chain.clone()),
+        )?;
         let updated = UpdatedFactorisation::new(equations);
         Some(FactorisedModes { modes, refine_columns, updated, load_rate: None })
     }

@@ -22,8 +22,8 @@ pub(super) struct Hessian {
 }
 
 impl Hessian {
-    /// Without entries, for so many forces and motions.
-    pub fn zeros(size: usize) -> Self {
-        Hessian { entries: Vec::new(), factor: vec![0.0; size] }
+    /// Without entries, for so many forces and motions and about so many entries.
+    pub fn zeros(size: usize, entries: usize) -> Self {
+        Hessian { entries: Vec::with_capacity(entries), factor: vec![0.0; size] }
     }
 }

@@ -32,11 +32,11 @@ impl Equations {
         let factor: Vec<f64> = driven.map(|v| v * unit).collect();
         let mut gaps = CsrMatrix::with_capacity(system.flexibility.entries() + system.kinematics.entries() + forces);
         let mut bodies: Entries = Vec::with_capacity(system.kinematics.entries());
-        for i in 0..forces {
+        for (i, factor) in factor[..forces].iter().enumerate() {
             let row = gaps.open_row();
             row.extend_from_slice(system.flexibility.row(i));
             row.extend(system.kinematics.row(i).iter().map(|&(j, v)| (forces + j, v)));
-            row.extend(Some((last, factor[i])).filter(|e| e.1 != 0.0));
+            row.extend(Some((last, *factor)).filter(|e| e.1 != 0.0));
             gaps.end_row();
             bodies.extend(system.kinematics.row(i).iter().map(|&(j, v)| (j, i, v)));
         }
@@ -49,7 +49,9 @@ impl Equations {
     pub fn new(system: &System, hessian: &Hessian) -> Self {
         let (u, base, last) = (system.units, 2 * system.contacts, system.size());
         let of_gaps = hessian.entries.iter().filter(|e| e.0 < base).count();
-        let (mut gaps, mut bodies): (Entries, Entries) = (Vec::with_capacity(of_gaps + base), Vec::new());
+        let of_bodies = hessian.entries.len() - of_gaps;
+        let (mut gaps, mut bodies): (Entries, Entries) =
+            (Vec::with_capacity(of_gaps + base), Vec::with_capacity(of_bodies + last - base));
         let row_of = |i: usize| match i < base {
             true => Some((i, u.displacement)),
             false if (i - base) % 3 == 2 => Some((system.column(i)?.0, u.force * u.length)),

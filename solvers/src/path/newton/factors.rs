@@ -2,8 +2,8 @@
 
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::BorderedFactors;
+use crate::linear::condensed::Elimination;
 use std::rc::Rc;
-use voussoir_core::linear::Analysis;
 
 /// Factors with what they are of.
 pub(super) struct Kept {
@@ -18,7 +18,7 @@ pub(super) struct Kept {
 pub(super) struct Factorised {
     /// The last ones, where nothing but modes and laws makes the matrix.
     pub last: Option<Kept>,
-    pub analysis: Analysis,
+    pub elimination: Elimination,
 }
 
 impl Factorised {

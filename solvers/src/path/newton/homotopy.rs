@@ -217,7 +217,7 @@ fn followed_from(
     let row = control_row(system, start, &place.state, control, &constraint, &equations);
     let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
     right[row.len() - 1] = -left;
-    let mut equations = UpdatedEquations::new(equations, points, row);
+    let mut equations = UpdatedEquations::new(equations, system.scaled.chain.clone(), points, row);
     equations.load_rate(&right);
     let rate = tangent_without_gaps(system, &vec![0.0; right.len()]);
     let mut path = StepPath { system, equations, place, rate, gap_rate: vec![[0.0; 2]; points] };

@@ -78,7 +78,8 @@ pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -
     let problem = geometry.problem;
     let base = 2 * problem.contacts.len();
     let size = base + 3 * problem.bodies.len();
-    let mut out = Hessian::zeros(size);
+    let coupled = |sides: &Vec<_>| 4 * sides.len() * sides.len() + 12 * sides.len();
+    let mut out = Hessian::zeros(size, 40 * problem.contacts.len() + geometry.sides.iter().map(coupled).sum::<usize>());
     let both = |entries: &mut Vec<(usize, usize, f64)>, i: usize, j: usize, value: f64| {
         entries.push((i, j, value));
         entries.push((j, i, value));

@@ -99,7 +99,7 @@ pub(super) fn factorised(
         return Some((kept.held.clone(), true));
     }
     let capacity = equations.gaps.entries() + equations.bodies.entries();
-    let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(capacity));
+    let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(8 * system.size()));
     for (c, mode) in state.mode.iter().enumerate() {
         let answer = system.laws.responses.is(c).then(|| traction_row(system, state, c));
         for k in 0..2 {
@@ -114,7 +114,7 @@ pub(super) fn factorised(
     }
     equations.bodies(&mut rows, &mut shifts, system.damping.as_ref().map_or(0.0, |damping| damping.rate));
     system.count("factorisations", 1);
-    let held = BorderedFactors::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.analysis)?;
+    let held = BorderedFactors::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.elimination)?;
     let held = Rc::new(held);
     system.cache.factors.last = again.then(|| Kept { modes: state.mode.clone(), directions, held: held.clone() });
     Some((held, false))

@@ -12,6 +12,7 @@ use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
+use crate::linear::condensed::Elimination;
 use crate::path::system::{Load, System, Units};
 use std::rc::Rc;
 use voussoir_core::law::TractionPoint;
@@ -103,6 +104,8 @@ impl<'a> StepSystem<'a> {
         if scaled.compliance.iter().flatten().all(|c| *c <= 0.0) {
             return Err("nothing in the scene deforms: rigid blocks without joint compliance have no path before their collapse; limit analysis answers that".into());
         }
+        let mut cache = Cache::default();
+        cache.factors.elimination = Elimination::along(scaled.chain.clone());
         let (facets, polygon_of) = problem.shared_facets();
         let polygons = facets.into_iter().map(YieldPolygon::new).collect();
         Ok(StepSystem {
@@ -116,7 +119,7 @@ impl<'a> StepSystem<'a> {
             line_search: true,
             damping: None,
             blocks: undeformed(problem)?,
-            cache: Cache::default(),
+            cache,
             monitors: Vec::new(),
         })
     }

@@ -18,12 +18,12 @@ use super::equations::Equations;
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::condensed::pair;
+use crate::linear::condensed::{Elimination, pair};
 use crate::linear::csr::CsrMatrix;
 use crate::linear::updated::UpdatedFactorisation;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
-use voussoir_core::linear::Analysis;
+use std::sync::Arc;
 
 /// Changed points above which the matrix is factorised anew.
 const FRESH: usize = 24;
@@ -56,7 +56,7 @@ pub(super) struct UpdatedEquations {
     modes: Vec<ContactMode>,
     right: Vec<f64>,
     base: Option<Base>,
-    analysis: Analysis,
+    elimination: Elimination,
 }
 
 fn norm(v: &[f64]) -> f64 {
@@ -65,10 +65,16 @@ fn norm(v: &[f64]) -> f64 {
 
 impl UpdatedEquations {
     /// Equations with a control, all points stuck, nothing on the right-hand side.
-    pub fn new(equations: Rc<Equations>, points: usize, control: Vec<f64>) -> UpdatedEquations {
+    pub fn new(
+        equations: Rc<Equations>,
+        chain: Option<Arc<[usize]>>,
+        points: usize,
+        control: Vec<f64>,
+    ) -> UpdatedEquations {
         let right = vec![0.0; control.len()];
         let modes = vec![ContactMode::Stick; points];
-        UpdatedEquations { points, equations, control, modes, right, base: None, analysis: Analysis::default() }
+        let elimination = Elimination::along(chain);
+        UpdatedEquations { points, equations, control, modes, right, base: None, elimination }
     }
 
     /// Right-hand sides of the rows that belong to no contact point.
@@ -130,7 +136,7 @@ impl UpdatedEquations {
             CsrMatrix::empty(self.control.len() - 1),
             self.points,
             &self.control,
-            &mut self.analysis,
+            &mut self.elimination,
         )?;
         let factors = BorderedSystem::new(Rc::new(held), &self.control)?;
         let mut x = factors.apply(&self.right)?;

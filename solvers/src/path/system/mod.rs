@@ -4,6 +4,7 @@
 //! Unknowns x = (r, q): (r_n, r_t) of every contact point, then (u_x, u_y, θ L) of every free body; after them, where a
 //! solver steps, the factor λ.
 
+mod chain;
 mod load;
 mod rows;
 mod scaled;

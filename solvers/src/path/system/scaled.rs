@@ -1,9 +1,11 @@
 //! The scaled problem: G, C, laws and initial gaps in units.
 
+use super::chain::ranks;
 use super::rows::{flexibility_rows, kinematic_rows, merged};
 use super::units::Units;
 use crate::contact::mode::ContactMode;
 use crate::linear::csr::CsrMatrix;
+use std::sync::Arc;
 use voussoir_core::law::Facet;
 use voussoir_core::path::{Contact, PathProblem};
 
@@ -29,6 +31,8 @@ pub struct System {
     /// Compliance of every contact point with all else held: the diagonal of C, and where the law gives tractions from
     /// gaps what it adds \[m/N\].
     pub compliance: Vec<[f64; 2]>,
+    /// Ranks of the unknowns along a chain of bodies, where they form one.
+    pub chain: Option<Arc<[usize]>>,
 }
 
 impl System {
@@ -51,6 +55,7 @@ impl System {
             let scaled = |f: &Facet| Facet { bound: f.bound * contact.area / units.force, ..*f };
             contact.law.facets().map(|facets| facets.iter().map(scaled).collect())
         };
+        let chain = ranks(problem, &free).map(Arc::from);
         System {
             units,
             contacts,
@@ -61,6 +66,7 @@ impl System {
             kinematics: CsrMatrix::from_rows(&kinematic_rows(problem, &free)),
             free,
             compliance,
+            chain,
         }
     }
 
