@@ -1,5 +1,6 @@
 //! Scenes that benches share, made from the problems with known answers of the tests.
 
+pub mod boundary;
 pub mod point;
 
 use voussoir::study::Case;

@@ -2,7 +2,7 @@
 //! file from its schema, the table of verification from the tests themselves, so none of them can be out of date.
 
 use serde_json::{Map, Value as Json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use voussoir::core::plugin::{Card, Need, Parameter, PluginKind, Shape, cards_of};
 use voussoir::kinds::json_schema::json_schema;
@@ -21,6 +21,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("keys.md", "Every key"),
             ("verifying.md", "What a result is worth"),
             ("reports.md", "Reports"),
+            ("sensitivities.md", "Sensitivities"),
             ("glossary.md", "Glossary"),
         ],
     ),
@@ -28,6 +29,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
         "Mechanics",
         &[
             ("flow_rule.md", "Flow rules"),
+            ("sensitivities.md", "Sensitivities of limit loads"),
             ("elastic_paths.md", "Elastic paths"),
             ("finite_displacements.md", "Finite displacements"),
             ("crushing.md", "Crushing"),
@@ -85,22 +87,35 @@ pub fn book() -> BTreeMap<String, String> {
     }
     pages.insert("keys.md".into(), keys());
     pages.insert("verification.md".into(), verification());
-    pages.values_mut().for_each(|page| *page = own_links(page));
-    pages.insert("SUMMARY.md".into(), summary());
+    let known: BTreeSet<String> = pages.keys().cloned().collect();
+    pages.values_mut().for_each(|page| *page = own_links(page, &known));
+    let summary = summary(&pages);
+    pages.insert("SUMMARY.md".into(), summary);
     pages
 }
 
-fn summary() -> String {
+fn summary(pages: &BTreeMap<String, String>) -> String {
     let mut text = "# Summary\n\n[Voussoir](index.md)\n".to_string();
     for (part, chapters) in PARTS {
         text += &format!("\n# {part}\n\n");
         chapters.iter().for_each(|(file, title)| text += &format!("- [{title}]({file})\n"));
     }
+    // Pages that no part names yet, by their own headings.
+    let listed =
+        |file: &str| file == "index.md" || PARTS.iter().any(|(_, all)| all.iter().any(|(own, _)| *own == file));
+    let mut more = pages.iter().filter(|(file, _)| !listed(file)).peekable();
+    if more.peek().is_some() {
+        text += "\n# More\n\n";
+    }
+    for (file, page) in more {
+        let heading = page.lines().next().unwrap_or(file).trim_start_matches('#').trim();
+        text += &format!("- [{heading}]({file})\n");
+    }
     text
 }
 
-/// Links between pages stay, those into the tree become the name of the file.
-fn own_links(page: &str) -> String {
+/// Links between pages and to figures stay, those into the tree become the name of the file.
+fn own_links(page: &str, known: &BTreeSet<String>) -> String {
     let mut text = String::new();
     let mut rest = page;
     while let Some(at) = rest.find("](") {
@@ -108,15 +123,17 @@ fn own_links(page: &str) -> String {
         let Some(end) = after.find(')') else { break };
         let link = &after[..end];
         let local = link.strip_prefix("docs/").unwrap_or(link);
-        let outside = local.starts_with("../") || (link == local && local.contains('/'));
-        if local.contains("://") || !outside {
+        let file = local.split('#').next().unwrap_or_default();
+        if local.contains(':')
+            || file.is_empty()
+            || known.contains(file)
+            || (file.ends_with(".svg") && !file.contains('/'))
+        {
             text += &format!("{before}{local})");
         } else {
             let opened = before.rfind('[').unwrap_or(0);
-            let shown = &before[opened + 1..before.len() - 2];
-            let figure = before[..opened].ends_with('!');
-            text += &before[..opened - usize::from(figure)];
-            text += &format!("{shown} (`{}`)", local.trim_start_matches("../"));
+            text += &before[..opened];
+            text += &format!("{} (`{}`)", &before[opened + 1..before.len() - 2], local.trim_start_matches("../"));
         }
         rest = &after[end + 1..];
     }
@@ -155,7 +172,7 @@ fn cell(text: &str) -> String {
 
 fn row(parameter: &Parameter) -> String {
     let unit = match &parameter.shape {
-        Shape::Number(quantity, range) => format!("{} ({})", quantity.unit(), range.describe()),
+        Shape::Number(quantity, range) => format!("{} ({})", quantity.unit(), range.describe()).trim().to_string(),
         Shape::Choice(words) => words.join(", "),
         _ => String::new(),
     };

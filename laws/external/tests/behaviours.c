@@ -51,7 +51,10 @@ int BilinearBond_PlaneStrain(Data *d) {
   d->s1.forces[1] = (1 - damage) * kt * g[1];
   *d->s1.stored_energy =
       0.5 * (1 - damage) * (kn * un * un + kt * g[1] * g[1]) + (g[0] < 0 ? 0.5 * kn * g[0] * g[0] : 0);
-  *d->s1.dissipated_energy = *d->s0.dissipated_energy + 0.5 * (kn * un * un + kt * g[1] * g[1]) * (damage - d0);
+  /* Integral of kn u^2 / 2 over the damage: exact in opening, so that long steps keep the balance of energy. */
+  const double from = end * onset / (end - d0 * (end - onset)), to = end * onset / (end - damage * (end - onset));
+  *d->s1.dissipated_energy = *d->s0.dissipated_energy + 0.5 * kn * end * onset / (end - onset) * (to - from) +
+                             0.5 * kt * g[1] * g[1] * (damage - d0);
   if (d->K[0] > 3.5) {
     d->K[0] = g[0] > 0 ? (1 - damage) * kn - kn * g[0] * by : kn;
     d->K[1] = 0;

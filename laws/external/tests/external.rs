@@ -87,8 +87,8 @@ fn a_bond_of_a_library_is_its_closed_form() {
                 moved[j] += sign * h;
                 *end = response.respond_point(moved, &old, &mut vec![0.0; old.len()]).expect("a step").traction;
             }
-            for i in 0..2 {
-                let slope = (ends[0][i] - ends[1][i]) / (2.0 * h);
+            for (i, (ahead, back)) in ends[0].iter().zip(ends[1]).enumerate() {
+                let slope = (ahead - back) / (2.0 * h);
                 assert!(
                     (slope - point.tangent[i][j]).abs() <= 1e-4 * STIFFNESS[0],
                     "{i}{j}: {slope} {:?}",
@@ -122,9 +122,9 @@ fn tensors_of_a_library_are_turned_into_ours() {
     let mut work = 0.0;
     for i in 0..6 {
         assert!((point.stress[i] - along[i] * strain[i]).abs() < 1e-3, "{:?}", point.stress);
-        for j in 0..6 {
+        for (j, stiffness) in stiffness[i].iter().enumerate() {
             let expected = if i == j { along[i] } else { 0.0 };
-            assert!((stiffness[i][j] - expected).abs() < 1.0 && (point.tangent[i][j] - expected).abs() < 1.0, "{i}{j}");
+            assert!((stiffness - expected).abs() < 1.0 && (point.tangent[i][j] - expected).abs() < 1.0, "{i}{j}");
         }
         work += 0.5 * along[i] * strain[i] * strain[i];
     }

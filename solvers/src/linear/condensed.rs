@@ -40,7 +40,8 @@ impl Elimination {
     /// Factorises equations, row by row, of the unknowns that are `kept`.
     fn factorise(&mut self, kept: &[usize], entries: &Entries) -> Option<Reduced> {
         let Some(chain) = &self.chain else {
-            return SparseLu::analysed(kept.len(), entries, &mut self.analysis).map(Reduced::Sparse);
+            return SparseLu::analysed(kept.len(), entries, &mut self.analysis)
+                .map(|factors| Reduced::Sparse(Box::new(factors)));
         };
         let last = chain.iter().copied().max().unwrap_or(0);
         let rank: Vec<usize> = kept.iter().map(|i| chain.get(*i).copied().unwrap_or(last)).collect();
@@ -50,7 +51,7 @@ impl Elimination {
 
 /// Factors of condensed equations.
 enum Reduced {
-    Sparse(SparseLu),
+    Sparse(Box<SparseLu>),
     Frontal(FrontalLu),
 }
 

@@ -271,7 +271,10 @@ fn a_chart_of_one_point_or_none() {
 fn every_writer_gives_its_files_and_they_need_nothing_else() {
     with_output(true, |study| {
         let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
-        assert_eq!(tags, ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "vtu"]);
+        assert_eq!(
+            tags,
+            ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "sensitivities_csv", "vtu"]
+        );
         for entry in writers() {
             for (name, bytes) in entry.writer.files(study, &Json::Null) {
                 let text = String::from_utf8(bytes).expect("every file is text");

@@ -23,6 +23,7 @@ pub struct SensitivityEntry {
 impl SensitivityEntry {
     /// Per cent that the factor changes by where the number changes by one per cent, falling and growing.
     pub fn relative(&self, factor: f64) -> [Option<f64>; 2] {
-        [self.left, self.right].map(|slope| slope.map(|slope| slope * self.value / factor).filter(|x| x.is_finite()))
+        [self.left, self.right]
+            .map(|slope| slope.map(|slope| slope * self.value / factor).filter(|x| x.is_finite() && self.value != 0.0))
     }
 }

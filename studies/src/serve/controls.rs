@@ -1,5 +1,6 @@
 //! Sliders for the numbers of a case: ranges from the schema, steps from the values.
 
+use crate::config::dotted_key::segments;
 use crate::figures::format::{escape, format_short};
 use crate::figures::words::words_of_key;
 use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
@@ -88,41 +89,49 @@ fn real_track(quantity: Quantity, range: Range, value: f64) -> Track {
     Track { from: from.min(value), to: to.max(value), step }
 }
 
-/// What stands before a slider: names that a user has given, and the entry of a list.
-fn before(key: &NumericKey) -> String {
-    let names: Vec<&str> = key.key.split('.').collect();
-    match names.as_slice() {
-        ["materials" | "joints" | "vehicles", name, ..] => format!("{}: ", name.trim_matches('"')),
-        _ => String::new(),
-    }
-}
-
-fn words(key: &NumericKey, resolved: &Json) -> String {
-    let names: Vec<&str> = key.key.split('.').collect();
-    let mut words = format!("{}{}", before(key), words_of_key(&key.key));
-    if let ["stages", stage, rest @ ..] = names.as_slice() {
-        let entry = stage.parse::<usize>().ok().map(|index| &resolved["stages"][index]);
-        let name = entry.and_then(|entry| entry["name"].as_str()).unwrap_or(stage);
-        words = format!("{name}: {words}");
-        if let ["loads", load, ..] = rest
-            && entry.and_then(|entry| entry["loads"].as_array()).is_some_and(|loads| loads.len() > 1)
-        {
-            let number = load.parse::<usize>().map_or(0, |index| index + 1);
-            words += &format!(", load {number}");
+/// What a key says of where it stands: names that a user has given, places in lists; and of which number it is.
+fn place(key: &str, resolved: &Json) -> (Vec<String>, String) {
+    let names = segments(key);
+    let (mut node, mut before, mut after) = (resolved, Vec::new(), String::new());
+    for (index, name) in names.iter().enumerate() {
+        let last = index.checked_sub(1).map_or("", |index| names[index].as_str());
+        if let (Some(items), Ok(number)) = (node.as_array(), name.parse::<usize>()) {
+            node = node.get(number).unwrap_or(&Json::Null);
+            let single = if last == "vertices" { "vertex" } else { last.trim_end_matches('s') };
+            let numbered = || format!("{} {}", single.replace('_', " "), number + 1);
+            match (node["name"].as_str(), items.len()) {
+                (Some(own), _) => before.push(own.to_string()),
+                (None, count) if node.is_array() || (node.is_object() && count > 1) => before.push(numbered()),
+                // A pair of coordinates, itself or in a list of such.
+                (None, 2) if node.is_number() && (VECTORS.contains(&last) || last.parse::<usize>().is_ok()) => {
+                    after = format!(" in {}", ["x", "y"][number.min(1)]);
+                }
+                (None, _) if node.is_number() => after = format!(", number {}", number + 1),
+                _ => {}
+            }
+        } else {
+            if index == 1 && ["materials", "joints", "vehicles"].contains(&last) {
+                before.push(name.clone());
+            }
+            node = node.get(name.as_str()).unwrap_or(&Json::Null);
         }
     }
-    if let Some(index) = names.last().and_then(|name| name.parse::<usize>().ok()) {
-        let vector = names.iter().rev().nth(1).is_some_and(|name| {
-            ["force", "point", "displacement", "acceleration", "gravity"].contains(name) && index < 2
-        });
-        words += &if vector { [" in x", " in y"][index].into() } else { format!(", number {}", index + 1) };
-    }
-    words
+    (before, after)
+}
+
+/// Keys whose two numbers are x and y.
+const VECTORS: [&str; 5] = ["force", "point", "displacement", "acceleration", "gravity"];
+
+/// A key in words, with what tells it from others of the same name.
+fn words(key: &str, resolved: &Json) -> String {
+    let (before, after) = place(key, resolved);
+    let words: Vec<String> = before.into_iter().chain([words_of_key(key) + &after]).collect();
+    words.join(": ")
 }
 
 fn control(key: &NumericKey, resolved: &Json) -> String {
     let unit = if key.unit().is_empty() { String::new() } else { format!(" [{}]", key.unit()) };
-    let label = format!("{}{unit}", words(key, resolved));
+    let label = format!("{}{unit}", words(&key.key, resolved));
     let (label, name) = (escape(&label), escape(&key.key));
     let field = |value: &str| {
         format!(
@@ -168,6 +177,24 @@ pub(super) fn controls(resolved: &Json) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn labels_tell_numbers_apart() {
+        let resolved = serde_json::json!({
+            "scene": { "spans": [{ "rise": 1.0 }, { "rise": 2.0 }], "blocks": [{ "name": "pier", "vertices": [[0.0, 1.0]] }] },
+            "materials": { "stone": { "density": 2000.0 } },
+            "stages": [{ "name": "live", "loads": [{ "force": [0.0, -1.0] }] }],
+        });
+        for (key, start, end) in [
+            ("scene.spans.1.rise", "span 2: ", ""),
+            ("scene.blocks.0.vertices.0.1", "pier: vertex 1: ", " in y"),
+            ("materials.stone.density", "stone: ", ""),
+            ("stages.0.loads.0.force.1", "live: ", " in y"),
+        ] {
+            let words = words(key, &resolved);
+            assert!(words.starts_with(start) && words.ends_with(end), "{words}");
+        }
+    }
 
     #[test]
     fn tracks_stay_within_the_range_and_reach_the_value() {

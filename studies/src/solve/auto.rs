@@ -2,7 +2,7 @@
 //!
 //! Solvers are found by their cards: `cost` gives the order, `provides` what a question needs (finite
 //! displacements, settlements, flow that is not associated), `requires` what laws and materials must give. Of those
-//! that remain, the first that does not refuse the problem solves it.
+//! that remain, the first that does not refuse the problem solves it; a path that stalls is left to the next path solver.
 
 use super::case_input::CaseInput;
 use crate::config::default_table::default_table;

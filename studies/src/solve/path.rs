@@ -6,6 +6,7 @@ use super::path_result::{Seen, path_result};
 use super::recorded::Recorder;
 use crate::results::CaseResult;
 use voussoir_core::certificate::PathChecker;
+use voussoir_core::limit::Status;
 use voussoir_core::path::{PathObserver, PathProblem, PathState};
 
 /// A path's certificate, with somebody else who looks on.
@@ -25,7 +26,7 @@ impl PathObserver for Watched<'_> {
     }
 }
 
-/// Solves a case along its path by the first solver that takes it; `observer` sees every state.
+/// Solves a case along its path by the first solver that takes it and does not stall; `observer` sees every state.
 pub(super) fn solve_by_path(
     input: &CaseInput,
     solvers: &[TaggedPathSolver],
@@ -35,20 +36,43 @@ pub(super) fn solve_by_path(
         Ok(problem) => problem,
         Err(why) => return failed(&solvers[0].0, why),
     };
-    let (tag, solver) = match willing(solvers, &problem, input.settings) {
-        Ok(tagged) => tagged,
-        Err((tag, why)) => return failed(&tag, format!("{tag}: {why}")),
-    };
+    if let Err((tag, why)) = willing(solvers, &problem, input.settings) {
+        return failed(&tag, format!("{tag}: {why}"));
+    }
+    let takes = |tagged: &&TaggedPathSolver| tagged.1.refuses(&problem, input.settings).is_none();
+    let mut stalled: Option<CaseResult> = None;
+    for tagged in solvers.iter().filter(takes) {
+        let mut result = traced(input, &problem, tagged, observer);
+        let before = stalled.take();
+        result.notes.extend(before.into_iter().flat_map(|before| {
+            let tag = before.solver;
+            before.notes.into_iter().map(move |note| format!("{tag} stalled: {note}"))
+        }));
+        if result.status != Status::Stalled {
+            return result;
+        }
+        stalled = Some(result);
+    }
+    stalled.unwrap_or_else(|| failed("", "no path solver is registered".into()))
+}
+
+/// Solves a case along its path by one solver.
+fn traced(
+    input: &CaseInput,
+    problem: &PathProblem,
+    (tag, solver): &TaggedPathSolver,
+    observer: &mut dyn PathObserver,
+) -> CaseResult {
     let checker = match PathChecker::certifying(input.assembly, input.stages, input.settings.finite) {
         Ok(checker) => checker,
         Err(why) => return failed(tag, why),
     };
     let recorder = Recorder::new(input);
     let mut watched = Watched { checker, observer, ends: vec![None; input.stages.len()], recorder };
-    let solved = solver.trace(&problem, input.settings, &mut watched);
+    let solved = solver.trace(problem, input.settings, &mut watched);
     let energy = solver.energy_tolerance();
     let Watched { checker, ends, recorder, .. } = watched;
-    path_result(input, tag, &problem, solved, Seen { checker, ends, energy, states: recorder.chosen() })
+    path_result(input, tag, problem, solved, Seen { checker, ends, energy, states: recorder.chosen() })
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

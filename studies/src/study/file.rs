@@ -43,7 +43,9 @@ impl StudyFile {
             return Err(diagnostics);
         }
         check_variants(&root, &mut diagnostics);
+        let before = diagnostics.len();
         let table = kind_table(&root, &mut diagnostics);
+        let table_is_fine = diagnostics.len() == before;
         let expansion = match Expansion::new(&root, &kind_tables()) {
             Ok(expansion) => expansion,
             Err(wrong) => {
@@ -55,7 +57,10 @@ impl StudyFile {
         check_sets(&sets, &expansion, &mut diagnostics);
         let outline =
             Outline { variants: expansion.variants(), scenes: expansion.scenes(), axes: expansion.axes(), table };
-        check_outline(&root, &outline, &mut diagnostics);
+        // Of a table that holds mistakes nothing more is known.
+        if table_is_fine {
+            check_outline(&root, &outline, &mut diagnostics);
+        }
         Ok(StudyFile { root, expansion, outline, diagnostics })
     }
 

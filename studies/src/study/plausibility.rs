@@ -19,6 +19,9 @@ const LISTED: usize = 3;
 pub(super) fn warnings(resolved: &Map<String, Json>, assembly: &Assembly) -> Vec<String> {
     let mut found = Vec::new();
     densities(assembly, &mut found);
+    if let Some(fill) = resolved.get("scene").map(|scene| &scene["fill"]) {
+        densities_of_fill(fill, &mut found);
+    }
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
         if let Some(friction) = law["friction"].as_f64().filter(|friction| *friction > FRICTION) {
             found.push(format!(
@@ -44,20 +47,32 @@ pub(super) fn warnings(resolved: &Map<String, Json>, assembly: &Assembly) -> Vec
 fn densities(assembly: &Assembly, found: &mut Vec<String>) {
     for (index, (name, material)) in assembly.catalogue.materials.iter().enumerate() {
         let used = assembly.bodies.iter().any(|body| body.material == index && !body.fixed);
-        let density = material.density();
-        // Weightless blocks are meant.
-        if used && density != 0.0 && !(DENSITIES[0]..=DENSITIES[1]).contains(&density) {
-            let help = if (10.0..40.0).contains(&density) {
-                format!("; a specific weight is written \"{density} kN/m3\"")
-            } else {
-                String::new()
-            };
-            found.push(format!(
-                "materials.{name}.density = {density} kg/m3 is outside {} to {}, where masonry is{help}",
-                DENSITIES[0], DENSITIES[1]
-            ));
+        if used {
+            found.extend(doubted(&format!("materials.{name}.density"), material.density()));
         }
     }
+}
+
+fn densities_of_fill(fill: &Json, found: &mut Vec<String>) {
+    let own = [("density".to_string(), &fill["density"]), ("haunching.density".into(), &fill["haunching"]["density"])];
+    let layers = fill["layers"].as_array().into_iter().flatten().enumerate();
+    let layers = layers.map(|(i, layer)| (format!("layers.{i}.density"), &layer["density"]));
+    let given = own.into_iter().chain(layers).filter_map(|(key, value)| Some((key, value.as_f64()?)));
+    found.extend(given.filter_map(|(key, density)| doubted(&format!("scene.fill.{key}"), density)));
+}
+
+/// What is said of a density that masonry and its fill hardly have; what is weightless is meant.
+fn doubted(key: &str, density: f64) -> Option<String> {
+    let help = if (10.0..40.0).contains(&density) {
+        format!("; a specific weight is written \"{density} kN/m3\"")
+    } else {
+        String::new()
+    };
+    let implausible = density != 0.0 && !(DENSITIES[0]..=DENSITIES[1]).contains(&density);
+    implausible.then(|| {
+        let [least, greatest] = DENSITIES;
+        format!("{key} = {density} kg/m3 is outside {least} to {greatest}, where masonry is{help}")
+    })
 }
 
 /// The greatest distance of two edges over the length on which they face each other; `None` where they do not, or

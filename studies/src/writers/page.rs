@@ -19,20 +19,21 @@ const LIVE: &str = include_str!("page/live.js");
 
 /// A whole page: its title for the browser, its body as HTML, and the cases that the script draws.
 pub(crate) fn whole(title: &str, body: &str, cases: &[Json]) -> String {
-    page(title, body, cases, SCRIPT)
+    page((title, ""), body, cases, SCRIPT)
 }
 
 /// A page that asks its server for what it draws.
 pub(crate) fn served(title: &str, body: &str) -> String {
-    page(title, body, &[], LIVE)
+    // So that no browser asks the server for one.
+    page((title, "<link rel=\"icon\" href=\"data:,\">\n"), body, &[], LIVE)
 }
 
-fn page(title: &str, body: &str, cases: &[Json], script: &str) -> String {
+fn page((title, icon): (&str, &str), body: &str, cases: &[Json], script: &str) -> String {
     // Nothing in the data can end the script's element.
     let data = Json::from_iter(cases.iter().cloned()).to_string().replace('<', "\\u003c");
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>{STYLE}</style>\n</head>\n<body>\n{body}\
+         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n{icon}<style>{STYLE}</style>\n</head>\n<body>\n{body}\
          <script type=\"application/json\" id=\"cases\">{data}</script>\n<script>'use strict';\n{{\n{DRAW}\n{script}}}</script>\n</body>\n</html>\n",
         escape(title)
     )

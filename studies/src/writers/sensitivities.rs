@@ -54,7 +54,7 @@ pub(super) fn table(cases: &[CaseResult]) -> String {
         return String::new();
     }
     let header =
-        ["id", "number", "value", "per unit, falling", "per unit, growing", "% of the factor per 1 % of it", ""];
+        ["id", "number", "value", "per unit, falling", "per unit, growing", "% of the factor per 1 % of it", "", "key"];
     let rows = entries(cases).take(ROWS).map(|(case, entry)| {
         let slope = |x: Option<f64>| x.map_or("–".into(), |x| format_number(x, 6));
         let relative = entry.relative(case.load_factor.unwrap_or(f64::NAN));
@@ -78,6 +78,7 @@ pub(super) fn table(cases: &[CaseResult]) -> String {
             slope(entry.right),
             shares,
             words,
+            entry.key.clone(),
         ]
     });
     let more = if count > ROWS {

@@ -7,6 +7,9 @@ use voussoir::solve::Unobserved;
 use voussoir::study::{StudyFile, StudySource, Sweep};
 use voussoir_tests::Arch;
 
+/// Changes what a result file says.
+type Forgery<'f> = &'f dyn Fn(&mut Value);
+
 /// Five cases as if they were too many to be held.
 fn sweep() -> Sweep {
     let arch = Arch { voussoirs: 7, ends: "jointed", ..Arch::default() };
@@ -44,7 +47,7 @@ fn what_is_forged_is_found() {
         findings(&sweep, changed.to_string().as_bytes(), None)
     };
     let list = |value: &mut Value| value["cases"].as_array_mut().expect("cases").clone();
-    let forgeries: [(&str, &dyn Fn(&mut Value)); 9] = [
+    let forgeries: [(&str, Forgery); 9] = [
         ("3: load_factor", &|v| v["cases"][3]["load_factor"] = json!(1.0)),
         ("2: status", &|v| v["cases"][2]["status"] = json!("stands")),
         ("4: is missing", &|v| v["cases"] = list(v)[..4].into()),

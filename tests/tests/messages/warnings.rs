@@ -29,6 +29,23 @@ fn implausible_values_are_noted() {
     assert!(thick.len() == 1 && thick[0].contains("more than the span"), "{thick:?}");
 }
 
+/// The fill's densities, those of layers and of backing.
+#[test]
+fn implausible_densities_of_fill_are_noted() {
+    let fill = "[scene.fill]\ncover = 0.3\ndensity = 18.0\nhaunching = { level = 0.5, density = 23.0 }\n\
+                layers = [{ to_level = 1.0, density = 17.0 }]\n[materials.stone]";
+    let arch = "scene = \"arch\"\nprofile = { shape = \"segmental\", span = 4.0, rise = 1.0 }\nthickness = 0.4\nwidth = 1.0\n\
+                voussoirs = 7\nends = \"jointed\"";
+    let bridge = "scene = \"bridge\"\nwidth = 1.0\nspans = [{ profile = { shape = \"segmental\", span = 4.0, rise = 1.0 }, \
+                  thickness = 0.4, voussoirs = 7 }]";
+    let said = notes(&[("[materials.stone]", fill), (arch, bridge)]);
+    for (key, weight) in [("density", "18"), ("haunching.density", "23"), ("layers.0.density", "17")] {
+        let found =
+            |note: &&String| note.starts_with(&format!("scene.fill.{key} = {weight} kg/m3")) && note.contains("kN/m3");
+        assert_eq!(said.iter().filter(found).count(), 1, "{key}: {said:?}");
+    }
+}
+
 /// Two blocks on a ground, the second with its left edge at `x` below and `top` above.
 fn blocks(x: f64, top: f64, more: &str) -> Vec<String> {
     let text = format!(

@@ -108,14 +108,22 @@ fn second_route(stratum: &Stratum, scene: &SettledScene, result: &CaseResult, ow
     (apart(own, value, 1e-3) && unnamed).then(|| format!("{own:.9}, the mirror image with half the step {value:.9}"))
 }
 
+/// Processor time of this thread \[s\], where the machine tells it; other work on the machine does not make a case slow.
+fn processor_seconds(started: Instant) -> f64 {
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = told.and_then(|told| told.split(' ').next()?.parse::<f64>().ok());
+    nanoseconds.map_or(started.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
+}
+
 fn classify(k: usize) -> (Stratum, Class) {
     let mut random = Random::new(9000 + k as u64);
     let stratum = stratum(k, &mut random);
     let scene = settled_scene(&mut random, stratum.draw);
     let text = scene.study(&keys(&stratum, ""));
-    let start = Instant::now();
+    let now = Instant::now();
+    let before = processor_seconds(now);
     let result = answer(&text);
-    let seconds = start.elapsed().as_secs_f64();
+    let seconds = processor_seconds(now) - before;
     let class = match &result {
         None => Class::Crashed,
         Some(_) if seconds > 60.0 => Class::Slow,
@@ -180,15 +188,22 @@ fn family(range: std::ops::Range<usize>) -> [usize; 5] {
     total
 }
 
-/// Rigid blocks without compliance, every way to move: a settlement changes no limit load.
+/// A hundred cases of small displacements, every way to move: exact and Newton paths, compliant and elastic, and rigid
+/// blocks without compliance. Those with finite displacements take longer (`supports_that_move`).
 #[test]
-fn rigid_blocks_on_supports_that_move() {
-    assert_eq!(family(30..40), [10, 0, 0, 0, 0]);
+fn a_hundred_supports_that_move() {
+    let tens = [0, 3, 4, 7, 8, 11, 12, 16, 5, 9];
+    let wrong: Vec<[usize; 5]> = tens
+        .into_iter()
+        .map(|ten| family(10 * ten..10 * ten + 10))
+        .filter(|tally| *tally != [10, 0, 0, 0, 0])
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
 
 /// CASES=N tries N cases from FIRST on.
 #[test]
-#[ignore = "long, and 2 of the first 20 cases are refused"]
+#[ignore = "long; 6 of the first 400 cases are refused"]
 fn supports_that_move() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(other);
     let first = number("FIRST", 0);

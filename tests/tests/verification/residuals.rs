@@ -23,6 +23,9 @@ use voussoir_tests::{Arch, changed, compliant, crushing, elastic, first_case, sm
 type Lie = fn(&mut LimitAnswer);
 type FollowLie = fn(&dyn LimitSolver, &LimitProblem, &mut Vec<JointForce>, &mut [Velocity]);
 
+/// Makes a state wrong.
+type Violation<'v> = &'v dyn Fn(&mut PathState);
+
 /// A solver that answers as another one, but for a lie.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Lying {
@@ -293,7 +296,7 @@ fn each_violation_at_a_dry_joint_is_seen() {
         let force = |i: &usize| state.force[*i][0];
         (0..state.force.len()).max_by(|a, b| force(a).total_cmp(&force(b))).expect("a contact")
     };
-    let violations: [(&str, &dyn Fn(&mut PathState)); 8] = [
+    let violations: [(&str, Violation); 8] = [
         ("path_equilibrium", &|s| s.force[3][0] += 1e-5 * s.force[pressed(s)][0]),
         ("path_kinematics", &|s| s.gap[3][1] += 1e-4),
         ("path_strength", &|s| s.force[3][1] = s.force[pressed(s)][0]),
@@ -334,7 +337,7 @@ fn each_violation_of_a_law_and_of_a_yielding_block_is_seen() {
         let displacement = own.displacement.iter().enumerate().map(|(i, u)| if i == 5 { u * displace } else { *u });
         *own = Yielded { displacement: Arc::new(displacement.collect()), state: Arc::new(inner) };
     };
-    let violations: [(&str, &dyn Fn(&mut PathState)); 3] = [
+    let violations: [(&str, Violation); 3] = [
         ("path_law", &|s| s.force[0][0] *= 1.0 + 1e-5),
         ("path_inner_equilibrium", &|s| yielded(s, 1.01, 1.0)),
         ("path_yield", &|s| yielded(s, 1.0, 0.9)),

@@ -24,6 +24,9 @@ const BELIEVED: [f64; 2] = [1e-9, 1e-6];
 const UPDATES: usize = 40;
 /// Points of the active set above which they are treated on the whole system.
 const MANY: usize = 24;
+/// Points of the active set up to which its rate problem is solved by itself where flow is not associated: its matrix is
+/// dense, and pivoting takes as many steps of its size squared as it has points.
+const DENSE: usize = 400;
 /// Rounds of the active set on the whole system, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [80, 40];
 
@@ -61,6 +64,13 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
         && let Some(direction) = on_whole_system(trace, load, &active)
     {
         return Next::Go(direction);
+    }
+    if active.len() > DENSE && !trace.associated {
+        return Next::Lost(format!(
+            "the rate problem at λ = {:.9} has {} contact points in its active set, friction is not associated, and the active set on the whole system did not solve it: newton_path may",
+            trace.state.factor,
+            active.len()
+        ));
     }
     // One attempt on the present factorisation, one on a fresh one.
     for fresh in [false, true] {

@@ -32,11 +32,11 @@ impl Equations {
         let factor: Vec<f64> = driven.map(|v| v * unit).collect();
         let mut gaps = CsrMatrix::with_capacity(system.flexibility.entries() + system.kinematics.entries() + forces);
         let mut bodies: Entries = Vec::with_capacity(system.kinematics.entries());
-        for i in 0..forces {
+        for (i, factor) in factor[..forces].iter().enumerate() {
             let row = gaps.open_row();
             row.extend_from_slice(system.flexibility.row(i));
             row.extend(system.kinematics.row(i).iter().map(|&(j, v)| (forces + j, v)));
-            row.extend(Some((last, factor[i])).filter(|e| e.1 != 0.0));
+            row.extend(Some((last, *factor)).filter(|e| e.1 != 0.0));
             gaps.end_row();
             bodies.extend(system.kinematics.row(i).iter().map(|&(j, v)| (j, i, v)));
         }

@@ -18,7 +18,7 @@ use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
 use super::tangent::{modes_ahead, tangent_at};
 use super::termination::{ends_in_ray, no_step, stops};
-use super::tracer::{LoadStepEnding, Tracer, commit, end_path, moved};
+use super::tracer::{LoadStepEnding, Tracer, after_peak, commit, end_path, moved};
 use super::trial::{StepPlan, Trial, attempt, plan};
 use crate::path::energy::load_size;
 use voussoir_core::limit::Status;
@@ -81,7 +81,7 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
             return outcome;
         }
     }
-    out_of_steps(tracer, following.direction, following.limits.linear)
+    out_of_steps(tracer, following.limits.linear)
 }
 
 /// Goes on from the end of a step; how the load step ends with it, if so.
@@ -148,9 +148,6 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         return StepEnd::CutBack(following.length * accuracy.clamp(0.25, 0.7));
     }
     following.refinements = 0;
-    if let Some(shorter) = missed_slip(tracer, following, plan, &trial) {
-        return StepEnd::CutBack(shorter);
-    }
     let (direction, rate, next) = (following.direction, &following.branch.tangent, &trial.next);
     let Some(tangent) = tangent_at(&mut tracer.system, &tracer.state, next, &trial.control) else {
         return cut_back(tracer, following, "the state has no rate", rate);
@@ -159,14 +156,18 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let gained = next.factor - tracer.state.factor;
     let off = jump(rate.factor / plan.per_tangent * following.length, tangent.factor * following.length, gained);
     let by_strategy = matches!(trial.control, Control::Strategy { .. });
-    if by_strategy && finite && off > JUMP * next.factor.abs().max(unit) {
-        return cut_back(tracer, following, "the state jumps to another branch", rate);
-    }
+    let jumps = by_strategy && finite && off > JUMP * next.factor.abs().max(unit);
     let tangent = match trial.control {
         Control::Mixed { length, .. } => tangent.scaled(length.signum()),
         Control::Factor(_) => tangent.scaled(direction),
         _ => dissipating_sense(tracer, next, tangent),
     };
+    if let Some(shorter) = missed_slip(tracer, following, plan, &trial, &tangent) {
+        return StepEnd::CutBack(shorter);
+    }
+    if jumps {
+        return cut_back(tracer, following, "the state jumps to another branch", &following.branch.tangent);
+    }
     let folded = folds_back(tracer, following, &trial, &tangent);
     let tangent = if folded { tangent.scaled(-1.0) } else { tangent };
     let fell = gained * direction < -1e-10 * trial.next.factor.abs().max(unit * 1e-3);
@@ -421,26 +422,26 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
         _ => 0.5,
     };
     following.previous = Some(increment);
-    following.length =
-        accuracy.clamp(0.25, growth) * tracer.strategy.constraint(&increment, following.previous.as_ref()).value;
+    let taken = tracer.strategy.constraint(&increment, following.previous.as_ref()).value;
+    following.length = accuracy.clamp(0.25, growth) * taken;
+    if let Some(arrest) = following.arrest {
+        (following.arrest, following.length) = arrest.after(taken, following.length);
+    }
     None
 }
 
 /// The end of a path that takes too many steps.
-fn out_of_steps(tracer: &mut Tracer, direction: f64, linear: bool) -> LoadStepEnding {
+fn out_of_steps(tracer: &mut Tracer, linear: bool) -> LoadStepEnding {
     if linear && tracer.limit.peak.is_some() && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
         return end_path(tracer, Status::LimitPoint, why);
     }
     // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
     let factor = tracer.state.factor;
-    let lower = |a: f64, b: f64| if (a - b) * direction < 0.0 { a } else { b };
-    let lowest = tracer.post_peak.trough.as_ref().map_or(factor, |trough| lower(trough.factor, factor));
-    let halved = |peak: f64| (lowest - 0.5 * peak) * direction <= 0.0 && peak * direction > 0.0;
-    let fallen = tracer.limit.peak.as_ref().is_some_and(|peak| halved(peak.factor));
+    let status = if tracer.system.finite() { after_peak(tracer, true) } else { Status::Stalled };
     end_path(
         tracer,
-        if tracer.system.finite() && fallen { Status::Collapse } else { Status::Stalled },
+        status,
         format!(
             "{MOST_STEPS} steps were not enough; the last state is at factor {factor}: larger steps (continuation, first_step) or event_path may pass"
         ),

@@ -50,6 +50,26 @@ pub(super) struct Tried {
     pub search: Option<u64>,
 }
 
+/// A place within the next steps at which a point comes to rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arrest {
+    /// Length of the step that missed it first.
+    pub whole: f64,
+    /// Length from the present state to the nearest state known to lie beyond it.
+    pub beyond: f64,
+}
+
+impl Arrest {
+    /// Length of the next step after one that was taken with a length before the place, and what is known of it then.
+    pub fn after(self, taken: f64, length: f64) -> (Option<Arrest>, f64) {
+        let beyond = self.beyond - taken;
+        if beyond <= 1e-9 * self.whole {
+            return (None, length.max(self.whole));
+        }
+        (Some(Arrest { beyond, ..self }), beyond)
+    }
+}
+
 /// A load step that is followed.
 pub(super) struct Following<'d> {
     pub load_step: &'d LoadStep,
@@ -67,8 +87,8 @@ pub(super) struct Following<'d> {
     pub length: f64,
     /// Times that the step has been refined for its energy.
     pub refinements: u32,
-    /// Whether it has been shortened because a point comes to rest in it.
-    pub rests: bool,
+    /// Where a point comes to rest within the next steps.
+    pub arrest: Option<Arrest>,
     /// Sense of the factor and second-order work at the last state (finite displacements).
     pub orientation: Option<Orientation>,
     pub tried: Tried,
@@ -131,7 +151,7 @@ impl<'d> Following<'d> {
             previous: None,
             length,
             refinements: 0,
-            rests: false,
+            arrest: None,
             tried: Tried::default(),
         })
     }
@@ -142,7 +162,7 @@ impl<'d> Following<'d> {
         let mode = branch.modes.clone().unwrap_or_else(|| state.mode.clone());
         self.orientation = Orientation::of(system, &State { mode, ..state.clone() }, self.slope > 0.0);
         self.branch = branch;
-        self.previous = None;
+        (self.previous, self.arrest) = (None, None);
         self.length = BRANCH * self.limits.first;
     }
 }

@@ -1,75 +1,98 @@
 //! Whether a step up to the first peak is short enough for the history of slip (finite displacements, flow that is not
 //! associated).
 //!
-//! A step is implicit: what slides at its end has slid by what its gap says, whenever it began. Two things it misses:
+//! A step is implicit: what slides at its end has slid by what its gap says, whenever it began. While a point slides to
+//! one side that is exact. Two things it misses:
 //!
 //! - a point that comes to rest within the step keeps the slip of its beginning and loses what it slid until then, at
 //!   most its speed at the beginning times the step;
-//! - a point that begins to slide may have come to rest again before the end: two halves of the step say whether.
+//! - a point that still slides at the end, but backwards at the rate there, has slid further in between. With speeds v₀
+//!   and −v₁ at the ends it turned at the share v₀/(v₀ + v₁) of the step and loses ½ v₁²/(v₀ + v₁) of it.
 //!
-//! That is history, which no later step mends: where friction is not associated, all that follows depends on it. Such
-//! a step is shortened until what is missed is a force that does not matter.
+//! That is history, which no later step mends: where friction is not associated, all that follows depends on it. So
+//! steps end where points come to rest. The place is found between states that are taken and one known to lie beyond
+//! it: by the speeds at both ends where slip comes to rest smoothly, and where another point's event stops it, by the
+//! predictor's share up to that event. Beyond it the steps are as long again as before.
 
-use super::control::Control;
-use super::following::Following;
+use super::following::{Arrest, Following};
 use super::state::{State, Tangent};
-use super::step::solve_step;
 use super::system::StepSystem;
 use super::tangent::modes_ahead;
 use super::tracer::{Tracer, moved_along};
 use super::trial::{StepPlan, Trial};
+use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
-use voussoir_core::law::FacetMode;
+use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::Branching;
 
 /// Force that slip missed in a step may leave at a point, relative to the greatest force.
 const MISSED: f64 = 1e-7;
-/// The same by the slip of a step from which on its halves are looked at.
-const MATTERS: f64 = 1e-4;
-/// The same by which two halves of a step may differ from the whole.
-const APART: f64 = 1e-6;
 /// Length, relative to the first step, from which on steps are shortened for this.
 const SHORTEST: f64 = 1e-7;
+/// Shares of a step that misses slip within which the next one lies, and the one where nothing is known of the place.
+const SHARES: [f64; 2] = [0.03, 0.97];
+const UNKNOWN: f64 = 0.4;
+/// Greatest such share after a step that was to end before the place and did not.
+const AGAIN: f64 = 0.7;
+/// How far before another point's event a step ends, as a share of it.
+const BEFORE: f64 = 1e-4;
 
-/// Length of the step that is to be tried instead of one that misses slip.
+/// What a step misses of the slip of a point.
+struct Missed {
+    /// As a force, relative to the greatest.
+    force: f64,
+    /// Share of the step at which the point turned, if that is known.
+    place: Option<f64>,
+}
+
+/// Length of the step that is to be tried instead of one that misses slip; `end` is the rate at its end.
 pub(super) fn missed_slip(
     tracer: &mut Tracer,
     following: &mut Following,
     plan: &StepPlan,
     trial: &Trial,
+    end: &Tangent,
 ) -> Option<f64> {
     // After a peak friction may let the path cycle in small loops: following them closely leads nowhere.
-    let short = following.length <= SHORTEST * following.limits.first;
     let matters = tracer.system.finite() && !tracer.system.joints_flow_associated();
-    if !matters || tracer.limit.peak.is_some() || short {
+    if !matters || tracer.limit.peak.is_some() {
+        following.arrest = None;
         return None;
     }
-    let missed = at_rest(&tracer.system, &tracer.state, (&following.branch.tangent, plan.step), &trial.next) / MISSED;
-    if missed > 1.0 {
-        tracer.system.count("arrests", 1);
-        following.rests = true;
-        return Some(following.length * (0.5 / missed).clamp(0.1, 0.5));
-    }
-    if std::mem::take(&mut following.rests) {
-        note_choice(tracer, following, (&following.branch.tangent, plan.step), &trial.next);
-    }
-    let begins = |c: usize| slides(&tracer.system, &trial.next, c) && !slides(&tracer.system, &tracer.state, c);
-    let slip = |c: usize| trial.next.gap[c][1] - tracer.state.slip[c][1];
-    let begun: Vec<usize> = (0..trial.next.gap.len()).filter(|c| begins(*c)).collect();
-    let most = begun.iter().map(|c| as_force(&tracer.system, &trial.next, *c, slip(*c))).fold(0.0, f64::max);
-    if most <= MATTERS {
+    let length = following.length;
+    // The rate at the end is per unit of the factor where the step goes to one.
+    let by_end = if trial.reaches { (trial.next.factor - tracer.state.factor).abs() } else { length };
+    let rates = [(&following.branch.tangent, plan.step), (end, by_end)];
+    let missed = |c: usize| missed_at(&tracer.system, &tracer.state, rates, &trial.next, c);
+    let all: Vec<Missed> = (0..trial.next.gap.len()).filter_map(missed).collect();
+    let worst = all.iter().map(|missed| missed.force).fold(0.0, f64::max);
+    if worst <= MISSED || length <= SHORTEST * following.limits.first {
+        if worst > 0.0
+            && let Some(arrest) = following.arrest
+        {
+            note_choice(tracer, following, rates[0], &trial.next);
+            following.arrest = Some(Arrest { beyond: 0.0, ..arrest });
+        }
         return None;
     }
-    tracer.system.count("halved_steps", 1);
-    let apart = by_halves(tracer, following, plan, trial)? / APART;
-    (apart > 1.0).then(|| following.length * (1.0 / apart).sqrt().clamp(0.2, 0.5))
+    tracer.system.count("arrests", 1);
+    let counts = all.iter().filter(|missed| missed.force > MISSED);
+    let smooth = counts.filter_map(|missed| missed.place).reduce(f64::min);
+    let kinked = first_event(&tracer.system, &tracer.state, rates[0], &trial.next).map(|share| share * (1.0 - BEFORE));
+    let share = smooth.into_iter().chain(kinked).reduce(f64::min).unwrap_or(UNKNOWN);
+    // What was to lie before the place lies beyond it: what told it is not to be relied on.
+    let again = following.arrest.is_some_and(|arrest| length < 0.999 * arrest.beyond);
+    let most = if again { AGAIN } else { SHARES[1] };
+    let whole = following.arrest.map_or(length, |arrest| arrest.whole);
+    following.arrest = Some(Arrest { whole, beyond: length });
+    Some(length * share.clamp(SHARES[0], most))
 }
 
 /// Names a place where points come to rest though all could go on as they are: with friction that is not associated
 /// several branches may start at one state.
 fn note_choice(tracer: &mut Tracer, following: &Following, (rate, share): (&Tangent, f64), next: &State) {
     let start = tracer.state.clone();
-    let rests = |c: &usize| slides(&tracer.system, &start, *c) && next.mode[*c] == ContactMode::Stick;
+    let rests = |c: &usize| slides(&tracer.system, &start, *c).is_some() && next.mode[*c] == ContactMode::Stick;
     let Some(rests) = (0..next.mode.len()).find(rests) else { return };
     let ahead = moved_along(tracer, rate, share);
     if following.branch.modes.is_some() || modes_ahead(&mut tracer.system, &start, &ahead) != start.mode {
@@ -82,12 +105,11 @@ fn note_choice(tracer: &mut Tracer, following: &Following, (rate, share): (&Tang
     ));
 }
 
-/// Whether a point slides on one facet.
-fn slides(system: &StepSystem, state: &State, c: usize) -> bool {
-    match (state.mode[c], system.law(c)) {
-        (ContactMode::Facet(i), Some(law)) => law.facets[i as usize].mode == FacetMode::Sliding,
-        _ => false,
-    }
+/// The sense in which a point slides on one facet.
+fn slides(system: &StepSystem, state: &State, c: usize) -> Option<f64> {
+    let (ContactMode::Facet(i), Some(law)) = (state.mode[c], system.law(c)) else { return None };
+    let facet = &law.facets[i as usize];
+    (facet.mode == FacetMode::Sliding).then(|| -facet.flow[1].signum())
 }
 
 /// A slip by the force that it would release at its point, relative to the greatest force.
@@ -96,38 +118,57 @@ fn as_force(system: &StepSystem, state: &State, c: usize, slip: f64) -> f64 {
     (slip * system.stiffness(c)[1]).abs() / largest
 }
 
-/// Greatest slip, as a force, that points lose which come to rest, or turn, in a step with a share of a rate for its
-/// predictor.
-fn at_rest(system: &StepSystem, start: &State, (rate, share): (&Tangent, f64), next: &State) -> f64 {
-    let of_point = |c: usize| {
-        let Some(law) = system.law(c) else { return 0.0 };
-        let turns = match (start.mode[c], next.mode[c]) {
-            (ContactMode::Stick, _) => false,
-            (_, ContactMode::Stick) => true,
-            (ContactMode::Facet(i), ContactMode::Facet(j)) => {
-                law.facets[i as usize].flow[1] * law.facets[j as usize].flow[1] < 0.0
+/// What a step misses at a point, by the rates at both ends with the shares that make the step of them.
+fn missed_at(
+    system: &StepSystem,
+    start: &State,
+    [(begin, share), (end, by_end)]: [(&Tangent, f64); 2],
+    next: &State,
+    c: usize,
+) -> Option<Missed> {
+    let lost = |slip: f64, place: Option<f64>| Some(Missed { force: as_force(system, next, c, slip), place });
+    let before = share * begin.gap[c][1];
+    let (slid, sense) = (slides(system, start, c), slides(system, next, c));
+    match (slid, sense) {
+        // Slid on, or began to.
+        (slid, Some(sense)) if slid.is_none_or(|before| before == sense) => {
+            let after = sense * by_end * end.gap[c][1];
+            if after >= 0.0 {
+                return None;
             }
-            _ => false,
-        };
-        if turns { as_force(system, next, c, share * rate.gap[c][1]) } else { 0.0 }
-    };
-    (0..next.gap.len()).map(of_point).fold(0.0, f64::max)
+            let begun = slid.map_or(0.0, |_| (sense * before).max(0.0));
+            lost(0.5 * after * after / (begun - after), slid.map(|_| begun / (begun - after)))
+        }
+        // Came to rest, or turned; one that slides back at the beginning already has nothing to lose.
+        (Some(slid), Some(_)) => lost((slid * before).max(0.0), None),
+        (Some(slid), None) if next.mode[c] == ContactMode::Stick => lost((slid * before).max(0.0), None),
+        (None, None) if start.mode[c] != ContactMode::Stick && next.mode[c] == ContactMode::Stick => lost(before, None),
+        _ => None,
+    }
 }
 
-/// How far, as a force, slip at the end of a step differs from that of two halves. `None` where they are not found.
-fn by_halves(tracer: &mut Tracer, following: &Following, plan: &StepPlan, trial: &Trial) -> Option<f64> {
-    let start = tracer.state.clone();
-    let half = match &trial.control {
-        Control::Strategy { strategy, previous, length } => {
-            Control::Strategy { strategy: strategy.clone(), previous: *previous, length: 0.5 * length }
+/// Share of the predictor at which the first point would leave its mode that does so in the step, other than by coming
+/// to rest.
+fn first_event(system: &StepSystem, start: &State, (rate, share): (&Tangent, f64), next: &State) -> Option<f64> {
+    let of_point = |c: usize| {
+        let law = system.law(c)?;
+        let (area, force, gap) = (system.problem.contacts[c].area, start.force[c], start.gap[c]);
+        let after = [0, 1].map(|k| force[k] + share * rate.force[c][k]);
+        match (start.mode[c], next.mode[c]) {
+            (before, after) if before == after => None,
+            (ContactMode::Open | ContactMode::Corner(..), _) => {
+                let closes = -share * rate.gap[c][0];
+                (closes > 0.0).then(|| gap[0] / closes)
+            }
+            (ContactMode::Facet(_), ContactMode::Stick | ContactMode::Facet(_)) => None,
+            _ => {
+                let reached = |(i, facet): (usize, &Facet)| {
+                    let [now, then] = [slack(facet, force, area), slack(facet, after, area)];
+                    (!start.mode[c].flows_on(i) && then < 0.0 && now > 0.0).then(|| now / (now - then))
+                };
+                law.facets.iter().enumerate().filter_map(reached).reduce(f64::min)
+            }
         }
-        _ => Control::Factor(0.5 * (start.factor + trial.next.factor)),
     };
-    let guess = moved_along(tracer, &following.branch.tangent, 0.5 * plan.step);
-    let (mut middle, _) = solve_step(&mut tracer.system, &start, guess, &half).ok()?;
-    tracer.system.keep(&start, &mut middle);
-    let control = Control::Factor(trial.next.factor);
-    let (end, _) = solve_step(&mut tracer.system, &middle, trial.next.clone(), &control).ok()?;
-    let apart = |c: usize| as_force(&tracer.system, &end, c, end.gap[c][1] - trial.next.gap[c][1]);
-    Some((0..end.gap.len()).filter(|c| slides(&tracer.system, &trial.next, *c)).map(apart).fold(0.0, f64::max))
+    (0..next.gap.len()).filter_map(of_point).filter(|share| *share > 0.0 && *share < 1.0).reduce(f64::min)
 }

@@ -11,7 +11,7 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
-use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
+use super::tracer::{LoadStepEnding, Tracer, after_peak, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
 use std::sync::Arc;
@@ -38,11 +38,8 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
     let why = format!("no step from factor {} converges: {}{who}", tracer.state.factor, failure.why);
     let falls = rate.factor * direction <= 0.0;
     if tracer.system.finite() && tracer.limit.peak.is_some() {
-        return end_path(
-            tracer,
-            Status::Collapse,
-            format!("the branch after the peak was not followed further: {why}"),
-        );
+        let status = after_peak(tracer, !falls);
+        return end_path(tracer, status, format!("the branch after the peak was not followed further: {why}"));
     }
     if !tracer.strategy.passes_limit_points()
         && (falls || softens_down(tracer, rate, direction) || turns_back(tracer, rate, direction))

@@ -10,12 +10,14 @@ use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    Branching, Continuation, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
+    Branching, Continuation, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
 };
 
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
 /// come apart: what is left is rounding.
 const APART: f64 = 1e-6;
+/// Rise of the load above a peak, relative to it, that is none of rounding.
+const ABOVE: f64 = 1e-9;
 
 /// How a load step ended.
 pub(super) enum LoadStepEnding {
@@ -129,7 +131,8 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     if tracer.system.finite()
         && let Some(why) = left_its_pairing(tracer)
     {
-        let status = if tracer.limit.peak.is_some() { Status::Collapse } else { Status::Stalled };
+        let rises = (tracer.state.factor - start.factor) * direction(tracer) > 0.0;
+        let status = after_peak(tracer, rises);
         end_path(tracer, status, why);
         return false;
     }
@@ -150,6 +153,25 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
         tracer.record.notes.push(note);
     }
     LoadStepEnding::Ended
+}
+
+/// How a path with finite displacements ends whose branch after a proven peak is lost: a collapse where the load
+/// falls and is above none, or has fallen to half, where paths end; one that rises again may have a greater peak ahead.
+pub(super) fn after_peak(tracer: &Tracer, rises: bool) -> Status {
+    let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
+    let (factor, direction) = (tracer.state.factor, direction(tracer));
+    let lower = |a: f64, b: f64| if (a - b) * direction < 0.0 { a } else { b };
+    let lowest = tracer.post_peak.trough.as_ref().map_or(factor, |trough| lower(trough.factor, factor));
+    let halved = (lowest - 0.5 * peak.factor) * direction <= 0.0 && peak.factor * direction > 0.0;
+    let above = (factor - peak.factor) * direction > ABOVE * peak.factor.abs();
+    if halved || !(above || rises) { Status::Collapse } else { Status::Stalled }
+}
+
+/// Sense in which the factor of the present load step is to grow.
+fn direction(tracer: &Tracer) -> f64 {
+    let load_step = &tracer.system.problem.load_steps[tracer.load_step];
+    let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = load_step.end;
+    if target < load_step.start { -1.0 } else { 1.0 }
 }
 
 /// A pressed point that has slipped further than its pairing holds.
