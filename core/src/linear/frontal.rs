@@ -31,6 +31,9 @@ pub struct FrontalLu {
     size: usize,
 }
 
+/// Unknowns that a front eliminates at least, those of several ranks where these have few.
+const LEAST: usize = 6;
+
 /// What elimination leaves of the rows of a front: its columns, and their values one after the other.
 #[derive(Default)]
 struct Left {
@@ -119,14 +122,30 @@ fn eliminate(values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
     exchanged
 }
 
+/// Unknowns by fronts in the order of their ranks, and the front of every unknown.
+fn grouped(rank: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
+    let ranks = rank.iter().max().map_or(0, |most| most + 1);
+    let mut count = vec![0; ranks];
+    rank.iter().for_each(|rank| count[*rank] += 1);
+    let (mut front_of, mut last, mut size) = (vec![0; ranks], 0, 0);
+    for (front, count) in front_of.iter_mut().zip(count) {
+        if size >= LEAST && count > 0 {
+            (last, size) = (last + 1, 0);
+        }
+        (*front, size) = (last, size + count);
+    }
+    let front: Vec<usize> = rank.iter().map(|rank| front_of[*rank]).collect();
+    let mut unknowns: Vec<Vec<usize>> = vec![Vec::new(); last + 1];
+    front.iter().enumerate().for_each(|(j, front)| unknowns[*front].push(j));
+    (unknowns, front)
+}
+
 impl FrontalLu {
     /// Factorises a matrix whose entries stand row by row; `rank` of every unknown says when it is eliminated. `None`
     /// where it is singular in its pattern.
     pub fn new(size: usize, entries: &Entries, rank: &[usize]) -> Option<Self> {
-        let ranks = rank.iter().max().map_or(0, |most| most + 1);
-        let mut unknowns: Vec<Vec<usize>> = vec![Vec::new(); ranks];
-        rank.iter().enumerate().for_each(|(j, rank)| unknowns[*rank].push(j));
-        let mut joining: Vec<Vec<usize>> = vec![Vec::new(); ranks];
+        let (unknowns, rank) = grouped(rank);
+        let mut joining: Vec<Vec<usize>> = vec![Vec::new(); unknowns.len()];
         let (mut starts, mut at) = (Vec::with_capacity(size + 1), 0);
         starts.push(0);
         for i in 0..size {
@@ -137,11 +156,10 @@ impl FrontalLu {
             starts.push(at);
         }
         let mut place = vec![usize::MAX; size];
-        let mut fronts = Vec::with_capacity(ranks);
+        let mut fronts = Vec::with_capacity(joining.len());
         let mut left = Left::default();
         for (unknowns, joining) in unknowns.into_iter().zip(joining) {
-            let rows = joining.iter().map(|i| &entries[starts[*i]..starts[i + 1]]);
-            let (front, rest) = Front::new(unknowns, joining.clone(), rows, &left, &mut place)?;
+            let (front, rest) = Front::new(unknowns, joining, (entries, &starts), &left, &mut place)?;
             fronts.push(front);
             left = rest;
         }
@@ -155,27 +173,31 @@ impl FrontalLu {
     }
 
     fn solve_one(&self, right: &[f64]) -> Vec<f64> {
-        let mut own: Vec<Vec<f64>> = Vec::with_capacity(self.fronts.len());
+        let mut pivotal: Vec<f64> = Vec::with_capacity(self.size);
         let mut left: Vec<f64> = Vec::new();
         for front in &self.fronts {
             let pivots = front.exchanged.len();
             left.extend(front.joining.iter().map(|i| right[*i]));
             exchange(&mut left, &front.exchanged);
             substitute(&mut left, &front.eliminated, pivots);
-            let rest = left.split_off(pivots);
-            own.push(std::mem::replace(&mut left, rest));
+            pivotal.extend(left.drain(..pivots));
         }
         let mut x = vec![0.0; self.size];
-        for (front, mut own) in self.fronts.iter().zip(own).rev() {
-            let pivots = own.len();
-            let known: Vec<f64> = front.columns[pivots..].iter().map(|j| x[*j]).collect();
-            subtract_product(&mut own, &front.upper, &known);
+        let mut known: Vec<f64> = Vec::new();
+        for front in self.fronts.iter().rev() {
+            let pivots = front.exchanged.len();
+            let before = pivotal.len() - pivots;
+            let own = &mut pivotal[before..];
+            known.clear();
+            known.extend(front.columns[pivots..].iter().map(|j| x[*j]));
+            subtract_product(own, &front.upper, &known);
             for k in (0..pivots).rev() {
                 let column = &front.eliminated[k * front.height..k * front.height + k + 1];
                 let value = own[k] / column[k];
                 own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
                 x[front.columns[k]] = value;
             }
+            pivotal.truncate(before);
         }
         x
     }
@@ -184,10 +206,10 @@ impl FrontalLu {
 impl Front {
     /// Puts what is left over and the joining rows together and eliminates the `unknowns`; `place` is of no use
     /// outside.
-    fn new<'e>(
+    fn new(
         unknowns: Vec<usize>,
         joining: Vec<usize>,
-        rows: impl Iterator<Item = &'e [(usize, usize, f64)]> + Clone,
+        (entries, starts): (&Entries, &[usize]),
         left: &Left,
         place: &mut [usize],
     ) -> Option<(Front, Left)> {
@@ -197,7 +219,8 @@ impl Front {
         }
         let mut columns = unknowns;
         columns.iter().enumerate().for_each(|(k, j)| place[*j] = k);
-        let met = rows.clone().flatten().map(|entry| entry.1);
+        let rows = || joining.iter().map(|i| &entries[starts[*i]..starts[i + 1]]);
+        let met = rows().flatten().map(|entry| entry.1);
         for j in left.columns.iter().copied().chain(met) {
             if place[j] == usize::MAX {
                 place[j] = columns.len();
@@ -208,7 +231,7 @@ impl Front {
         for (j, own) in left.columns.iter().zip(left.values.chunks_exact(left.rows.max(1))) {
             values[place[*j] * height..][..left.rows].copy_from_slice(own);
         }
-        for (k, row) in rows.enumerate() {
+        for (k, row) in rows().enumerate() {
             row.iter().for_each(|&(_, j, value)| values[place[j] * height + left.rows + k] += value);
         }
         columns.iter().for_each(|j| place[*j] = usize::MAX);
@@ -235,7 +258,7 @@ mod tests {
     /// matrix solves it.
     #[test]
     fn a_chain_with_a_border_is_solved_as_by_the_whole_matrix() {
-        let (blocks, width): (usize, usize) = (7, 5);
+        let (blocks, width): (usize, usize) = (7, 6);
         let size = blocks * width + 1;
         let value = |i: usize, j: usize| ((17 * i + 31 * j * j + 3) as f64).sin();
         let mut entries: Entries = Vec::new();

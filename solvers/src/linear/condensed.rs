@@ -127,6 +127,23 @@ fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> 
     })
 }
 
+/// The contact points whose forces are condensed out, and their positions among them.
+fn condensable(rows: &CsrMatrix, shifts: &CsrMatrix, contacts: usize) -> (Vec<Point>, Vec<Option<usize>>) {
+    let forces = 2 * contacts;
+    let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
+    let (mut points, mut of) = (Vec::new(), vec![None; contacts]);
+    for (c, of) in of.iter_mut().enumerate() {
+        let own = 2 * c..2 * c + 2;
+        let alone = own.clone().all(|i| both(i).all(|(j, _)| j >= forces || j / 2 == c));
+        let inverse = if alone { own_inverse([0, 1].map(|k| both(2 * c + k)), forces) } else { None };
+        let Some(inverse) = inverse else { continue };
+        let added = own.clone().all(|i| rows.row(i).iter().all(|e| e.0 < forces));
+        *of = Some(points.len());
+        points.push(Point { first: 2 * c, inverse, across: [0; 2], added });
+    }
+    (points, of)
+}
+
 impl Condensed {
     /// Condenses and factorises equations of `size` unknowns, the first of which belong to `contacts`
     /// points, with something added that refinement takes out again. `None` where they are singular in
@@ -146,19 +163,7 @@ impl Condensed {
         let size = rows.len();
         let forces = 2 * contacts;
         let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
-        let mut alone = vec![true; contacts];
-        for i in 0..forces {
-            alone[i / 2] &= both(i).all(|(j, _)| j >= forces || j / 2 == i / 2);
-        }
-        let mut points: Vec<Point> = Vec::new();
-        let mut of = vec![None; contacts];
-        for c in (0..contacts).filter(|c| alone[*c]) {
-            if let Some(inverse) = own_inverse([0, 1].map(|k| both(2 * c + k)), forces) {
-                of[c] = Some(points.len());
-                let added = (2 * c..2 * c + 2).all(|i| rows.row(i).iter().all(|e| e.0 < forces));
-                points.push(Point { first: 2 * c, inverse, across: [0; 2], added });
-            }
-        }
+        let (mut points, of) = condensable(&rows, shifts, contacts);
         let kept: Vec<usize> = (0..size).filter(|i| *i >= forces || of[i / 2].is_none()).collect();
         let mut place = vec![usize::MAX; size];
         kept.iter().enumerate().for_each(|(k, i)| place[*i] = k);
