@@ -1,10 +1,12 @@
 //! Sparse factorisations (those of faer: the only files that know it), and one along a chain of bodies.
 
+mod cholesky;
 mod entries;
 mod frontal;
 mod ldlt;
 mod lu;
 
+pub use self::cholesky::{SparseCholesky, elimination_order};
 pub use self::entries::Entries;
 pub use self::frontal::FrontalLu;
 pub use self::ldlt::SparseLdlt;

@@ -5,6 +5,7 @@
 //! instead of the associated one.
 
 mod associated;
+mod block_program;
 pub mod chain;
 pub mod conic;
 mod engine;

@@ -25,6 +25,14 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         notes: Vec::new(),
     };
     let base = combined(&problem.fixed, &problem.varying, start);
+    let grows = matches!(question, LimitQuestion::Collapse { .. }) && problem.magnitude(&problem.varying) > 0.0;
+    let at_once = if grows { engine.greatest_if_carried(&base, &problem.varying, max - start) } else { None };
+    if let Some(greatest) = at_once {
+        answer.status = Status::Stands;
+        carried(problem, greatest, &base, (start, max), &mut answer);
+        answer.counters = engine.counters();
+        return answer;
+    }
     match engine.admissible(&base) {
         Equilibrium::Field(field) => {
             answer.field = Some(field);
@@ -59,7 +67,19 @@ fn collapse(
         answer.ray = Some(vec![JointForce::default(); problem.joints.len()]);
         return;
     }
-    match engine.greatest(base, &problem.varying, max - start) {
+    let greatest = engine.greatest(base, &problem.varying, max - start);
+    carried(problem, greatest, base, (start, max), answer);
+}
+
+/// What the greatest factor from a base load that is carried comes to.
+fn carried(
+    problem: &LimitProblem,
+    greatest: Greatest,
+    base: &Wrenches,
+    (start, max): (f64, f64),
+    answer: &mut LimitAnswer,
+) {
+    match greatest {
         Greatest::Collapse { factor, field, motion, unique } => {
             // Rounding of a zero factor is not a factor.
             let dead = problem.magnitude(base);

@@ -3,12 +3,15 @@
 use super::interior_point::{Pair, Word, solve};
 use super::polish::{balanced, polish};
 use super::system::{Loads, System};
+use crate::limit::block_program::{self, Program, Solution, Solved};
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
 use crate::limit::question::answer_by;
 use crate::limit::scale::{force_scale, force_unit, with_unit_power};
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
-use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
+use voussoir_core::limit::{
+    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer,
+};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
@@ -29,7 +32,7 @@ pub struct LimitConic {}
 #[typetag::serde(name = "limit_conic")]
 impl LimitSolver for LimitConic {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
-        answer_by(problem, question, &mut ConicEngine { problem, work: Counters::new() })
+        answer_by(problem, question, &mut engine(problem))
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
@@ -58,12 +61,16 @@ voussoir_core::inventory::submit! {
 
 /// The conic programs of a problem.
 pub fn engine(problem: &LimitProblem) -> impl Engine + '_ {
-    ConicEngine { problem, work: Counters::new() }
+    ConicEngine { problem, work: Counters::new(), carried: None, unsolved: None }
 }
 
 struct ConicEngine<'a> {
     problem: &'a LimitProblem,
     work: Counters,
+    /// Loads that were found to be carried on the way to something else, with a field.
+    carried: Option<(Wrenches, Vec<JointForce>)>,
+    /// Fixed and varying loads of which the greatest factor was not found by blocks.
+    unsolved: Option<(Wrenches, Wrenches)>,
 }
 
 enum Optimum {
@@ -112,6 +119,36 @@ impl ConicEngine<'_> {
         }
     }
 
+    /// A program by its blocks, with the work counted. `None` where it is not linear.
+    fn by_blocks(&mut self, loads: block_program::Loads, solve: impl Fn(&Program) -> Solved) -> Option<Solved> {
+        let program = Program::new(self.problem, loads)?;
+        let solved = solve(&program);
+        self.count("programs", 1);
+        self.count("interior_point_iterations", solved.iterations);
+        self.count("factorisations", solved.factorisations);
+        self.count("newton_iterations", solved.corrections);
+        Some(solved)
+    }
+
+    /// The greatest share θ ≤ 1 of `loads` by the blocks of the program.
+    fn share_by_blocks(&mut self, loads: &Wrenches, strengths: bool) -> Option<Equilibrium> {
+        if strengths {
+            let held = block_program::Loads { fixed: Some(loads), varying: loads, cap: f64::INFINITY, strengths };
+            if let Some(field) = self.by_blocks(held, block_program::stands)?.stands {
+                return Some(Equilibrium::Field(field));
+            }
+        }
+        let share = block_program::Loads { fixed: None, varying: loads, cap: 1.0, strengths };
+        let solution = self.by_blocks(share, |program| block_program::solve(program, false))?.solution?;
+        if solution.factor >= 1.0 - 1e-10 {
+            return Some(Equilibrium::Field(solution.forces));
+        }
+        let excess = 1.0 - solution.factor;
+        let mut motion = with_unit_power(loads, solution.motion);
+        motion.iter_mut().flatten().for_each(|v| *v /= excess);
+        Some(Equilibrium::Motion(motion))
+    }
+
     /// The program of the greatest factor with a force scale \[N\], and the factor that one unit of θ stands for.
     fn program(&self, fixed: &Wrenches, varying: &Wrenches, cap: f64, force: f64) -> (System, f64) {
         let unit = force / force_unit(self.problem, varying);
@@ -138,6 +175,11 @@ impl ConicEngine<'_> {
 
     /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
     fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Equilibrium {
+        if free.is_none()
+            && let Some(answer) = self.share_by_blocks(loads, strengths)
+        {
+            return answer;
+        }
         let force = force_unit(self.problem, loads);
         let system = System::new(
             self.problem,
@@ -169,6 +211,9 @@ impl ConicEngine<'_> {
 
 impl Engine for ConicEngine<'_> {
     fn admissible(&mut self, loads: &Wrenches) -> Equilibrium {
+        if let Some((_, field)) = self.carried.take_if(|(carried, _)| carried == loads) {
+            return Equilibrium::Field(field);
+        }
         self.share(loads, None, true)
     }
 
@@ -177,6 +222,12 @@ impl Engine for ConicEngine<'_> {
     }
 
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+        let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
+        let again = self.unsolved.take_if(|(known, _)| known == fixed).is_some_and(|(_, known)| known == *varying);
+        let solved = if again { None } else { self.by_blocks(loads, |program| block_program::solve(program, false)) };
+        if let Some(solution) = solved.and_then(|solved| solved.solution) {
+            return greatest_of(solution, varying);
+        }
         let force = force_scale(self.problem, fixed, varying);
         let (system, unit) = self.program(fixed, varying, cap, force);
         let optimum = self.optimum(&system);
@@ -219,7 +270,27 @@ impl Engine for ConicEngine<'_> {
         }
     }
 
+    fn greatest_if_carried(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Option<Greatest> {
+        let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
+        let solved = self.by_blocks(loads, |program| block_program::solve(program, true))?;
+        let stands = solved.stands?;
+        if solved.solution.is_none() {
+            self.carried = Some((fixed.clone(), stands));
+            self.unsolved = Some((fixed.clone(), varying.clone()));
+        }
+        Some(greatest_of(solved.solution?, varying))
+    }
+
     fn counters(&self) -> Counters {
         self.work.clone()
     }
+}
+
+/// The greatest factor of a program that was solved by its blocks.
+fn greatest_of(solution: Solution, varying: &Wrenches) -> Greatest {
+    let Solution { factor, capped, forces, motion, unique } = solution;
+    if capped {
+        return Greatest::Capped(forces);
+    }
+    Greatest::Collapse { factor, field: forces, motion: with_unit_power(varying, motion), unique }
 }

@@ -1,0 +1,185 @@
+//! The rows that bound the forces of one joint, and the inverse root of their weighted normal matrix.
+
+/// Rows of a joint at the most.
+pub const ROWS: usize = 4;
+
+/// Weight of a force that no row bounds, as of shear where a joint cannot slide.
+const UNBOUNDED: f64 = 1e-9;
+
+/// Least size of what a row adds to the others, relative to itself, for it to count as independent of them.
+const INDEPENDENT: f64 = 1e-6;
+
+/// Rows with all but one of them as a basis.
+#[derive(Debug, Clone, PartialEq)]
+struct Split {
+    /// The row that is left over, if any.
+    over: Option<usize>,
+    /// Rows of the basis.
+    basis: [usize; 3],
+    /// Inverse of the matrix of the basis, by rows.
+    inverse: [[f64; 3]; 3],
+    /// The row left over as a combination of the basis.
+    shares: [f64; 3],
+}
+
+/// The normals of the rows of a joint, of greatest entry 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cone {
+    /// Number of forces.
+    pub forces: usize,
+    /// Normals; of forces that the joint does not have the entries are zero.
+    pub normals: Vec<[f64; 3]>,
+    splits: Vec<Split>,
+}
+
+impl Cone {
+    /// Of normals. `None` where there are more than one beyond a basis.
+    pub fn new(forces: usize, normals: Vec<[f64; 3]>) -> Option<Self> {
+        if normals.len() > ROWS || forces > 3 {
+            return None;
+        }
+        // Forces that a joint does not have, and those that no row bounds, get rows of their own at the end.
+        let mut all = normals.clone();
+        let independent = |rows: &[[f64; 3]], row: &[f64; 3]| orthonormal(rows, Some(row)).1;
+        for k in 0..3 {
+            let mut unit = [0.0; 3];
+            unit[k] = 1.0;
+            if independent(&all, &unit) && (k >= forces || basis_size(&all) < 3) {
+                all.push(unit);
+            }
+        }
+        let mut splits = Vec::new();
+        match all.len() {
+            3 => splits.push(split(&all, None)?),
+            4 => splits.extend((0..4).filter_map(|over| split(&all, Some(over)))),
+            _ => return None,
+        }
+        (!splits.is_empty()).then_some(Cone { forces, normals, splits })
+    }
+
+    /// R of (Aᵀ W A)⁻¹ = R Rᵀ, by rows. Weights may differ by any power of ten: the row that weighs least is left
+    /// over from a basis, so that no difference is taken of great numbers.
+    pub fn root(&self, weights: &[f64; ROWS]) -> [[f64; 3]; 3] {
+        let weight = |row: usize| if row < self.normals.len() { weights[row] } else { UNBOUNDED };
+        let least = |split: &Split| split.over.map_or(0.0, weight);
+        let mut split = &self.splits[0];
+        for other in &self.splits[1..] {
+            if least(other) < least(split) {
+                split = other;
+            }
+        }
+        // (W_B + w c cᵀ)⁻¹ = D (I − β u uᵀ)² D with D = W_B^(−1/2), u = √w D c, β = (1 − 1/√(1 + |u|²))/|u|².
+        let inverse = split.basis.map(|row| 1.0 / weight(row).sqrt());
+        let size = least(split).sqrt();
+        let u: [f64; 3] = std::array::from_fn(|i| size * inverse[i] * split.shares[i]);
+        let squared = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+        let beta = if squared > 1e-8 { (1.0 - 1.0 / (1.0 + squared).sqrt()) / squared } else { 0.5 - 0.375 * squared };
+        let mut root = [[0.0; 3]; 3];
+        for (line, of) in root.iter_mut().zip(&split.inverse).take(self.forces) {
+            let scaled: [f64; 3] = std::array::from_fn(|i| of[i] * inverse[i]);
+            let along = beta * (scaled[0] * u[0] + scaled[1] * u[1] + scaled[2] * u[2]);
+            *line = std::array::from_fn(|i| scaled[i] - along * u[i]);
+        }
+        root
+    }
+}
+
+/// Orthonormal vectors that span rows, and whether `other` is not in their span.
+fn orthonormal(rows: &[[f64; 3]], other: Option<&[f64; 3]>) -> (Vec<[f64; 3]>, bool) {
+    let mut basis: Vec<[f64; 3]> = Vec::new();
+    let mut added = false;
+    for row in rows.iter().chain(other) {
+        let size = dot(row, row).sqrt();
+        let mut rest = *row;
+        for _ in 0..2 {
+            for known in &basis {
+                let along = dot(known, &rest);
+                (0..3).for_each(|k| rest[k] -= along * known[k]);
+            }
+        }
+        let left = dot(&rest, &rest).sqrt();
+        added = left > INDEPENDENT * size;
+        if added {
+            basis.push(rest.map(|v| v / left));
+        }
+    }
+    (basis, added)
+}
+
+fn basis_size(rows: &[[f64; 3]]) -> usize {
+    orthonormal(rows, None).0.len()
+}
+
+/// Orthonormal vectors that span rows.
+pub fn span(rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    orthonormal(rows, None).0
+}
+
+/// a · b.
+pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn split(all: &[[f64; 3]], over: Option<usize>) -> Option<Split> {
+    let basis: Vec<usize> = (0..all.len()).filter(|row| Some(*row) != over).collect();
+    let basis: [usize; 3] = basis.try_into().ok()?;
+    if basis_size(&basis.map(|row| all[row])) < 3 {
+        return None;
+    }
+    let matrix = nalgebra::Matrix3::from_fn(|i, k| all[basis[i]][k]);
+    let inverse = matrix.try_inverse()?;
+    let shares = over.map_or([0.0; 3], |over| {
+        let row = nalgebra::RowVector3::from(all[over]) * inverse;
+        [row[0], row[1], row[2]]
+    });
+    let inverse = std::array::from_fn(|i| std::array::from_fn(|k| inverse[(i, k)]));
+    Some(Split { over, basis, inverse, shares })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    fn friction(mu: f64) -> Vec<[f64; 3]> {
+        vec![[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [-mu, -mu, 1.0], [-mu, -mu, -1.0]]
+    }
+
+    /// Whatever the weights, R Rᵀ times the normal matrix is the identity, to the rounding of that product.
+    #[test]
+    fn the_root_inverts_the_normal_matrix() {
+        let cases = [
+            (3, friction(0.65), [1.0, 2.0, 3.0, 4.0]),
+            (3, friction(0.65), [1e4, 1e-4, 1e-4, 1e-3]),
+            (3, friction(0.1), [1e-4, 1e-3, 1e3, 1e-4]),
+            (3, friction(0.65)[..3].to_vec(), [0.3, 2.0, 7.0, 0.0]),
+            (2, vec![[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]], [3.0, 1e5, 0.0, 0.0]),
+            (1, vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [3.0, 0.25, 0.0, 0.0]),
+        ];
+        for (forces, normals, weights) in cases {
+            let cone = Cone::new(forces, normals.clone()).unwrap();
+            let root = cone.root(&weights);
+            let root = Matrix3::from_fn(|i, k| root[i][k]);
+            let mut normal = Matrix3::zeros();
+            for (row, weight) in normals.iter().zip(weights) {
+                let row = nalgebra::Vector3::from(*row);
+                normal += row * row.transpose() * weight;
+            }
+            let product = root.transpose() * normal * root;
+            // In directions that no row bounds it is zero.
+            for i in 0..3 {
+                let own = product.row(i).iter().fold(0.0f64, |m, v| m.max(v.abs()));
+                assert!(i >= forces || (product[(i, i)] - 1.0).abs() < 1e-10, "{forces} {weights:?} {product}");
+                assert!(own < 1.0 + 1e-10, "{forces} {weights:?} {product}");
+            }
+        }
+    }
+
+    /// Shear that cannot slide is held by a spring of almost no weight.
+    #[test]
+    fn forces_without_rows_have_soft_springs() {
+        let cone = Cone::new(3, friction(0.65)[..2].to_vec()).unwrap();
+        let root = cone.root(&[1.0, 4.0, 0.0, 0.0]);
+        assert!((root[2][2] - UNBOUNDED.powf(-0.5)).abs() < 1.0 && root[0][0].abs() == 1.0 && root[1][1].abs() == 0.5);
+    }
+}
