@@ -226,7 +226,9 @@ fn paths_of_shallow_arches_end_for_a_reason() {
         let curve = result.path.curve.expect("a curve");
         let highest = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
         let (top, last) = (curve.iter().position(|p| p[1] == highest).expect("a peak"), curve.len() - 1);
-        let far = (curve[last][0] - curve[top][0]).abs() > 0.9 * arch.stop;
+        // `stop` counts from the last limit point.
+        let from = result.path.limit_points.last().map_or(curve[top][0], |limit_point| limit_point.displacement);
+        let far = (curve[last][0] - from).abs() > 0.9 * arch.stop;
         let named = result.notes.iter().any(|note| reasons.iter().any(|reason| note.contains(reason)));
         assert!(far || named, "{rise} {stiffness}: {:?}", result.notes);
         let least = curve[top..].iter().map(|p| p[1]).fold(peak, f64::min);
