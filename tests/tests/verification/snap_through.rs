@@ -196,7 +196,8 @@ fn shallow_arches_peak_where_their_energy_does() {
 
 /// Shallow and steeper arches with friction 0.6, stopped far beyond the peak: each path ends with a peak
 /// and a certified post-peak branch, as far as `stop` says or for a reason that it names. With friction a
-/// peak has an error that falls with the step.
+/// peak has an error that falls with the step. Where the branch meets many slips, which of the reasons ends it depends
+/// on rounding: 1e-13 of the thickness changes it.
 /// Under a load at its crown the arch of rise 1.5 m on soft joints leans over from 170.3 on: the symmetric branch would
 /// peak at 180.0517, the load 0.1 % of the span beside the crown does at 176.8752.
 #[test]
@@ -207,6 +208,7 @@ fn paths_of_shallow_arches_end_for_a_reason() {
         "unloading from there has come back",
         "are paired for less",
         "was not followed further",
+        "steps were not enough",
     ];
     for (rise, stiffness, loads, peak) in [
         (0.3, 1e9, &[0.5][..], 330.5285),
@@ -226,7 +228,9 @@ fn paths_of_shallow_arches_end_for_a_reason() {
         let curve = result.path.curve.expect("a curve");
         let highest = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
         let (top, last) = (curve.iter().position(|p| p[1] == highest).expect("a peak"), curve.len() - 1);
-        let far = (curve[last][0] - curve[top][0]).abs() > 0.9 * arch.stop;
+        // `stop` counts from the last limit point.
+        let from = result.path.limit_points.last().map_or(curve[top][0], |limit_point| limit_point.displacement);
+        let far = (curve[last][0] - from).abs() > 0.9 * arch.stop;
         let named = result.notes.iter().any(|note| reasons.iter().any(|reason| note.contains(reason)));
         assert!(far || named, "{rise} {stiffness}: {:?}", result.notes);
         let least = curve[top..].iter().map(|p| p[1]).fold(peak, f64::min);
