@@ -1,7 +1,7 @@
 //! What must not change a load factor: units, scale, rotation, reflection, numbering, solver.
 
 use voussoir::core::model::geometry::Vec2;
-use voussoir_tests::{Arch, as_blocks, assert_close, changed, collapse_factor, crushing, friction};
+use voussoir_tests::{Arch, answered_within, as_blocks, assert_close, changed, collapse_factor, crushing, friction};
 
 const SOLVERS: [&str; 2] = ["limit_chain", "limit_conic"];
 
@@ -95,7 +95,9 @@ fn the_load_grows_with_the_yield_set() {
 fn a_huge_strength_tends_to_none() {
     for solver in SOLVERS {
         let unlimited = collapse_factor(&Arch { solver, ..Arch::default() }.study());
-        let huge = collapse_factor(&Arch { joint: crushing(0.6, 1e13), solver, ..Arch::default() }.study());
-        assert_close(huge, unlimited, 1e-6);
+        // The bounds differ by the rounding of the strength.
+        let huge = answered_within(&Arch { joint: crushing(0.6, 1e13), solver, ..Arch::default() }.study(), 1e-6);
+        assert!(huge.certificate.passed, "{:?}", huge.certificate);
+        assert_close(huge.load_factor.expect("a collapse"), unlimited, 1e-6);
     }
 }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use voussoir::core::limit::Status;
-use voussoir_tests::{Arch, Wall, answered, assert_close, crushing, friction};
+use voussoir_tests::{Arch, Wall, answered, answered_within, assert_close, crushing, friction};
 
 /// Random walls, pushed in random directions, with windows, dry or mortared: every answer is certified.
 #[test]
@@ -85,8 +85,9 @@ fn random_arches_are_answered_alike_by_both_solvers() {
             if voussoir::study::load(&arch.study(), "random.toml", &[]).is_err() {
                 return Ok(());
             }
-            let [chain, conic] =
-                ["limit_chain", "limit_conic"].map(|solver| answered(&Arch { solver, ..arch.clone() }.study()));
+            // The bounds differ by the rounding of strengths up to 1 GPa.
+            let [chain, conic] = ["limit_chain", "limit_conic"]
+                .map(|solver| answered_within(&Arch { solver, ..arch.clone() }.study(), 1e-8));
             for result in [&chain, &conic] {
                 assert!(result.certificate.passed, "{}: {:?}\n{}", result.solver, result.notes, arch.study());
             }
