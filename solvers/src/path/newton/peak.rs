@@ -14,6 +14,10 @@ use voussoir_core::path::ProvenPeak;
 
 /// Share of a step up to which the states on both sides of a peak are apart where one branch leads through it.
 const CONTINUOUS: f64 = 1e-3;
+/// Relative differences of the loads and displacements of two limit points that are one.
+const SAME: f64 = 1e-8;
+/// Fall of the load between two of them, relative to it, from which on the path has been elsewhere.
+const FALLEN: f64 = 1e-6;
 
 /// A peak that two states of one branch bracket.
 pub(super) struct Bracketed {
@@ -104,11 +108,23 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
 }
 
 /// Keeps a proven peak; the greatest is what the path's answer speaks of (with small displacements the first).
+/// One where the path has been before, with less load in between, is not another one: with friction a path may run in
+/// a loop, which the search for cycles ends.
 pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     let (factor, displacement) = (peak.factor, peak.state.displacement);
     let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
     if tracer.system.finite() {
         let load_step = tracer.load_step;
+        let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by * b.abs();
+        let same = |known: &&ProvenPeak| {
+            known.load_step == load_step
+                && near(factor, known.factor, SAME)
+                && near(displacement, known.displacement, SAME)
+                && !near(known.lowest, known.factor, FALLEN)
+        };
+        if tracer.limit.proven_peaks.iter().any(|known| same(&known)) {
+            return;
+        }
         tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });
         tracer.post_peak = PostPeak::default();
     }
