@@ -35,6 +35,8 @@ pub struct Step {
     pub cap: [f64; 2],
     /// Of q.
     pub q: Vec<f64>,
+    /// Of x as R of each joint's flexibility R Rᵀ times these: of size one however far flexibilities differ.
+    pub along: Vec<[f64; 3]>,
 }
 
 impl Step {
@@ -47,6 +49,7 @@ impl Step {
             multipliers: vec![[0.0; ROWS]; count],
             cap: [0.0; 2],
             q: Vec::new(),
+            along: vec![[0.0; 3]; count],
         }
     }
 }
