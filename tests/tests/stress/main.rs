@@ -7,3 +7,4 @@ mod nonassociated;
 mod path;
 mod settlements;
 mod strategies;
+mod uniqueness;
