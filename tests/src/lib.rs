@@ -13,6 +13,7 @@ pub mod gates;
 pub mod known;
 pub mod random;
 pub mod seen;
+pub mod sequence;
 pub mod settled;
 mod wall;
 pub mod written;
