@@ -1,5 +1,6 @@
 //! A step along a direction: how far it is to the next events, and what they change.
 
+use super::point::Point;
 use super::rates::{Direction, MECHANISM};
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
@@ -74,7 +75,11 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
 /// Goes a step along a direction and notes the events at its end.
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
     let unit = trace.system.units.energy();
-    let openings: Vec<f64> = (0..trace.state.points.len()).map(|c| opening_rate(trace, c, direction.gaps[c])).collect();
+    let opening = |(c, point): (usize, &Point)| match point.mode {
+        ContactMode::Stick if !point.open() => 0.0,
+        _ => opening_rate(trace, c, direction.gaps[c]),
+    };
+    let openings: Vec<f64> = trace.state.points.iter().enumerate().map(opening).collect();
     let mut dissipated = trace.state.energy.dissipated;
     for (c, point) in trace.state.points.iter().enumerate() {
         if matches!(point.mode, ContactMode::Stick | ContactMode::Open) {

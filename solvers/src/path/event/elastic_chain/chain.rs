@@ -1,11 +1,11 @@
 //! What all joints of the chain do for the redundants and the load, while points change their modes.
 
-use super::dense::add_product;
 use super::factors::{Factor, Factors};
 use super::joint::joints;
 use super::rates::ChainRates;
 use super::redundants::{MOST_WEAK, Open, closing};
 use crate::contact::mode::ContactMode;
+use crate::linear::dense::add_product;
 use crate::path::event::force_method::Sections;
 use crate::path::event::rates::Rates;
 use crate::path::system::{Load, System};
@@ -13,9 +13,11 @@ use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
 use voussoir_core::path::PathProblem;
 
 /// Changes of modes after which everything is factorised anew.
-const CHANGES: usize = 200;
+const CHANGES: usize = 1000;
 /// Changes at once from which on that is cheaper.
 const AT_ONCE: usize = 24;
+/// Points of a joint up to which their gaps are found one by one.
+const FEW: usize = 2;
 /// How much greater rates were before a change of modes from which on they are not corrected: rounding of what cancels
 /// would stay in them.
 const CANCELS: f64 = 16.0;
@@ -273,10 +275,17 @@ impl ElasticChain {
             if contacts.iter().all(|c| self.modes[*c] == ContactMode::Stick) {
                 continue;
             }
-            let gap = factor.joint.gaps(e, &|e: usize| rates.own[e].as_slice());
-            for (gap, c) in gap.chunks_exact(2).zip(contacts).filter(|(_, c)| self.modes[**c] != ContactMode::Stick) {
-                gaps[*c] = [gap[0] + load.gap[*c][0], gap[1] + load.gap[*c][1]];
+            let own = |e: usize| rates.own[e].as_slice();
+            let moving = contacts.iter().enumerate().filter(|(_, c)| self.modes[**c] != ContactMode::Stick);
+            if moving.clone().count() <= FEW {
+                moving.for_each(|(p, c)| gaps[*c] = factor.joint.gap(e, p, &own));
+            } else {
+                let all = factor.joint.gaps(e, &own);
+                moving.for_each(|(p, c)| gaps[*c] = [all[2 * p], all[2 * p + 1]]);
             }
+            contacts.iter().filter(|c| self.modes[**c] != ContactMode::Stick).for_each(|c| {
+                (0..2).for_each(|i| gaps[*c][i] += load.gap[*c][i]);
+            });
         }
         Some(Rates { x: self.unknowns(system, &rates.own), factor: 1.0, gaps, worst: 0.0, refinements: 0 })
     }

@@ -9,8 +9,8 @@
 //! M and A: what the modes of the points ask of gaps and forces. A change of a few rows of one joint is a change of the
 //! same rank of what the next one sees of it, and so on (Sherman, Morrison & Woodbury in every joint).
 
-use super::dense::{add_outer, dot, product, row_product};
 use super::joint::{Joint, ModeRows};
+use crate::linear::dense::{add_outer, dot, product, row_product};
 use nalgebra::DMatrix;
 
 /// Share of what it began with at which an update or a response has died away.

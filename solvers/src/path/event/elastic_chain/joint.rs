@@ -1,7 +1,7 @@
 //! A joint of the chain: which points it has, what they feel of each other and of the joints beside them.
 
-use super::dense::add_product;
 use crate::contact::mode::ContactMode;
+use crate::linear::dense::add_product;
 use crate::path::event::force_method::{Section, Sections};
 use crate::path::system::System;
 use nalgebra::{DMatrix, Vector3};

@@ -24,7 +24,6 @@
 
 mod chain;
 mod decide;
-mod dense;
 mod factors;
 mod joint;
 mod rates;

@@ -1,6 +1,6 @@
 //! Rates of the joints of a chain, kept from event to event.
 
-use super::dense::add_product;
+use crate::linear::dense::add_product;
 use crate::path::event::rates::largest;
 use nalgebra::{DMatrix, DVector};
 

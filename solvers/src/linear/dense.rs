@@ -1,11 +1,13 @@
-//! Products of small dense matrices with few columns.
+//! Products of small dense matrices with few columns, with the vectors of the processor.
 
 use faer::traits::pulp::Arch;
 use nalgebra::DMatrix;
 
 /// out += A x over the first rows and columns of A, four columns at a time; zeros of x cost nothing.
 pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
-    Arch::new().dispatch(|| add_columns(out, a.nrows(), a.as_slice(), x));
+    if !out.is_empty() {
+        Arch::new().dispatch(|| add_columns(out, a.nrows(), a.as_slice(), x));
+    }
 }
 
 /// The same with the vectors of the processor; the order of operations does not depend on them.
@@ -29,6 +31,32 @@ fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
     }
 }
 
+/// A times two columns added to two: each number of A is read once.
+#[inline(always)]
+fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
+    let height = first.len();
+    let second = &mut second[..height];
+    let mut columns = a.chunks_exact(height).zip(x.iter().zip(y)).filter(|(_, (x, y))| **x != 0.0 || **y != 0.0);
+    loop {
+        let next: [Option<(&[f64], (&f64, &f64))>; 4] = std::array::from_fn(|_| columns.next());
+        if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
+            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
+            for i in 0..height {
+                first[i] += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
+                second[i] += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
+            }
+            continue;
+        }
+        for (a, (x, y)) in next.into_iter().flatten() {
+            for ((first, second), a) in first.iter_mut().zip(second.iter_mut()).zip(a) {
+                *first += a * x;
+                *second += a * y;
+            }
+        }
+        return;
+    }
+}
+
 /// Dot product in four sums.
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -46,9 +74,16 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// A times columns, of which the first entries count.
 pub fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
     let mut out = DMatrix::zeros(a.nrows(), columns.ncols());
+    let (rows, entries) = (a.nrows(), columns.nrows());
     Arch::new().dispatch(|| {
-        let each = out.as_mut_slice().chunks_exact_mut(a.nrows()).zip(columns.as_slice().chunks_exact(columns.nrows()));
-        each.for_each(|(out, x)| add_columns(out, a.nrows(), a.as_slice(), x));
+        let pairs = out.as_mut_slice().chunks_mut(2 * rows).zip(columns.as_slice().chunks(2 * entries));
+        for (out, x) in pairs {
+            if x.len() == 2 * entries {
+                add_to_two(out.split_at_mut(rows), a.as_slice(), x.split_at(entries));
+            } else {
+                add_columns(out, rows, a.as_slice(), x);
+            }
+        }
     });
     out
 }
