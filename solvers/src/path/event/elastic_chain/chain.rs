@@ -16,8 +16,6 @@ use voussoir_core::path::PathProblem;
 const CHANGES: usize = 1000;
 /// Changes at once from which on that is cheaper.
 const AT_ONCE: usize = 24;
-/// Points of a joint up to which their gaps are found one by one.
-const FEW: usize = 2;
 /// How much greater rates were before a change of modes from which on they are not corrected: rounding of what cancels
 /// would stay in them.
 const CANCELS: f64 = 16.0;
@@ -277,7 +275,7 @@ impl ElasticChain {
             }
             let own = |e: usize| rates.own[e].as_slice();
             let moving = contacts.iter().enumerate().filter(|(_, c)| self.modes[**c] != ContactMode::Stick);
-            if moving.clone().count() <= FEW {
+            if 2 * moving.clone().count() <= contacts.len() {
                 moving.for_each(|(p, c)| gaps[*c] = factor.joint.gap(e, p, &own));
             } else {
                 let all = factor.joint.gaps(e, &own);
