@@ -6,3 +6,8 @@ pub(crate) mod csr;
 pub(crate) mod dense;
 pub(crate) mod updated;
 pub(crate) mod updated_inverse;
+
+/// a · b.
+pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -6,10 +6,11 @@
 use super::cone::{ROWS, dot};
 use super::polish::polish;
 use super::program::Program;
-use super::residuals::{Residuals, inner};
+use super::residuals::Residuals;
 use super::solution::Solution;
 use super::state::{State, Step};
 use super::stiffness::{Root, Stiffness};
+use crate::linear::inner;
 use voussoir_core::limit::JointForce;
 
 /// Iterations at the most, of either search.
@@ -283,7 +284,7 @@ impl Method<'_> {
             }
             dq.iter_mut().zip(&left).for_each(|(q, c)| *q += c);
         }
-        self.completed(residuals, wanted, Step { x: changes, theta, q: dq, ..Step::none(count) })
+        self.completed(residuals, wanted, Step { x: changes, theta, q: dq, ..State::none(count) })
     }
 
     /// A step in forces, θ and velocities with those of slacks and multipliers that go with it.

@@ -20,27 +20,13 @@ pub struct State {
     pub q: Vec<f64>,
 }
 
-/// A change of a state.
-#[derive(Debug, Clone)]
-pub struct Step {
-    /// Of x.
-    pub x: Vec<[f64; 3]>,
-    /// Of θ.
-    pub theta: f64,
-    /// Of the slacks.
-    pub slacks: Vec<[f64; ROWS]>,
-    /// Of the multipliers.
-    pub multipliers: Vec<[f64; ROWS]>,
-    /// Of the cap's slack and multiplier.
-    pub cap: [f64; 2],
-    /// Of q.
-    pub q: Vec<f64>,
-}
+/// A change of a state; of velocities none where there are none.
+pub type Step = State;
 
-impl Step {
-    /// No change of a program of so many joints; of velocities nothing at all.
+impl State {
+    /// Nothing, of so many joints; of velocities nothing at all.
     pub fn none(count: usize) -> Self {
-        Step {
+        State {
             x: vec![[0.0; 3]; count],
             theta: 0.0,
             slacks: vec![[0.0; ROWS]; count],
@@ -49,9 +35,7 @@ impl Step {
             q: Vec::new(),
         }
     }
-}
 
-impl State {
     /// No forces, no motion; slacks and multipliers at `size` or, where bounds are greater, theirs.
     pub fn start(program: &Program, size: f64) -> Self {
         let count = program.members.len();
