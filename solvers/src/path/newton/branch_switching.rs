@@ -101,9 +101,26 @@ pub(super) fn branch_beyond_fold(
     }
 }
 
+/// Whether points yield in some modes, other than by opening.
+fn dissipates(tracer: &Tracer, modes: &[ContactMode]) -> bool {
+    let yields = |(c, mode): (usize, &ContactMode)| {
+        *mode != ContactMode::Stick && tracer.system.law(c).is_some_and(|law| !law.opens(*mode))
+    };
+    modes.iter().enumerate().any(yields)
+}
+
+/// Whether a rate is elastic unloading of a state that was arrived at with points sliding: nothing slides on it, and it
+/// leads against the arriving motion. That is a solution from any such state, and no branch that goes on.
+fn unloads(tracer: &Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    dissipates(tracer, &tracer.state.mode) && !dissipates(tracer, modes) && !forwards(&following.branch.tangent, rate)
+}
+
 /// Whether a rate with its modes goes on along the branch on which the path has arrived, by their second-order work:
-/// the way back does not.
+/// the way back does not, nor does elastic unloading.
 fn continues(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    if unloads(tracer, following, rate, modes) {
+        return false;
+    }
     let Some(before) = &following.orientation else { return true };
     let turned = State { mode: modes.to_vec(), ..tracer.state.clone() };
     let after = Orientation::along(&mut tracer.system, &turned, rate, following.direction);

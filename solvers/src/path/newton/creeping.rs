@@ -1,4 +1,4 @@
-//! Steps that only seem to follow the path (small displacements, laws of facets): they creep.
+//! Steps that only seem to follow the path (laws of facets): they creep.
 //!
 //! With flow that is not associated the modes that a step asks for at a corner may be those of no solution: whatever
 //! its length, a point slips against its friction. A step so short that this is below the tolerance of the law
@@ -10,14 +10,14 @@ use super::control::Control;
 use super::measure::{increment_along, increment_between};
 use super::state::{State, Tangent};
 use super::system::{StepFailure, StepSystem};
-use super::tangent::tangent_at;
+use super::tangent::{gap_rounding, tangent_at};
 use super::tracer::Tracer;
 
 /// Violations below this share of the greatest force are rounding.
 const ROUNDING: f64 = 1e-14;
 
 /// Violations below this share of what the step adds to a point's own force change nothing.
-const MATTERS: f64 = 1e-3;
+const MATTERS: f64 = 1e-6;
 
 /// What another step like the last adds to its violation, relative to it, where the step creeps.
 const GROWTH: [f64; 2] = [0.3, 3.0];
@@ -25,10 +25,11 @@ const GROWTH: [f64; 2] = [0.3, 3.0];
 /// The contact point, if any, whose law a step violates, within the tolerance, in proportion to its
 /// length: with the rate of the modes at its end the violation grows by as much again.
 fn creeping_point(system: &mut StepSystem, start: &State, next: &State, control: &Control) -> Option<usize> {
-    if system.finite() || !system.piecewise_linear() || system.monotone() {
+    if !system.piecewise_linear() || system.monotone() {
         return None;
     }
     let largest = next.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let rounding = if system.finite() { gap_rounding(system, next) } else { 0.0 };
     let violation = |system: &StepSystem, c: usize, ahead: Option<(&Tangent, f64)>| {
         let Some(law) = system.law(c) else { return 0.0 };
         let rho = system.stiffness(c);
@@ -43,7 +44,8 @@ fn creeping_point(system: &mut StepSystem, start: &State, next: &State, control:
         .map(|c| (c, violation(system, c, None)))
         .filter(|&(c, now)| {
             let [n, t] = [0, 1].map(|k| next.force[c][k] - start.force[c][k]);
-            now > (ROUNDING * largest).max(MATTERS * n.hypot(t))
+            let [a, b] = system.stiffness(c);
+            now > (ROUNDING * largest).max(rounding * a.max(b)).max(MATTERS * n.hypot(t))
         })
         .collect();
     if violated.is_empty() {

@@ -15,7 +15,7 @@ use voussoir_core::limit::Status;
 const UNFOLLOWED: f64 = 1e-4;
 
 /// Length, relative to the first step, at which a corner of the path is looked for.
-const CORNER: f64 = 1e-7;
+pub(super) const CORNER: f64 = 1e-7;
 
 /// Length, relative to the first step, below which there is no step.
 pub(super) const SHORTEST: f64 = 1e-10;
@@ -30,6 +30,11 @@ pub(super) enum AfterFailure {
     Ended(LoadStepEnding),
 }
 
+/// Whether another branch has been looked for at the present state.
+pub(super) fn searched_here(tracer: &Tracer, following: &Following) -> bool {
+    following.tried.branch == tracer.system.counters.get("steps").copied()
+}
+
 /// Decides what follows a step that did not converge.
 pub(super) fn after_failure(
     tracer: &mut Tracer,
@@ -42,7 +47,7 @@ pub(super) fn after_failure(
     let steps = tracer.system.counters.get("steps").copied();
     let first = following.limits.first;
     let short = following.length <= CORNER * first;
-    let fresh = following.tried.branch != steps;
+    let fresh = !searched_here(tracer, following);
     if short
         && fresh
         && let Some(other) = yielding_blocks_branch(tracer, &following.branch.tangent, 1e-5 * first / plan.per_tangent)

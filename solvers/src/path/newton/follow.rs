@@ -2,7 +2,7 @@
 //! peak, or the path ends.
 
 use super::control::Control;
-use super::failed_step::{AfterFailure, SHORTEST, after_failure};
+use super::failed_step::{AfterFailure, CORNER, SHORTEST, after_failure, searched_here};
 use super::following::{Branch, Following, per_tangent};
 use super::limit_point::{not_followed, rising_branch};
 use super::measure::{increment_between, motion_size};
@@ -232,15 +232,21 @@ fn off_the_branch(tracer: &mut Tracer, following: &mut Following, plan: &StepPla
         return None;
     }
     let pinned = following.length < PINNED * following.limits.first;
-    if pinned && step.trial.next.mode != tracer.state.mode && before.leads_over_kink_to(after) {
+    let kinked = step.trial.next.mode != tracer.state.mode;
+    if pinned && kinked && before.leads_over_kink_to(after) {
         return None;
     }
-    if before.rises == after.rises && pinned {
+    // Where flow is not associated the path turns at a kink to one of its rates; else energy decides.
+    let turns =
+        kinked && !after.unstable && !tracer.system.joints_flow_associated() && tracer.system.piecewise_linear();
+    let unsearched = turns && !searched_here(tracer, following);
+    if before.rises == after.rises && pinned && !unsearched {
         note_bifurcation(tracer, before, after, step.trial.next.factor);
         return None;
     }
     tracer.system.count("off_the_branch", 1);
-    Some(if before.rises == after.rises {
+    let corner = turns && following.length <= CORNER * following.limits.first;
+    Some(if before.rises == after.rises && !corner {
         StepEnd::CutBack(0.3 * following.length)
     } else {
         failed(tracer, following, plan, &StepFailure::new("the step turned back, or to another branch"))
@@ -276,7 +282,8 @@ fn leave(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<L
             let why = format!(
                 "at factor {factor} the branch after the peak becomes unstable under its loads, and damped descent reaches no stable one"
             );
-            Some(end_path(tracer, Status::Collapse, why))
+            let status = after_peak(tracer, true);
+            Some(end_path(tracer, status, why))
         }
         Departure::Falls => {
             note_peak(tracer, &step.tangent, following.direction);

@@ -60,7 +60,13 @@ impl<'a> Geometry<'a> {
     pub fn rigid(&self, body: usize, point: Vec2, motion: &[[f64; 3]]) -> Vec2 {
         let [x, y, theta] = motion[body];
         let arm = point - self.problem.bodies[body].pole;
-        let swing = if self.finite { rotation(theta) * arm - arm } else { turned(arm) * theta };
+        // R a − a without the difference of what is as large as the arm: gaps round by the motions, not by the scene.
+        let swing = if self.finite {
+            let half = (0.5 * theta).sin();
+            turned(arm) * theta.sin() - arm * (2.0 * half * half)
+        } else {
+            turned(arm) * theta
+        };
         Vec2::new(x, y) + swing
     }
 
@@ -104,5 +110,45 @@ impl<'a> Geometry<'a> {
             }
         }
         f
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voussoir_core::limit::Counters;
+    use voussoir_core::path::PathBody;
+
+    /// Small turns move points by their angle times the arm to rounding of that, not of the arm; large ones as R a − a.
+    #[test]
+    fn a_small_turn_moves_a_point_to_relative_rounding() {
+        let body = PathBody {
+            members: vec![0],
+            pole: Vec2::zeros(),
+            held: false,
+            mass: 0.0,
+            points: vec![],
+            flexibility: None,
+            inelastic: None,
+        };
+        let problem = PathProblem {
+            bodies: vec![body],
+            body_of: vec![0],
+            contacts: vec![],
+            load_steps: vec![],
+            length: 1.0,
+            counters: Counters::new(),
+        };
+        let geometry = Geometry::new(&problem, true);
+        let arm = Vec2::new(0.7, -0.3);
+        for angle in [1e-12, -1e-9, 1e-6] {
+            let moved = geometry.rigid(0, arm, &[[0.0, 0.0, angle]]);
+            let second = turned(arm) * angle - arm * (0.5 * angle * angle);
+            assert!((moved - second).norm() <= 1e-15 * angle.abs() + angle.abs().powi(3), "{angle}: {moved}");
+        }
+        for angle in [0.3, -2.0, 3.1] {
+            let moved = geometry.rigid(0, arm, &[[0.0, 0.0, angle]]);
+            assert!((moved - (rotation(angle) * arm - arm)).norm() <= 1e-15, "{angle}: {moved}");
+        }
     }
 }

@@ -30,15 +30,19 @@ fn add_step(system: &StepSystem, force: &mut [[f64; 2]], motion: &mut [[f64; 3]]
     }
 }
 
+/// Differences of motions, which gaps are, beyond whose rounding a gap means nothing \[m\].
+pub(super) fn gap_rounding(system: &StepSystem, state: &State) -> f64 {
+    let gaps = state.gap.iter().flatten().map(|g| g.abs());
+    let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * system.units().length));
+    8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max)
+}
+
 /// Modes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
 /// associated the nearest mode need not be the return.
 pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (Vec<ContactMode>, bool) {
     system.count("law_evaluations", state.gap.len() as u64);
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
-    let gaps = state.gap.iter().flatten().map(|g| g.abs());
-    let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * system.units().length));
-    // Gaps are differences of motions: beyond rounding of those a gap means nothing.
-    let rounding = 8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max);
+    let rounding = gap_rounding(system, state);
     let mut holds = true;
     let modes = (0..state.gap.len())
         .map(|c| match system.law(c) {

@@ -155,16 +155,21 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
     LoadStepEnding::Ended
 }
 
-/// How a path with finite displacements ends whose branch after a proven peak is lost: a collapse where the load
-/// falls and is above none, or has fallen to half, where paths end; one that rises again may have a greater peak ahead.
+/// How a path with finite displacements ends whose branch after a proven peak is lost.
 pub(super) fn after_peak(tracer: &Tracer, rises: bool) -> Status {
     let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
-    let (factor, direction) = (tracer.state.factor, direction(tracer));
-    let lower = |a: f64, b: f64| if (a - b) * direction < 0.0 { a } else { b };
-    let lowest = tracer.post_peak.trough.as_ref().map_or(factor, |trough| lower(trough.factor, factor));
-    let halved = (lowest - 0.5 * peak.factor) * direction <= 0.0 && peak.factor * direction > 0.0;
-    let above = (factor - peak.factor) * direction > ABOVE * peak.factor.abs();
-    if halved || !(above || rises) { Status::Collapse } else { Status::Stalled }
+    let trough = tracer.post_peak.trough.as_ref().map(|trough| trough.factor);
+    lost_after_peak(direction(tracer), peak.factor, trough, (tracer.state.factor, rises))
+}
+
+/// How a path ends that is lost at a load, `rises` there or not, after its greatest peak and a trough: a collapse where
+/// the load is above no peak, and falls or has fallen to half, where paths end; one that rises may have a greater peak
+/// ahead, and one that is above its peaks has.
+fn lost_after_peak(direction: f64, peak: f64, trough: Option<f64>, (load, rises): (f64, bool)) -> Status {
+    let lowest = trough.map_or(load, |trough| if (trough - load) * direction < 0.0 { trough } else { load });
+    let halved = (lowest - 0.5 * peak) * direction <= 0.0 && peak * direction > 0.0;
+    let above = (load - peak) * direction > ABOVE * peak.abs();
+    if !above && (halved || !rises) { Status::Collapse } else { Status::Stalled }
 }
 
 /// Sense in which the factor of the present load step is to grow.
@@ -205,4 +210,33 @@ pub(super) fn moved(state: &State, rate: &Tangent, share: f64) -> State {
     }
     guess.factor += share * rate.factor;
     guess
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lost_branch_is_a_collapse_where_it_falls_or_has_fallen_to_half_below_all_peaks() {
+        let end = |trough, load, rises| {
+            let up = lost_after_peak(1.0, 10.0, trough, (load, rises));
+            let down = lost_after_peak(-1.0, -10.0, trough.map(|t: f64| -t), (-load, rises));
+            assert_eq!(up, down, "{trough:?} {load} {rises}");
+            up
+        };
+        for (trough, load, rises, status) in [
+            (None, 9.0, false, Status::Collapse),
+            (None, 9.0, true, Status::Stalled),
+            (None, 4.9, true, Status::Collapse),
+            (Some(4.9), 8.0, true, Status::Collapse),
+            (Some(5.1), 8.0, true, Status::Stalled),
+            // Above the peak there is more to come, or the greatest load itself is not known.
+            (Some(4.9), 10.1, true, Status::Stalled),
+            (Some(5.1), 10.1, false, Status::Stalled),
+            // Rounding is not above.
+            (Some(5.1), 10.0 * (1.0 + 1e-10), false, Status::Collapse),
+        ] {
+            assert_eq!(end(trough, load, rises), status, "{trough:?} {load} {rises}");
+        }
+    }
 }
