@@ -17,6 +17,7 @@
 
 use super::condensed::{Condensed, Elimination, pair};
 use super::csr::CsrMatrix;
+use super::inner;
 use std::rc::Rc;
 
 /// Entries up to which the control's row is part of the matrix.
@@ -43,10 +44,6 @@ pub struct BorderedSystem {
     held: Rc<BorderedFactors>,
     /// The control's row with c·w, where it is not part of the matrix.
     border: Option<(Vec<f64>, f64)>,
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Index of the greatest magnitude.
@@ -116,7 +113,7 @@ impl BorderedSystem {
     pub fn new(held: Rc<BorderedFactors>, control: &[f64]) -> Option<Self> {
         let border = match &held.last {
             Last::Control(_) => None,
-            Last::Unknown(w, _) => Some((control.to_vec(), Some(dot(control, w)).filter(|along| *along != 0.0)?)),
+            Last::Unknown(w, _) => Some((control.to_vec(), Some(inner(control, w)).filter(|along| *along != 0.0)?)),
         };
         Some(BorderedSystem { held, border })
     }
@@ -150,7 +147,7 @@ impl BorderedSystem {
         let mut above = right.to_vec();
         above[last] = 0.0;
         let mut z = self.held.equations.apply(&above)?;
-        let t = (right[last] - dot(control, &z)) / along;
+        let t = (right[last] - inner(control, &z)) / along;
         z.iter_mut().zip(w).for_each(|(z, w)| *z += t * w);
         z.iter().all(|v| v.is_finite()).then_some(z)
     }

@@ -5,3 +5,8 @@ pub(crate) mod condensed;
 pub(crate) mod csr;
 pub(crate) mod updated;
 pub(crate) mod updated_inverse;
+
+/// a · b.
+pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -65,20 +65,25 @@ pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
         .collect()
 }
 
-/// The first path solver that takes the problem; else the tag of the last one and why it does not.
+/// The first path solver that takes the problem and those after it that do too; else the tag of the last one and why it
+/// does not.
 pub fn willing<'a>(
     solvers: &'a [TaggedPathSolver],
     problem: &PathProblem,
     settings: &PathSettings,
-) -> Result<&'a TaggedPathSolver, (String, String)> {
+) -> Result<(&'a TaggedPathSolver, Vec<&'a TaggedPathSolver>), (String, String)> {
     let mut refusal = (String::new(), "no path solver is registered".to_string());
-    for tagged in solvers {
-        match tagged.1.refuses(problem, settings) {
-            None => return Ok(tagged),
-            Some(why) => refusal = (tagged.0.clone(), why),
+    let mut taking = solvers.iter().filter(|tagged| match tagged.1.refuses(problem, settings) {
+        None => true,
+        Some(why) => {
+            refusal = (tagged.0.clone(), why);
+            false
         }
+    });
+    match taking.next() {
+        Some(first) => Ok((first, taking.collect())),
+        None => Err(refusal),
     }
-    Err(refusal)
 }
 
 /// The limit solvers to try, in order.

@@ -92,7 +92,7 @@ fn explain_path(case: &Case, solvers: &[TaggedPathSolver], text: &mut String) {
         }
     };
     let tag = match willing(solvers, &problem, settings) {
-        Ok((tag, _)) => tag,
+        Ok(((tag, _), _)) => tag,
         Err((tag, why)) => {
             let _ = writeln!(text, "{tag}: {why}");
             return;

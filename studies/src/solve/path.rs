@@ -36,24 +36,20 @@ pub(super) fn solve_by_path(
         Ok(problem) => problem,
         Err(why) => return failed(&solvers[0].0, why),
     };
-    if let Err((tag, why)) = willing(solvers, &problem, input.settings) {
-        return failed(&tag, format!("{tag}: {why}"));
-    }
-    let takes = |tagged: &&TaggedPathSolver| tagged.1.refuses(&problem, input.settings).is_none();
-    let mut stalled: Option<CaseResult> = None;
-    for tagged in solvers.iter().filter(takes) {
-        let mut result = traced(input, &problem, tagged, observer);
-        let before = stalled.take();
-        result.notes.extend(before.into_iter().flat_map(|before| {
-            let tag = before.solver;
-            before.notes.into_iter().map(move |note| format!("{tag} stalled: {note}"))
-        }));
+    let (first, others) = match willing(solvers, &problem, input.settings) {
+        Ok(willing) => willing,
+        Err((tag, why)) => return failed(&tag, format!("{tag}: {why}")),
+    };
+    let mut result = traced(input, &problem, first, observer);
+    for next in others {
         if result.status != Status::Stalled {
-            return result;
+            break;
         }
-        stalled = Some(result);
+        let CaseResult { solver: tag, notes, .. } = result;
+        result = traced(input, &problem, next, observer);
+        result.notes.extend(notes.into_iter().map(|note| format!("{tag} stalled: {note}")));
     }
-    stalled.unwrap_or_else(|| failed("", "no path solver is registered".into()))
+    result
 }
 
 /// Solves a case along its path by one solver.

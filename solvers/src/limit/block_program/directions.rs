@@ -2,9 +2,10 @@
 
 use super::cone::{ROWS, dot};
 use super::program::Program;
-use super::residuals::{Residuals, inner};
+use super::residuals::Residuals;
 use super::state::{State, Step};
 use super::stiffness::{Root, Stiffness};
+use crate::linear::inner;
 
 /// Added to each pivot, relative to it: far less than what the directions need.
 const RELATIVE: f64 = 1e-14;

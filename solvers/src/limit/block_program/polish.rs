@@ -7,10 +7,11 @@
 
 use super::cone::{Cone, ROWS, dot, span};
 use super::program::Program;
-use super::residuals::{imbalance, inner};
+use super::residuals::imbalance;
 use super::solution::Solution;
 use super::state::State;
 use super::stiffness::{Root, Stiffness};
+use crate::linear::inner;
 
 /// Shift of the stiffness.
 const DELTA: f64 = 1e-8;
@@ -92,22 +93,25 @@ pub fn polish(
     let carrying = carrying.map(|(s, z)| std::array::from_fn(|row| z[row] > s[row])).collect();
     let capped = program.cap.is_some() && start.cap[1] > start.cap[0];
     let mut polish = Polish { program, state: start.clone(), carrying, capped, frames: Vec::new() };
-    let mut best: Option<(f64, Solution)> = None;
+    let mut best: Option<(f64, State, bool)> = None;
     for round in 0..SETS {
         if round < TOGETHER {
             polish.state = start.clone();
         }
         let v = polish.factorise(stiffness)?;
         *corrections += polish.statics(stiffness, &v) + polish.kinematics(stiffness, &v);
+        let capped = polish.capped;
         let (error, changed) = polish.judge(round >= TOGETHER);
         if best.as_ref().is_none_or(|best| error < best.0) {
-            best = Some((error, polish.solution(stiffness)?));
+            best = Some((error, polish.state.clone(), capped));
         }
         if !changed {
             break;
         }
     }
-    best
+    let (error, state, capped) = best?;
+    (polish.state, polish.capped) = (state, capped);
+    Some((error, polish.solution(stiffness)?))
 }
 
 /// A state as it is: the optimum where no set of carrying rows is clear.

@@ -3,6 +3,7 @@
 use super::cone::ROWS;
 use super::program::Program;
 use super::state::State;
+use crate::linear::inner;
 
 /// Residuals of a state.
 pub struct Residuals {
@@ -23,11 +24,6 @@ pub fn imbalance(program: &Program, x: &[[f64; 3]], theta: f64) -> Vec<f64> {
     let mut sum: Vec<f64> = program.fixed.iter().zip(&program.varying).map(|(w, p)| w + theta * p).collect();
     program.members.iter().zip(x).for_each(|(member, x)| program.press(member, x, &mut sum));
     sum
-}
-
-/// a · b.
-pub fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl Residuals {

@@ -72,8 +72,8 @@ fn scales(data: &[(f64, usize)]) -> [f64; 4] {
 }
 
 impl DataRate {
-    /// From the problem at θ, at θ + `step` and at θ + 2 `step`, a negative step for the left side: second order in the
-    /// step. An error says why there is no rate.
+    /// From the problem at θ, at θ + `step` and at θ + 2 `step`, for the left side with θ counted backwards: second order
+    /// in the step. An error says why there is no rate.
     pub fn one_sided(at: &LimitProblem, [near, far]: [&LimitProblem; 2], step: f64) -> Result<Self, String> {
         if !same_topology(at, near) || !same_topology(at, far) {
             return Err("joints, blocks or strengths are others next to the value".into());
@@ -103,17 +103,5 @@ impl DataRate {
         let fixed = at.fixed.iter().map(|_| [0; 3].map(|_| next())).collect();
         let varying = at.varying.iter().map(|_| [0; 3].map(|_| next())).collect();
         DataRate { wrenches, rows, blocks, fixed, varying }
-    }
-
-    /// The rate in the other sense of the parameter.
-    pub fn reversed(&self) -> Self {
-        let minus = |numbers: &[f64; 3]| numbers.map(|x| -x);
-        DataRate {
-            wrenches: self.wrenches.iter().map(|of| [0, 1, 2].map(|k| minus(&of[k]))).collect(),
-            rows: self.rows.iter().map(|rows| rows.iter().map(|(a, b)| (minus(a), -b)).collect()).collect(),
-            blocks: self.blocks.iter().map(|block| block.map(|x| -x)).collect(),
-            fixed: self.fixed.iter().map(minus).collect(),
-            varying: self.varying.iter().map(minus).collect(),
-        }
     }
 }

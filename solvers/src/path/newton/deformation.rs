@@ -4,6 +4,7 @@ use super::blocks::YieldingBlock;
 use super::derivatives::{Gradient, Hessian};
 use super::geometry::{Geometry, Place, Side};
 use super::loads::Loads;
+use crate::linear::inner;
 use nalgebra::{DMatrix, Matrix2};
 use voussoir_core::model::geometry::{Vec2, turned};
 
@@ -99,10 +100,6 @@ type MovedSide = (Side, Matrix2<f64>, Matrix2<f64>);
 
 fn at(v: &[f64], slot: usize) -> Vec2 {
     Vec2::new(v[2 * slot], v[2 * slot + 1])
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Adds what the deformation of a body gives.
@@ -215,7 +212,7 @@ fn add_rotations(
     // Where a block yields, C need not be symmetric: gaps by rotations take C, moments by forces Cᵀ.
     let yields = matches!(place.blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
     let across: Option<Vec<Vec<f64>>> = yields.then(|| {
-        let times = |column: &[f64]| flexibility.column_iter().map(|c| dot(c.as_slice(), column)).collect();
+        let times = |column: &[f64]| flexibility.column_iter().map(|c| inner(c.as_slice(), column)).collect();
         columns.iter().map(|(_, column)| times(column)).collect()
     });
     for (k, (of, column)) in columns.iter().enumerate() {
@@ -235,9 +232,9 @@ fn add_rotations(
             }
         }
         for (l, (other, _)) in columns.iter().enumerate() {
-            out.entries.push((theta(*of), theta(*other), dot(column, &products[l])));
+            out.entries.push((theta(*of), theta(*other), inner(column, &products[l])));
         }
-        out.factor[theta(*of)] += dot(column, by_factor);
+        out.factor[theta(*of)] += inner(column, by_factor);
     }
     let back = geometry.turn(-place.motion[body][2]);
     for (_, slot, _, load) in place.loads.growing().forces.iter().filter(|l| l.0 == body) {

@@ -25,8 +25,9 @@ use crate::contact::mode::ContactMode;
 use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::Branching;
 
-/// Force that slip missed in a step may leave at a point, relative to the greatest force.
-const MISSED: f64 = 1e-7;
+/// Force that slip missed in a step may leave at a point, relative to the greatest force; and while blocks yield, whose
+/// stresses follow the path of strain to first order in the step anyhow.
+const MISSED: [f64; 2] = [1e-7, 1e-5];
 /// Length, relative to the first step, from which on steps are shortened for this.
 const SHORTEST: f64 = 1e-7;
 /// Shares of a step that misses slip within which the next one lies, and the one where nothing is known of the place.
@@ -65,8 +66,9 @@ pub(super) fn missed_slip(
     let rates = [(&following.branch.tangent, plan.step), (end, by_end)];
     let missed = |c: usize| missed_at(&tracer.system, &tracer.state, rates, &trial.next, c);
     let all: Vec<Missed> = (0..trial.next.gap.len()).filter_map(missed).collect();
+    let tolerance = MISSED[usize::from(trial.next.yields())];
     let worst = all.iter().map(|missed| missed.force).fold(0.0, f64::max);
-    if worst <= MISSED || length <= SHORTEST * following.limits.first {
+    if worst <= tolerance || length <= SHORTEST * following.limits.first {
         if worst > 0.0
             && let Some(arrest) = following.arrest
         {
@@ -76,7 +78,7 @@ pub(super) fn missed_slip(
         return None;
     }
     tracer.system.count("arrests", 1);
-    let counts = all.iter().filter(|missed| missed.force > MISSED);
+    let counts = all.iter().filter(|missed| missed.force > tolerance);
     let smooth = counts.filter_map(|missed| missed.place).reduce(f64::min);
     let kinked = first_event(&tracer.system, &tracer.state, rates[0], &trial.next).map(|share| share * (1.0 - BEFORE));
     let share = smooth.into_iter().chain(kinked).reduce(f64::min).unwrap_or(UNKNOWN);
