@@ -11,6 +11,7 @@
 mod layout;
 mod optimum;
 mod simplex;
+mod small_lu;
 mod solver;
 
 pub use self::solver::LimitChain;

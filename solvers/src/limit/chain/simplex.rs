@@ -2,9 +2,10 @@
 //! joint by joint, stress blocks by their tangents.
 
 use super::layout::{Forms, Trees};
+use super::small_lu::SmallLu;
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use std::cmp::Ordering;
-use voussoir_core::law::StressBlock;
+use voussoir_core::law::{ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
 /// Violation of a linear row that counts, in units of the force scale.
@@ -29,11 +30,25 @@ pub enum Column {
     Artificial { variable: usize },
 }
 
+/// What every pivot reads of a row of a joint's strength.
+struct Bounded {
+    normal: [f64; 3],
+    /// In units of the force scale.
+    bound: f64,
+    /// 1, or 0 where it can have no slack.
+    margin: f64,
+}
+
 /// A linear program over the affine joint forces.
 pub struct Program<'a> {
     problem: &'a LimitProblem,
     forms: &'a Forms,
     force: f64,
+    /// Rows of all joints, one after the other, and where those of the next joint begin.
+    rows: Vec<Bounded>,
+    ends: Vec<usize>,
+    /// Whether any joint crushes.
+    crushes: bool,
     margin: bool,
     cap: f64,
     /// Number of variables.
@@ -68,15 +83,17 @@ pub struct Work {
 
 struct Basis {
     columns: Vec<Column>,
-    matrix: DMatrix<f64>,
+    /// Their gradients, one after the other.
+    matrix: Vec<f64>,
     /// Where the lexicographic rule starts from.
-    origin: DMatrix<f64>,
+    origin: Vec<f64>,
+    lu: SmallLu,
 }
 
 enum Ending {
     Optimal {
-        point: DVector<f64>,
-        weights: DVector<f64>,
+        point: Vec<f64>,
+        weights: Vec<f64>,
     },
     /// A column that enters for ever, with its weight and those of the basis that go with it.
     NoLeaving(Vec<(Column, f64)>),
@@ -86,7 +103,19 @@ enum Ending {
 impl<'a> Program<'a> {
     /// Maximises the last factor of `forms`.
     pub fn new(problem: &'a LimitProblem, forms: &'a Forms, force: f64) -> Self {
-        Program { problem, forms, force, margin: false, cap: f64::INFINITY, variables: forms.variables }
+        let count = problem.joints.iter().map(|joint| joint.strength.rows.len()).sum();
+        let (mut rows, mut ends) = (Vec::with_capacity(count), Vec::with_capacity(problem.joints.len()));
+        for joint in &problem.joints {
+            rows.extend(joint.strength.rows.iter().map(|row| Bounded {
+                normal: row.normal,
+                bound: row.bound / force,
+                margin: f64::from(u8::from(can_be_slack(row))),
+            }));
+            ends.push(rows.len());
+        }
+        let crushes = problem.joints.iter().any(|joint| joint.strength.block.is_some());
+        let (variables, cap) = (forms.variables, f64::INFINITY);
+        Program { problem, forms, force, rows, ends, crushes, margin: false, cap, variables }
     }
 
     /// Maximises the least slack of all rows instead, up to 1.
@@ -118,6 +147,17 @@ impl<'a> Program<'a> {
         })
     }
 
+    /// The same of all joints in turn; of an arch, whose variables are three redundants and a factor at the most, without
+    /// loops over them.
+    fn evaluate_all(&self, point: &[f64], constant: f64, visit: impl FnMut((usize, [f64; 3]))) {
+        let joints = self.forms.values.chunks_exact(3 * (self.forms.variables + 1));
+        match self.forms.variables {
+            3 => joints.map(|forms| affine::<3>(forms, point, constant)).enumerate().for_each(visit),
+            4 => joints.map(|forms| affine::<4>(forms, point, constant)).enumerate().for_each(visit),
+            _ => (0..self.ends.len()).map(|joint| (joint, self.evaluate(joint, point, constant))).for_each(visit),
+        }
+    }
+
     fn slack_variable(&self, point: &[f64]) -> f64 {
         if self.margin { point[self.variables - 1] } else { 0.0 }
     }
@@ -143,29 +183,25 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// A row that pins T to zero can have no slack.
     fn has_margin(&self, column: Column) -> bool {
         match column {
-            Column::Row { joint, row } => {
-                let row = &self.problem.joints[joint].strength.rows[row];
-                self.margin && !(row.normal[0] == 0.0 && row.normal[1] == 0.0 && row.bound == 0.0)
-            }
+            Column::Row { joint, row } => self.margin && can_be_slack(&self.problem.joints[joint].strength.rows[row]),
             _ => self.margin,
         }
     }
 
-    /// a and β of a column.
-    fn column(&self, column: Column) -> (DVector<f64>, f64) {
-        let mut a = DVector::zeros(self.variables);
+    /// Writes a of a column; its β.
+    fn write(&self, column: Column, a: &mut [f64]) -> f64 {
+        a.fill(0.0);
         let Some((joint, weights)) = self.weights(column) else {
             return match column {
                 Column::Artificial { variable } => {
                     a[variable] = 1.0;
-                    (a, 0.0)
+                    0.0
                 }
                 _ => {
                     a[self.variables - 1] = 1.0;
-                    (a, self.cap)
+                    self.cap
                 }
             };
         };
@@ -187,40 +223,27 @@ impl<'a> Program<'a> {
         if self.has_margin(column) {
             a[self.variables - 1] = 1.0;
         }
-        (a, beta)
+        beta
     }
 
     /// Calls `visit` with every column that is near or beyond its bound at `point`, and its
     /// violation; in the recession cone where `constant` is 0.
     fn scan(&self, point: &[f64], constant: f64, mut visit: impl FnMut(Column, f64)) {
         let slack = self.slack_variable(point);
-        for joint in 0..self.problem.joints.len() {
-            let forces = self.evaluate(joint, point, constant);
-            let strength = &self.problem.joints[joint].strength;
-            for (row, r) in strength.rows.iter().enumerate() {
-                let column = Column::Row { joint, row };
-                let s = if self.margin && self.has_margin(column) { slack } else { 0.0 };
+        let mut first = 0;
+        self.evaluate_all(point, constant, |(joint, forces)| {
+            let end = self.ends[joint];
+            for (row, r) in self.rows[first..end].iter().enumerate() {
                 let carried = r.normal[0] * forces[0] + r.normal[1] * forces[1] + r.normal[2] * forces[2];
-                visit(column, carried + s - constant * r.bound / self.force);
+                visit(Column::Row { joint, row }, carried + r.margin * slack - constant * r.bound);
             }
-            let Some(block) = self.block(joint) else {
-                continue;
-            };
-            let tension = constant * block.tension;
-            let u = forces[0] + forces[1] + tension;
-            for (end, normal) in forces.into_iter().take(2).enumerate() {
-                let w = 2.0 * normal + tension;
-                if constant == 0.0 {
-                    // The tangents at both ends of the parabola bound its recession cone.
-                    visit(Column::Tangent { joint, end, u: 0.0 }, slack - w);
-                    visit(Column::Tangent { joint, end, u: block.total }, slack + 2.0 * u - w);
-                } else {
-                    let at = u.clamp(0.0, block.total);
-                    let violation = (2.0 * u - at) * at / block.total - w + slack;
-                    visit(Column::Tangent { joint, end, u: at }, violation);
-                }
+            first = end;
+            if self.crushes
+                && let Some(block) = self.block(joint)
+            {
+                tangents(joint, &block, forces, constant, slack, &mut visit);
             }
-        }
+        });
         if self.cap.is_finite() {
             visit(Column::Cap, point[self.variables - 1] - constant * self.cap);
         }
@@ -256,7 +279,9 @@ impl<'a> Program<'a> {
 
     /// The vector a of a column.
     pub fn gradient(&self, column: Column) -> DVector<f64> {
-        self.column(column).0
+        let mut a = DVector::zeros(self.variables);
+        self.write(column, a.as_mut_slice());
+        a
     }
 
     /// Solves the program.
@@ -273,11 +298,12 @@ impl<'a> Program<'a> {
                     }
                 })
                 .collect();
-        let mut basis = Basis { columns, matrix: DMatrix::identity(m, m), origin: DMatrix::identity(m, m) };
+        let identity: Vec<f64> = (0..m * m).map(|k| f64::from(u8::from(k % (m + 1) == 0))).collect();
+        let mut basis = Basis { columns, matrix: identity.clone(), origin: identity, lu: SmallLu::new(m) };
         if !self.cap.is_finite() {
             match self.iterate(&mut basis, true, ROW_TOLERANCE, &mut work) {
                 Ending::Optimal { point, .. } if point[m - 1] > 1e-9 => {
-                    return (Outcome::Unbounded((point.clone() / point[m - 1]).as_slice().to_vec()), work);
+                    return (Outcome::Unbounded(point.iter().map(|x| x / point[m - 1]).collect()), work);
                 }
                 Ending::Optimal { .. } => {}
                 Ending::NoLeaving(_) => {
@@ -302,51 +328,54 @@ impl<'a> Program<'a> {
         (outcome, work)
     }
 
-    /// Costs of the basis: in phase one 1 for artificials of the objective, else β.
-    fn costs(&self, basis: &Basis, phase_one: bool) -> DVector<f64> {
-        DVector::from_iterator(
-            self.variables,
-            basis.columns.iter().map(|&column| match (phase_one, column) {
-                (true, Column::Artificial { .. }) => 1.0,
-                (true, _) => 0.0,
-                (false, _) => self.column(column).1,
-            }),
-        )
+    /// Cost of a column: in phase one 1 for artificials of the objective, else β.
+    fn cost(&self, column: Column, beta: f64, phase_one: bool) -> f64 {
+        match (phase_one, column) {
+            (true, Column::Artificial { .. }) => 1.0,
+            (true, _) => 0.0,
+            (false, _) => beta,
+        }
     }
 
     fn iterate(&self, basis: &mut Basis, phase_one: bool, block_tolerance: f64, work: &mut Work) -> Ending {
         let m = self.variables;
-        let mut objective = DVector::zeros(m);
-        objective[m - 1] = 1.0;
         let constant = if phase_one { 0.0 } else { 1.0 };
-        basis.origin = basis.matrix.clone();
+        basis.origin.clone_from(&basis.matrix);
+        let [mut weights, mut point, mut change, mut step] = [(); 4].map(|()| vec![0.0; m]);
+        let mut costs: Vec<f64> =
+            basis.columns.iter().map(|&column| self.cost(column, self.write(column, &mut change), phase_one)).collect();
         for _ in 0..MAX_PIVOTS {
-            let lu = basis.matrix.clone().lu();
-            let transposed = basis.matrix.transpose().lu();
-            let costs = self.costs(basis, phase_one);
-            let (Some(weights), Some(mut point)) = (lu.solve(&objective), transposed.solve(&costs)) else {
+            if !basis.lu.factorise(&basis.matrix) {
                 return Ending::Stuck("the simplex basis became singular".into());
-            };
-            // One step of refinement: λ is read off this point.
-            if let Some(step) = transposed.solve(&(&costs - basis.matrix.transpose() * &point)) {
-                point += step;
             }
-            let Some((column, _)) = self.entering(point.as_slice(), constant, block_tolerance, &basis.columns) else {
+            weights.fill(0.0);
+            weights[m - 1] = 1.0;
+            basis.lu.solve(&mut weights);
+            point.copy_from_slice(&costs);
+            basis.lu.solve_transposed(&mut point);
+            // One step of refinement: λ is read off this point.
+            for ((step, cost), column) in step.iter_mut().zip(&costs).zip(basis.matrix.chunks_exact(m)) {
+                *step = cost - column.iter().zip(&point).map(|(a, x)| a * x).sum::<f64>();
+            }
+            basis.lu.solve_transposed(&mut step);
+            point.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
+            let Some((column, _)) = self.entering(&point, constant, block_tolerance, &basis.columns) else {
                 return Ending::Optimal { point, weights };
             };
-            let a = self.gradient(column);
-            let Some(change) = lu.solve(&a) else {
-                return Ending::Stuck("the simplex basis became singular".into());
-            };
-            let reference = lu.solve(&basis.origin).unwrap_or_else(|| DMatrix::identity(m, m));
-            let Some(leaving) = leaving(&weights, &change, &reference) else {
+            // The entering column, which the step no longer needs.
+            let entering = &mut step;
+            let beta = self.write(column, entering);
+            change.copy_from_slice(entering);
+            basis.lu.solve(&mut change);
+            let Some(leaving) = leaving(&weights, &change, &mut basis.lu, &basis.origin) else {
                 let steady =
                     basis.columns.iter().zip(change.iter()).map(|(&column, change)| (column, (-change).max(0.0)));
                 let moving = steady.chain([(column, 1.0)]).filter(|(_, weight)| *weight > 0.0);
                 return Ending::NoLeaving(moving.collect());
             };
             basis.columns[leaving] = column;
-            basis.matrix.set_column(leaving, &a);
+            basis.matrix[leaving * m..(leaving + 1) * m].copy_from_slice(entering);
+            costs[leaving] = self.cost(column, beta, phase_one);
             work.pivots += 1;
         }
         Ending::Stuck(format!("no optimum after {MAX_PIVOTS} pivots"))
@@ -355,40 +384,33 @@ impl<'a> Program<'a> {
     /// Replaces artificials, which stand at zero, by real columns wherever some column can.
     fn drive_out(&self, basis: &mut Basis) {
         let m = self.variables;
+        let (mut row, mut gradient) = (vec![0.0; m], vec![0.0; m]);
         for place in 0..m {
-            if !matches!(basis.columns[place], Column::Artificial { .. }) {
+            if !matches!(basis.columns[place], Column::Artificial { .. }) || !basis.lu.factorise(&basis.matrix) {
                 continue;
             }
-            let mut unit = DVector::zeros(m);
-            unit[place] = 1.0;
-            let Some(row) = basis.matrix.transpose().lu().solve(&unit) else {
-                continue;
-            };
+            row.fill(0.0);
+            row[place] = 1.0;
+            basis.lu.solve_transposed(&mut row);
             let mut best: (f64, Option<Column>) = (1e-9, None);
             let origin = vec![0.0; m];
             self.scan(&origin, 0.0, |column, _| {
-                let size = row.dot(&self.gradient(column)).abs();
+                self.write(column, &mut gradient);
+                let size = row.iter().zip(&gradient).map(|(r, g)| r * g).sum::<f64>().abs();
                 if size > best.0 && !basis.columns.contains(&column) {
                     best = (size, Some(column));
                 }
             });
             if let Some(column) = best.1 {
                 basis.columns[place] = column;
-                basis.matrix.set_column(place, &self.gradient(column));
+                self.write(column, &mut basis.matrix[place * m..(place + 1) * m]);
             }
         }
     }
 
     /// Turns the last basis into an answer; where stress blocks are active, Newton's method on them.
     /// `last`: the tangents are near enough to stand for their blocks where Newton's method fails.
-    fn finish(
-        &self,
-        basis: &Basis,
-        point: DVector<f64>,
-        weights: DVector<f64>,
-        last: bool,
-        work: &mut Work,
-    ) -> Outcome {
+    fn finish(&self, basis: &Basis, mut point: Vec<f64>, weights: Vec<f64>, last: bool, work: &mut Work) -> Outcome {
         let mut merged: Vec<(Column, f64)> = Vec::new();
         for (&column, &weight) in basis.columns.iter().zip(weights.iter()) {
             let same = |other: &Column| match (column, *other) {
@@ -403,7 +425,6 @@ impl<'a> Program<'a> {
             }
         }
         merged.retain(|(column, _)| !matches!(column, Column::Artificial { .. }));
-        let mut point = point.as_slice().to_vec();
         if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. })) {
             // Rows that stand at zero may be active by chance; with too few the system is singular.
             let mut failed = String::new();
@@ -432,6 +453,7 @@ impl<'a> Program<'a> {
     /// Stationarity Σ y_i ∇c_i(v) = c with c_i(v) = 0 for the columns given.
     fn newton(&self, point: &mut [f64], columns: &mut [(Column, f64)], work: &mut Work) -> Result<(), String> {
         let (m, k) = (self.variables, columns.len());
+        let mut a = vec![0.0; m];
         for _ in 0..30 {
             work.newton_iterations += 1;
             let mut kkt = DMatrix::zeros(m + k, m + k);
@@ -449,7 +471,7 @@ impl<'a> Program<'a> {
                     let mut hessian = kkt.view_mut((0, 0), (m, m));
                     hessian += &curvature;
                 }
-                let (a, beta) = self.column(*column);
+                let beta = self.write(*column, &mut a);
                 for i in 0..m {
                     kkt[(i, m + place)] = a[i];
                     kkt[(m + place, i)] = a[i];
@@ -520,24 +542,70 @@ impl<'a> Program<'a> {
     }
 }
 
-/// The place that leaves: least y/d over d > 0, ties by the lexicographic rule on the rows of
-/// `reference`, which keeps degenerate pivots from cycling.
-fn leaving(weights: &DVector<f64>, change: &DVector<f64>, reference: &DMatrix<f64>) -> Option<usize> {
-    let largest = change.amax();
-    let candidates = (0..change.len()).filter(|&k| change[k] > 1e-11 * largest.max(1e-300));
-    candidates.min_by(|&a, &b| {
-        let ratio = |k: usize, value: f64| value / change[k];
-        let close = |x: f64, y: f64| (x - y).abs() <= 1e-13 * (1.0 + x.abs().max(y.abs()));
-        let (x, y) = (ratio(a, weights[a].max(0.0)), ratio(b, weights[b].max(0.0)));
+/// A row that pins T to zero can have no slack.
+fn can_be_slack(row: &ForceRow) -> bool {
+    !(row.normal[0] == 0.0 && row.normal[1] == 0.0 && row.bound == 0.0)
+}
+
+/// The three forms of a joint at a point of V variables.
+fn affine<const V: usize>(forms: &[f64], point: &[f64], constant: f64) -> [f64; 3] {
+    let Some(point) = point.first_chunk::<V>() else { return [0.0; 3] };
+    let mut rows = forms.chunks_exact(V + 1);
+    std::array::from_fn(|_| {
+        let Some((form, last)) = rows.next().and_then(|row| row.split_first_chunk::<V>()) else { return 0.0 };
+        (0..V).map(|k| form[k] * point[k]).sum::<f64>() + constant * last[0]
+    })
+}
+
+/// Visits the tangents of a stress block next to the forces of its joint.
+fn tangents(
+    joint: usize,
+    block: &StressBlock,
+    forces: [f64; 3],
+    constant: f64,
+    slack: f64,
+    visit: &mut impl FnMut(Column, f64),
+) {
+    let tension = constant * block.tension;
+    let u = forces[0] + forces[1] + tension;
+    for (end, normal) in forces.into_iter().take(2).enumerate() {
+        let w = 2.0 * normal + tension;
+        if constant == 0.0 {
+            // The tangents at both ends of the parabola bound its recession cone.
+            visit(Column::Tangent { joint, end, u: 0.0 }, slack - w);
+            visit(Column::Tangent { joint, end, u: block.total }, slack + 2.0 * u - w);
+        } else {
+            let at = u.clamp(0.0, block.total);
+            let violation = (2.0 * u - at) * at / block.total - w + slack;
+            visit(Column::Tangent { joint, end, u: at }, violation);
+        }
+    }
+}
+
+/// The place that leaves: least y/d over d > 0, ties by the lexicographic rule on the rows of the basis' inverse times
+/// `origin`, which keeps degenerate pivots from cycling.
+fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) -> Option<usize> {
+    let m = change.len();
+    let largest = change.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let close = |x: f64, y: f64| (x - y).abs() <= 1e-13 * (1.0 + x.abs().max(y.abs()));
+    // Columns of the rule so far: most pivots need none.
+    let mut reference: Vec<f64> = Vec::new();
+    let mut order = |a: usize, b: usize| {
+        let (x, y) = (weights[a].max(0.0) / change[a], weights[b].max(0.0) / change[b]);
         if !close(x, y) {
             return x.total_cmp(&y);
         }
-        for column in 0..reference.ncols() {
-            let (x, y) = (ratio(a, reference[(a, column)]), ratio(b, reference[(b, column)]));
+        for column in 0..m {
+            if reference.len() == column * m {
+                reference.extend_from_slice(&origin[column * m..(column + 1) * m]);
+                lu.solve(&mut reference[column * m..]);
+            }
+            let (x, y) = (reference[column * m + a] / change[a], reference[column * m + b] / change[b]);
             if !close(x, y) {
                 return x.total_cmp(&y);
             }
         }
         Ordering::Equal
-    })
+    };
+    (0..m).filter(|&k| change[k] > 1e-11 * largest.max(1e-300)).min_by(|&a, &b| order(a, b))
 }

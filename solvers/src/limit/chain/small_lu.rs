@@ -1,0 +1,110 @@
+//! L U of small dense matrices, with partial pivoting: one factorisation for A x = b and for Aᵀ x = b, without allocation.
+
+/// Factors of one matrix at a time, all of the same size.
+#[derive(Debug, Clone)]
+pub struct SmallLu {
+    size: usize,
+    /// By rows: U, and L below the diagonal.
+    values: Vec<f64>,
+    /// Rows of the matrix in the order of pivots.
+    order: Vec<usize>,
+    /// A copy of a right-hand side.
+    copy: Vec<f64>,
+}
+
+impl SmallLu {
+    /// For matrices of this size.
+    pub fn new(size: usize) -> Self {
+        SmallLu { size, values: vec![0.0; size * size], order: (0..size).collect(), copy: vec![0.0; size] }
+    }
+
+    /// Factorises a matrix given by columns. Whether it has an inverse.
+    pub fn factorise(&mut self, columns: &[f64]) -> bool {
+        let n = self.size;
+        for (j, column) in columns.chunks_exact(n).enumerate() {
+            column.iter().enumerate().for_each(|(i, v)| self.values[i * n + j] = *v);
+        }
+        self.order.iter_mut().enumerate().for_each(|(i, row)| *row = i);
+        for k in 0..n {
+            let size = |row: usize| self.values[row * n + k].abs();
+            let pivot = (k..n).fold(k, |best, row| if size(row) > size(best) { row } else { best });
+            if pivot != k {
+                let (upper, lower) = self.values.split_at_mut(pivot * n);
+                upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
+                self.order.swap(k, pivot);
+            }
+            let (upper, lower) = self.values.split_at_mut((k + 1) * n);
+            let row = &upper[k * n..];
+            if row[k] == 0.0 || !row[k].is_finite() {
+                return false;
+            }
+            for below in lower.chunks_exact_mut(n) {
+                let factor = below[k] / row[k];
+                below[k] = factor;
+                below[k + 1..].iter_mut().zip(&row[k + 1..n]).for_each(|(b, r)| *b -= factor * r);
+            }
+        }
+        true
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve(&mut self, b: &mut [f64]) {
+        let n = self.size;
+        self.copy.copy_from_slice(b);
+        for i in 0..n {
+            let row = &self.values[i * n..(i + 1) * n];
+            let known: f64 = row[..i].iter().zip(b.iter()).map(|(l, x)| l * x).sum();
+            b[i] = self.copy[self.order[i]] - known;
+        }
+        for i in (0..n).rev() {
+            let row = &self.values[i * n..(i + 1) * n];
+            let known: f64 = row[i + 1..].iter().zip(&b[i + 1..]).map(|(u, x)| u * x).sum();
+            b[i] = (b[i] - known) / row[i];
+        }
+    }
+
+    /// Solves Aᵀ x = b in place.
+    pub fn solve_transposed(&mut self, b: &mut [f64]) {
+        let n = self.size;
+        self.copy.copy_from_slice(b);
+        let y = &mut self.copy;
+        for i in 0..n {
+            let row = &self.values[i * n..(i + 1) * n];
+            let x = y[i] / row[i];
+            y[i] = x;
+            y[i + 1..].iter_mut().zip(&row[i + 1..]).for_each(|(y, u)| *y -= u * x);
+        }
+        for i in (0..n).rev() {
+            let x = y[i];
+            let row = &self.values[i * n..i * n + i];
+            y[..i].iter_mut().zip(row).for_each(|(y, l)| *y -= l * x);
+        }
+        self.order.iter().zip(y.iter()).for_each(|(row, x)| b[*row] = *x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both products give the right-hand sides back; a matrix without inverse is seen.
+    #[test]
+    fn both_systems_are_solved() {
+        let n = 5;
+        let columns: Vec<f64> = (0..n * n).map(|k| (k as f64 * 1.7 + 0.3).sin()).collect();
+        let mut lu = SmallLu::new(n);
+        assert!(lu.factorise(&columns));
+        let right: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5).cos()).collect();
+        let (mut x, mut y) = (right.clone(), right.clone());
+        lu.solve(&mut x);
+        lu.solve_transposed(&mut y);
+        for i in 0..n {
+            let own: f64 = (0..n).map(|j| columns[j * n + i] * x[j]).sum();
+            let transposed: f64 = (0..n).map(|j| columns[i * n + j] * y[j]).sum();
+            assert!((own - right[i]).abs() < 1e-13 && (transposed - right[i]).abs() < 1e-13);
+        }
+        let twice: Vec<f64> = columns[..n].iter().chain(&columns[..n * (n - 1)]).copied().collect();
+        let singular = !lu.factorise(&twice) || lu.values[n * n - 1].abs() < 1e-15;
+        assert!(singular && !SmallLu::new(2).factorise(&[0.0; 4]));
+    }
+}
