@@ -236,11 +236,32 @@ impl New {
 /// Does what the arguments of the process ask for; 0 all cases answered and certified, 1 some case not,
 /// 2 wrong input, 3 cannot read or write.
 pub fn main() -> ExitCode {
+    #[cfg(feature = "external")]
+    if let Some(code) = behaviour_for_another() {
+        return code;
+    }
     match main_from(std::env::args_os().skip(1)) {
         Ok(code) => ExitCode::from(code),
         // Asked for help or version, or not understood: said, and ended as clap does.
         Err(said) => said.exit(),
     }
+}
+
+/// The word after which this program runs a library's behaviour for another process; no command that users need.
+#[cfg(feature = "external")]
+const WORKER: &str = "run-behaviour";
+
+/// Where this process was started to run a behaviour apart, what that came to; else behaviours run apart in this program.
+#[cfg(feature = "external")]
+fn behaviour_for_another() -> Option<ExitCode> {
+    if std::env::args_os().nth(1).is_some_and(|word| word == WORKER) {
+        let ended = crate::external::serve();
+        return Some(if ended.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(commands::NO_ACCESS) });
+    }
+    if let Ok(program) = std::env::current_exe() {
+        crate::external::isolate_with(program, vec![WORKER.into()]);
+    }
+    None
 }
 
 /// The same for given arguments, without the program's name; an error is what clap has to say instead.

@@ -59,12 +59,12 @@ pub(crate) struct Step<const N: usize> {
 }
 
 /// The state of the behaviour changed.
-const INELASTIC: UpdateBranch = UpdateBranch::new("inelastic", Effect::Yielding);
+pub(crate) const INELASTIC: UpdateBranch = UpdateBranch::new("inelastic", Effect::Yielding);
 
 /// Key and what is wrong with it.
-type Wrong = Vec<(String, String)>;
+pub(crate) type Wrong = Vec<(String, String)>;
 
-fn wrong<T>(key: &str, message: String) -> Result<T, Wrong> {
+pub(crate) fn wrong<T>(key: &str, message: String) -> Result<T, Wrong> {
     Err(vec![(key.into(), message)])
 }
 
@@ -100,7 +100,13 @@ impl Kept {
 /// Messages that are kept word by word; a library may number its own without end.
 const MESSAGES: usize = 1000;
 
-fn message(text: &str) -> &'static str {
+/// The list of texts, kept for ever.
+pub(crate) fn names(texts: &[String]) -> &'static [&'static str] {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner).list(texts)
+}
+
+/// A text, kept for ever.
+pub(crate) fn message(text: &str) -> &'static str {
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if kept.texts.len() < MESSAGES { kept.text(text) } else { "the external behaviour could not integrate the step" }
 }
@@ -121,6 +127,20 @@ fn ordered(key: &str, names: &[String], given: &BTreeMap<String, f64>) -> Result
         return Err(complaints);
     }
     Ok(names.iter().map(|name| given[name]).collect())
+}
+
+/// The tangent of the untouched behaviour, from a step from rest to rest.
+pub(crate) fn check_rest<const N: usize>(step: Result<Step<N>, UpdateFailure>) -> Result<[[f64; N]; N], Wrong> {
+    match step {
+        Err(why) => wrong("behaviour", format!("it refuses a step from rest to rest: {why}")),
+        Ok(step) if (0..N).any(|i| step.tangent[i][i] <= 0.0) => {
+            wrong("behaviour", format!("its tangent at rest is not stiff: {:?}", step.tangent))
+        }
+        Ok(step) if step.forces.iter().any(|force| *force != 0.0) => {
+            wrong("behaviour", format!("it carries {:?} at rest", step.forces))
+        }
+        Ok(step) => Ok(step.tangent),
+    }
 }
 
 impl Behaviour {
@@ -159,31 +179,16 @@ impl Behaviour {
         let internal = state.len();
         state.extend((0..N).map(|i| format!("gradient_{i} [-]")).chain((0..N).map(|i| format!("force_{i} [Pa]"))));
         state.extend(["stored [J]".to_string(), "dissipated [J]".into()]);
-        let names = KEPT.lock().unwrap_or_else(PoisonError::into_inner).list(&state);
+        let names = self::names(&state);
         let Some(integrate) = symbols.function() else {
             let symbol = format!("{}_{}", request.behaviour, family.hypothesis);
             return wrong("behaviour", format!("the library has no function {symbol}"));
         };
         let behaviour =
             Behaviour { integrate, properties, external, density: request.density, internal, names, energies };
-        behaviour.at_rest::<N>()?;
+        let rest = vec![0.0; behaviour.names.len()];
+        check_rest(behaviour.step([0.0; N], 0.0, &rest, &mut rest.clone()))?;
         Ok(behaviour)
-    }
-
-    /// The tangent of the untouched behaviour.
-    pub fn at_rest<const N: usize>(&self) -> Result<[[f64; N]; N], Wrong> {
-        let old = vec![0.0; self.names.len()];
-        let mut new = old.clone();
-        match self.step([0.0; N], 0.0, &old, &mut new) {
-            Err(why) => wrong("behaviour", format!("it refuses a step from rest to rest: {why}")),
-            Ok(step) if (0..N).any(|i| step.tangent[i][i] <= 0.0) => {
-                wrong("behaviour", format!("its tangent at rest is not stiff: {:?}", step.tangent))
-            }
-            Ok(step) if step.forces.iter().any(|force| *force != 0.0) => {
-                wrong("behaviour", format!("it carries {:?} at rest", step.forces))
-            }
-            Ok(step) => Ok(step.tangent),
-        }
     }
 
     /// A step. State: the behaviour's own, then gradients, forces and energies at the start of the step.

@@ -1,6 +1,7 @@
 //! `external` of joints: a cohesive zone model. Openings and tractions of the library are positive in tension.
 
-use crate::behaviour::{Behaviour, Family, Request};
+use crate::behaviour::{Family, Request, Wrong};
+use crate::runner::Runner;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,13 +25,16 @@ pub struct ExternalJoint {
     /// External state variables by their names in the library, without the temperature.
     #[serde(default)]
     pub variables: BTreeMap<String, f64>,
+    /// Whether it runs in a process of its own.
+    #[serde(default)]
+    pub isolate: bool,
 }
 
 pub(crate) fn room() -> f64 {
     293.15
 }
 
-const FAMILY: Family = Family {
+pub(crate) const FAMILY: Family = Family {
     hypothesis: "PlaneStrain",
     kind: [3, 2],
     words: "cohesive zone model",
@@ -39,7 +43,7 @@ const FAMILY: Family = Family {
 };
 
 impl ExternalJoint {
-    fn load(&self) -> Result<Behaviour, Vec<(String, String)>> {
+    fn load(&self) -> Result<Runner, Wrong> {
         let request = Request {
             library: &self.library,
             behaviour: &self.behaviour,
@@ -48,7 +52,7 @@ impl ExternalJoint {
             temperature: self.temperature,
             density: 0.0,
         };
-        Behaviour::load::<2>(&request, &FAMILY)
+        Runner::load::<2>(&request, &FAMILY, self.isolate)
     }
 }
 
@@ -65,11 +69,11 @@ impl InterfaceLaw for ExternalJoint {
 }
 
 #[derive(Debug)]
-struct ExternalResponse(Behaviour);
+struct ExternalResponse(Runner);
 
 impl InterfaceResponse for ExternalResponse {
     fn state_size(&self) -> usize {
-        self.0.names.len()
+        self.0.names().len()
     }
 
     fn initial_state(&self, state: &mut [f64]) {
@@ -77,7 +81,7 @@ impl InterfaceResponse for ExternalResponse {
     }
 
     fn state_names(&self) -> &'static [&'static str] {
-        self.0.names
+        self.0.names()
     }
 
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
@@ -119,6 +123,13 @@ pub(crate) const VARIABLES: Parameter = Parameter {
     need: Need::Default("{}"),
 };
 
+pub(crate) const ISOLATE: Parameter = Parameter {
+    name: "isolate",
+    doc: "whether it runs in a process of its own, so that a crash of it ends one case only",
+    shape: Shape::Boolean,
+    need: Need::Default("false"),
+};
+
 /// Why there is no behaviour, for cards.
 fn complaints(law: &ExternalJoint) -> Vec<(String, String)> {
     law.load().err().unwrap_or_default()
@@ -129,7 +140,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "external",
         summary: "a cohesive zone model of a shared library, by MFront's generic interface",
-        parameters: &[LIBRARY, BEHAVIOUR, PROPERTIES, TEMPERATURE, VARIABLES],
+        parameters: &[LIBRARY, BEHAVIOUR, PROPERTIES, TEMPERATURE, VARIABLES, ISOLATE],
         provides: &[Capability::RESPONSE],
         sources: &["Helfer et al. 2020, J. Open Source Softw. 5(48) (the generic interface)"],
         file: file!(),

@@ -7,10 +7,13 @@
 
 mod behaviour;
 mod data;
+mod isolated;
 mod joint;
 mod library;
 mod material;
+mod runner;
 
+pub use isolated::{isolate_with, serve};
 pub use joint::ExternalJoint;
 pub use library::allow;
 pub use material::ExternalMaterial;

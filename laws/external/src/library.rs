@@ -27,12 +27,18 @@ pub fn allow(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// A library that is allowed, open.
-pub(crate) fn open(name: &str) -> Result<&'static Library, String> {
+/// The place of a library that is allowed.
+pub(crate) fn allowed(name: &str) -> Result<PathBuf, String> {
     let path = Path::new(name).canonicalize().map_err(|error| format!("cannot read {name}: {error}"))?;
     if !locked(&ALLOWED).contains(&path) {
         return Err(format!("{name} is not allowed: a library is a program; run with --allow-library {name}"));
     }
+    Ok(path)
+}
+
+/// A library that is allowed, open.
+pub(crate) fn open(name: &str) -> Result<&'static Library, String> {
+    let path = allowed(name)?;
     let mut open = locked(&OPEN);
     if let Some(library) = open.get(&path) {
         return Ok(library);

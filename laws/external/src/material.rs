@@ -1,8 +1,9 @@
 //! `external` of materials: a behaviour of small strains in space. The library orders tensors xx, yy, zz, xy, xz, yz, with √2 on
 //! what is off the diagonal.
 
-use crate::behaviour::{Behaviour, Family, Request};
-use crate::joint::{BEHAVIOUR, LIBRARY, PROPERTIES, TEMPERATURE, VARIABLES, room};
+use crate::behaviour::{Family, Request, Wrong};
+use crate::joint::{BEHAVIOUR, ISOLATE, LIBRARY, PROPERTIES, TEMPERATURE, VARIABLES, room};
+use crate::runner::Runner;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -27,11 +28,14 @@ pub struct ExternalMaterial {
     /// External state variables by their names in the library, without the temperature.
     #[serde(default)]
     pub variables: BTreeMap<String, f64>,
+    /// Whether it runs in a process of its own.
+    #[serde(default)]
+    pub isolate: bool,
     /// ρ \[kg/m³\].
     pub density: f64,
 }
 
-const FAMILY: Family = Family {
+pub(crate) const FAMILY: Family = Family {
     hypothesis: "Tridimensional",
     kind: [1, 1],
     words: "behaviour of small strains",
@@ -49,7 +53,7 @@ fn ours(tangent: &[[f64; 6]; 6]) -> [Voigt; 6] {
 }
 
 impl ExternalMaterial {
-    fn load(&self) -> Result<Behaviour, Vec<(String, String)>> {
+    fn load(&self) -> Result<Runner, Wrong> {
         let request = Request {
             library: &self.library,
             behaviour: &self.behaviour,
@@ -58,7 +62,7 @@ impl ExternalMaterial {
             temperature: self.temperature,
             density: self.density,
         };
-        Behaviour::load::<6>(&request, &FAMILY)
+        Runner::load::<6>(&request, &FAMILY, self.isolate)
     }
 }
 
@@ -80,11 +84,11 @@ impl BulkMaterial for ExternalMaterial {
 }
 
 #[derive(Debug)]
-struct ExternalUpdate(Behaviour);
+struct ExternalUpdate(Runner);
 
 impl StressUpdate for ExternalUpdate {
     fn state_size(&self) -> usize {
-        self.0.names.len()
+        self.0.names().len()
     }
 
     fn initial_state(&self, state: &mut [f64]) {
@@ -92,7 +96,7 @@ impl StressUpdate for ExternalUpdate {
     }
 
     fn state_names(&self) -> &'static [&'static str] {
-        self.0.names
+        self.0.names()
     }
 
     fn update_point(
@@ -133,6 +137,7 @@ voussoir_core::inventory::submit! {
             PROPERTIES,
             TEMPERATURE,
             VARIABLES,
+            ISOLATE,
             Parameter::number("density", Quantity::Density, Range::NON_NEGATIVE, "mass per volume"),
         ],
         provides: &[Capability::STRESS_UPDATE],

@@ -82,6 +82,13 @@ int FragileBond_PlaneStrain(Data *d) {
   return code;
 }
 
+/* One that crashes, and one that ends its process. */
+JOINT(CrashingBond, "Generic", 1)
+int CrashingBond_PlaneStrain(Data *d) {
+  if (d->s1.gradients[0] > 5e-5) *(volatile int *)0 = 1;
+  return BilinearBond_PlaneStrain(d);
+}
+
 /* A crystal with three different shear moduli; it says nothing of its energies. */
 DESCRIBE(Crystal, "Generic", 1, 1, 1, "Tridimensional", "Strain", "Stress", 0)
 unsigned short Crystal_nMaterialProperties = 4, Crystal_nInternalStateVariables = 0;

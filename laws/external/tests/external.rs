@@ -131,6 +131,48 @@ fn tensors_of_a_library_are_turned_into_ours() {
     assert!((point.stored - work).abs() < 1e-12 * work && point.dissipated == 0.0, "{} {work}", point.stored);
 }
 
+/// In a process of its own a behaviour gives the same numbers, refuses with the same words, and takes nobody with it when it crashes.
+#[test]
+#[cfg(unix)]
+fn an_isolated_behaviour_crashes_alone() {
+    let Some(table) = bond("BilinearBond") else { return };
+    voussoir_external::isolate_with(env!("CARGO_BIN_EXE_external_worker").into(), Vec::new());
+    let law = |behaviour: &str, isolate: bool| -> Box<dyn InterfaceLaw> {
+        let mut own = table.clone();
+        (own["behaviour"], own["isolate"]) = (behaviour.into(), isolate.into());
+        assert_eq!(complaints(PluginKind::InterfaceLaw, &own), "");
+        serde_json::from_value(own).expect("a law")
+    };
+    let (here, apart) = (law("FragileBond", false), law("FragileBond", true));
+    assert_eq!(here.stiffness(), apart.stiffness());
+    let (here, apart) = (here.response().expect("a response"), apart.response().expect("a response"));
+    assert_eq!(here.state_names(), apart.state_names());
+    let mut states = [0, 1].map(|_| [vec![0.0; here.state_size()], vec![9.0; here.state_size()]]);
+    for gap in [[1e-5, 0.0], [8e-5, 1e-6], [2e-4, 0.0], [3e-5, -1e-6], [-1e-6, 0.0], [1e-2, 0.0]] {
+        let [one, other] = &mut states;
+        let [a, b] = [(&here, one), (&apart, other)].map(|(response, [old, new])| {
+            let answered = response.respond_point(gap, old, new);
+            if answered.is_ok() {
+                std::mem::swap(old, new);
+            }
+            answered
+        });
+        assert_eq!(a, b, "{gap:?}");
+        assert_eq!(states[0][0], states[1][0]);
+    }
+    let crashing = law("CrashingBond", true).response().expect("a response");
+    let step = |gap: f64| crashing.respond_point([gap, 0.0], &states[0][0], &mut states[1][0].clone());
+    assert!(step(1e-6).is_ok());
+    let Err(UpdateFailure::Law(why)) = step(9e-5) else { panic!("it crashes") };
+    assert!(why.contains("has ended: signal"), "{why}");
+    assert_eq!(step(1e-6), Err(UpdateFailure::Law("the process of the external behaviour has ended")));
+    // The next case starts another.
+    assert!(law("CrashingBond", true).response().is_some());
+    let mut misspelt = table.clone();
+    (misspelt["behaviour"], misspelt["isolate"]) = ("BilinearBnod".into(), true.into());
+    assert!(complaints(PluginKind::InterfaceLaw, &misspelt).contains("no behaviour called BilinearBnod"));
+}
+
 /// What is not allowed is not opened; what does not fit is named with its key; a step that fails says the library's words.
 #[test]
 fn whatever_does_not_fit_is_refused_by_name() {

@@ -3,11 +3,13 @@
 use super::axes::{COLOURS, Canvas};
 use super::scale::{Scale, range};
 use super::series::{ChartStyle, Marker, Series};
-use super::text_layout::{Spot as Place, text_width, wrapped};
+use super::text_layout::{Area, Spot as Place, text_width, wrapped};
 
 const WIDTH: f64 = 900.0;
 const PLOT: f64 = 480.0;
 const ROW: f64 = 24.0;
+/// Size of the labels of spots.
+const LABEL: f64 = 13.0;
 const GRID: &str = "#e1e1e1";
 const INK: &str = "#222222";
 /// Dashes of lines, so that they are told apart in grey.
@@ -167,13 +169,30 @@ impl Frame {
             for spot in own.spots.iter().flatten() {
                 let Some([x, y]) = self.place(spot.at) else { continue };
                 symbol(canvas, [x, y], spot.marker, COLOURS[i % COLOURS.len()]);
-                let width = text_width(&spot.label, 13.0);
-                let fits = x + 10.0 + width < WIDTH - 6.0;
-                let at = [if fits { x + 10.0 } else { x - 4.0 - width }, y + if fits { 13.0 } else { 20.0 }];
-                if !spot.label.is_empty() {
-                    canvas.edged(at, &spot.label, 13.0, "start");
-                }
             }
+        }
+        self.labels(canvas, series);
+    }
+
+    /// The labels of spots, beside them: each at the first of the places around it where it covers no other, else where it covers
+    /// least.
+    fn labels(&self, canvas: &mut Canvas, series: &[Series]) {
+        let mut taken: Vec<Area> = Vec::new();
+        for spot in series.iter().flat_map(|own| own.spots.iter().flatten()).filter(|spot| !spot.label.is_empty()) {
+            let Some([x, y]) = self.place(spot.at) else { continue };
+            let left = x - 4.0 - text_width(&spot.label, LABEL);
+            let around =
+                [13.0, -7.0, 28.0, -22.0].iter().flat_map(|down| [[x + 10.0, y + down], [left, y + down + 7.0]]);
+            let area = |at: Place| Area::of_text(at, "start", LABEL, &spot.label);
+            let inside = |at: &Place| {
+                let Area { low, high } = area(*at);
+                low[0] >= self.left && high[0] < WIDTH - 6.0 && low[1] >= self.top && high[1] <= self.bottom
+            };
+            let covered = |at: &Place| taken.iter().map(|other| area(*at).shared(other)).sum::<f64>();
+            let best = around.filter(inside).min_by(|a, b| covered(a).total_cmp(&covered(b)));
+            let at = best.unwrap_or([x + 10.0, y + 13.0]);
+            taken.push(area(at));
+            canvas.edged(at, &spot.label, LABEL, "start");
         }
     }
 }

@@ -328,3 +328,38 @@ fn pictures() {
         std::fs::write(folder.join("results.csv"), crate::writers::csv::results_csv(study)).expect("a file");
     });
 }
+
+/// Peaks of several lines at one abscissa: no label covers another, and each stands near its peak.
+#[test]
+fn labels_of_near_peaks_stand_apart() {
+    let peak = |y: f64| super::series::Spot {
+        at: (16.0, y),
+        kind: "greatest",
+        marker: super::series::Marker::Ring,
+        label: format!("{y}"),
+    };
+    let line = |y: f64| super::series::Series {
+        name: format!("line {y}"),
+        points: vec![(10.0, 0.5 * y), (16.0, y), (30.0, 0.8 * y)],
+        spots: Some(vec![peak(y)]),
+        ..Default::default()
+    };
+    let lines = [7165.0, 7100.0, 7050.0, 5888.0].map(line);
+    let svg = super::chart::chart_svg("loads", "x", "y", &lines, &[]);
+    let number = |text: &str, key: &str| {
+        let rest = text.split(&format!("{key}=\"")).nth(1).expect("a place");
+        rest.split('"').next().expect("an end").parse::<f64>().expect("a number")
+    };
+    let labels: Vec<Area> = svg
+        .lines()
+        .filter(|line| line.contains("paint-order"))
+        .map(|line| {
+            let words = line.split('>').nth(1).and_then(|rest| rest.split('<').next()).expect("words");
+            Area::of_text([number(line, "x"), number(line, "y")], "start", 13.0, words)
+        })
+        .collect();
+    assert_eq!(labels.len(), 4);
+    for (i, one) in labels.iter().enumerate() {
+        assert!(labels[..i].iter().all(|other| one.shared(other) == 0.0), "{labels:?}");
+    }
+}

@@ -1,0 +1,5 @@
+//! Runs one behaviour for another process; the tests of this crate start it. The command line is such a program itself.
+
+fn main() -> std::io::Result<()> {
+    voussoir_external::serve()
+}

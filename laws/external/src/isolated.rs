@@ -1,0 +1,271 @@
+//! `isolate = true`: the behaviour runs in a process of its own, so that a crash of it ends one case and not the program.
+//!
+//! The other process is a program that calls [`serve`], as the command line does; [`isolate_with`] says which. Both talk through
+//! a socket that is the other's standard input: what a library prints goes nowhere. First a line of JSON each way says which
+//! behaviour is meant and what its state is; then each step is a row of numbers each way.
+
+use crate::behaviour::{Behaviour, Family, INELASTIC, Request, Step, Wrong, message, names, wrong};
+use crate::library::{allow, allowed};
+use crate::{joint, material};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::Child;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use voussoir_core::law::{UpdateBranch, UpdateFailure};
+
+/// The program that behaviours run in, and its arguments.
+static WORKER: OnceLock<(PathBuf, Vec<OsString>)> = OnceLock::new();
+
+/// Says which program, with which arguments, calls [`serve`]; the first call counts.
+pub fn isolate_with(program: PathBuf, arguments: Vec<OsString>) {
+    let _ = WORKER.set((program, arguments));
+}
+
+/// What the other process is asked for first.
+#[derive(Serialize, Deserialize)]
+struct Asked {
+    /// Numbers of a gradient: 2 of joints, 6 of materials.
+    size: usize,
+    library: String,
+    behaviour: String,
+    properties: BTreeMap<String, f64>,
+    variables: BTreeMap<String, f64>,
+    temperature: f64,
+    density: f64,
+}
+
+/// What it says to that.
+#[derive(Serialize, Deserialize)]
+enum Answered {
+    /// Names of the state.
+    Names(Vec<String>),
+    /// Keys and what is wrong with them.
+    Wrong(Wrong),
+}
+
+/// A running process with both directions of its socket.
+#[derive(Debug)]
+struct Process {
+    child: Child,
+    to: Box<dyn Channel>,
+    from: BufReader<Box<dyn Channel>>,
+}
+
+trait Channel: Read + Write + Send + std::fmt::Debug {}
+impl<T: Read + Write + Send + std::fmt::Debug> Channel for T {}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // A process that waits for a step has nothing to lose.
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+/// A behaviour in another process.
+#[derive(Debug)]
+pub(crate) struct Isolated {
+    /// `None` once it has ended.
+    process: Mutex<Option<Process>>,
+    /// Names of the whole state.
+    pub names: &'static [&'static str],
+}
+
+#[cfg(unix)]
+fn started() -> io::Result<Process> {
+    use std::os::fd::OwnedFd;
+    use std::os::unix::net::UnixStream;
+    use std::process::{Command, Stdio};
+    let none = "isolate = true needs the command line, or a program that has called isolate_with";
+    let (program, arguments) = WORKER.get().ok_or_else(|| io::Error::other(none))?;
+    let (own, other) = UnixStream::pair()?;
+    let child = Command::new(program).args(arguments).stdin(OwnedFd::from(other)).stdout(Stdio::null()).spawn()?;
+    let from = BufReader::new(Box::new(own.try_clone()?) as Box<dyn Channel>);
+    Ok(Process { child, to: Box::new(own), from })
+}
+
+#[cfg(not(unix))]
+fn started() -> io::Result<Process> {
+    Err(io::Error::other("isolate = true works on Unix only"))
+}
+
+fn numbers(from: &mut impl Read, count: usize) -> io::Result<Vec<f64>> {
+    let mut bytes = vec![0; 8 * count];
+    from.read_exact(&mut bytes)?;
+    Ok(bytes.as_chunks::<8>().0.iter().map(|eight| f64::from_le_bytes(*eight)).collect())
+}
+
+fn bytes_of<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> Vec<u8> {
+    numbers.into_iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+impl Process {
+    fn asks(&mut self, asked: &Asked) -> io::Result<Answered> {
+        let mut line = serde_json::to_string(asked)?;
+        line.push('\n');
+        self.to.write_all(line.as_bytes())?;
+        line.clear();
+        self.from.read_line(&mut line)?;
+        Ok(serde_json::from_str(&line)?)
+    }
+
+    /// A step: the new state is written to `new`; the inner error is what the behaviour says.
+    fn step<const N: usize>(&mut self, row: &[u8], new: &mut [f64]) -> io::Result<Result<Step<N>, String>> {
+        self.to.write_all(row)?;
+        let mut first = [0];
+        self.from.read_exact(&mut first)?;
+        if first[0] == REFUSED {
+            let mut length = [0; 4];
+            self.from.read_exact(&mut length)?;
+            let mut words = vec![0; u32::from_le_bytes(length) as usize];
+            self.from.read_exact(&mut words)?;
+            return Ok(Err(String::from_utf8_lossy(&words).into_owned()));
+        }
+        let read = numbers(&mut self.from, N + N * N + 2 + new.len())?;
+        let (forces, rest) = read.split_at(N);
+        let (tangent, rest) = rest.split_at(N * N);
+        new.copy_from_slice(&rest[2..]);
+        Ok(Ok(Step {
+            forces: std::array::from_fn(|i| forces[i]),
+            tangent: std::array::from_fn(|i| std::array::from_fn(|j| tangent[i * N + j])),
+            branch: if first[0] == CHANGED { INELASTIC } else { UpdateBranch::ELASTIC },
+            stored: rest[0],
+            dissipated: rest[1],
+        }))
+    }
+}
+
+/// First byte of an answer to a step.
+const REFUSED: u8 = 0;
+const UNCHANGED: u8 = 1;
+const CHANGED: u8 = 2;
+
+impl Isolated {
+    /// Starts the process and lets it open and check the behaviour.
+    pub fn load<const N: usize>(request: &Request) -> Result<Self, Wrong> {
+        let library = allowed(request.library).or_else(|why| wrong("library", why))?;
+        let asked = Asked {
+            size: N,
+            library: library.display().to_string(),
+            behaviour: request.behaviour.into(),
+            properties: request.properties.clone(),
+            variables: request.variables.clone(),
+            temperature: request.temperature,
+            density: request.density,
+        };
+        let mut process = started().or_else(|error| wrong("isolate", error.to_string()))?;
+        match process.asks(&asked) {
+            Ok(Answered::Names(own)) => Ok(Isolated { process: Mutex::new(Some(process)), names: names(&own) }),
+            Ok(Answered::Wrong(complaints)) => Err(complaints),
+            Err(_) => wrong("library", format!("its process ended while it was opened: {}", ending(process))),
+        }
+    }
+
+    /// A step, as of [`Behaviour::step`].
+    pub fn step<const N: usize>(
+        &self,
+        gradients: [f64; N],
+        time_step: f64,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<Step<N>, UpdateFailure> {
+        if !gradients.iter().chain(old).all(|x| x.is_finite()) {
+            return Err(UpdateFailure::NotFinite);
+        }
+        if old.len() != self.names.len() || new.len() != old.len() {
+            return Err(UpdateFailure::WrongSize);
+        }
+        let mut process = self.process.lock().unwrap_or_else(PoisonError::into_inner);
+        let running = process.as_mut().ok_or(UpdateFailure::Law("the process of the external behaviour has ended"))?;
+        let row = bytes_of(gradients.iter().chain([&time_step]).chain(old));
+        match running.step(&row, new) {
+            Ok(step) => step.map_err(|words| UpdateFailure::Law(message(&words))),
+            Err(_) => {
+                let how = process.take().map_or_else(String::new, ending);
+                Err(UpdateFailure::Law(message(&format!("the process of the external behaviour has ended: {how}"))))
+            }
+        }
+    }
+}
+
+/// How a process ended that does not answer.
+fn ending(mut process: Process) -> String {
+    // One that has closed its side without ending would be waited for in vain.
+    drop(process.child.kill());
+    process.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string())
+}
+
+/// Runs a behaviour for another process, until that has no more steps: the whole life of a program that [`isolate_with`] names.
+#[cfg(unix)]
+pub fn serve() -> io::Result<()> {
+    use std::os::fd::AsFd;
+    use std::os::unix::net::UnixStream;
+    let socket = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
+    let mut from = BufReader::new(socket.try_clone()?);
+    let mut to = BufWriter::new(socket);
+    let mut line = String::new();
+    from.read_line(&mut line)?;
+    let asked: Asked = serde_json::from_str(&line)?;
+    match asked.size {
+        2 => serve_steps::<2>(&asked, &joint::FAMILY, &mut from, &mut to),
+        6 => serve_steps::<6>(&asked, &material::FAMILY, &mut from, &mut to),
+        other => Err(io::Error::other(format!("no behaviour has gradients of {other} numbers"))),
+    }
+}
+
+/// Runs a behaviour for another process: on Unix only.
+#[cfg(not(unix))]
+pub fn serve() -> io::Result<()> {
+    Err(io::Error::other("isolate = true works on Unix only"))
+}
+
+fn serve_steps<const N: usize>(
+    asked: &Asked,
+    family: &Family,
+    from: &mut impl Read,
+    to: &mut impl Write,
+) -> io::Result<()> {
+    // Whoever started this process has allowed it.
+    allow(Path::new(&asked.library))?;
+    let Asked { library, behaviour, properties, variables, temperature, density, .. } = asked;
+    let (temperature, density) = (*temperature, *density);
+    let request = Request { library, behaviour, properties, variables, temperature, density };
+    let behaviour = match Behaviour::load::<N>(&request, family) {
+        Ok(behaviour) => behaviour,
+        Err(complaints) => {
+            writeln!(to, "{}", serde_json::to_string(&Answered::Wrong(complaints))?)?;
+            return to.flush();
+        }
+    };
+    let names = behaviour.names.iter().map(ToString::to_string).collect();
+    writeln!(to, "{}", serde_json::to_string(&Answered::Names(names))?)?;
+    to.flush()?;
+    let size = behaviour.names.len();
+    let mut new = vec![0.0; size];
+    loop {
+        let row = match numbers(from, N + 1 + size) {
+            Ok(row) => row,
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        let gradients: [f64; N] = std::array::from_fn(|i| row[i]);
+        match behaviour.step(gradients, row[N], &row[N + 1..], &mut new) {
+            Ok(step) => {
+                to.write_all(&[if step.branch == INELASTIC { CHANGED } else { UNCHANGED }])?;
+                let energies = [step.stored, step.dissipated];
+                let all = step.forces.iter().chain(step.tangent.as_flattened()).chain(&energies).chain(&new);
+                to.write_all(&bytes_of(all))?;
+            }
+            Err(why) => {
+                let words = why.to_string();
+                to.write_all(&[REFUSED])?;
+                to.write_all(&(words.len() as u32).to_le_bytes())?;
+                to.write_all(words.as_bytes())?;
+            }
+        }
+        to.flush()?;
+    }
+}
