@@ -9,3 +9,4 @@ mod nonassociated;
 mod path;
 mod settlements;
 mod strategies;
+mod uniqueness;

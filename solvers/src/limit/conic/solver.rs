@@ -19,11 +19,11 @@ use voussoir_core::plugin::{Capability, Card, PluginKind};
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;
 
-/// Bodies up to which a program by blocks is tried first: on walls of 30 × 30 bricks its polish does not settle.
-const MOST_BY_BLOCKS: usize = 500;
 /// Error of a field by blocks, as a share of the loads, up to which it is taken.
 const FIELD: f64 = 1e-11;
-/// Units of force that are tried besides, where the polish does not settle and a program costs little.
+
+/// Units of force that are tried besides, where the polish does not settle, on scenes of so many bodies at the most.
+const MOST_IN_UNITS: usize = 500;
 const UNITS: [f64; 2] = [0.1, 10.0];
 
 /// Strength in units of the loads from which a program that was not solved is tried in the unit of the strength.
@@ -126,8 +126,7 @@ impl ConicEngine<'_> {
 
     /// A program by its blocks, with the work counted. `None` where it is not linear.
     fn by_blocks(&mut self, loads: block_program::Loads, solve: impl Fn(&Program) -> Solved) -> Option<Solved> {
-        let few = self.problem.groups <= MOST_BY_BLOCKS;
-        let program = few.then(|| Program::new(self.problem, loads))??;
+        let program = Program::new(self.problem, loads)?;
         let solved = solve(&program);
         self.count("programs", 1);
         self.count("interior_point_iterations", solved.iterations);
@@ -258,7 +257,7 @@ impl Engine for ConicEngine<'_> {
         }
         // Another unit leads the interior point another way: to a point from which the polish may settle.
         if let Optimum::Unsettled(_) = optimum {
-            for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_BY_BLOCKS) {
+            for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
                 let (system, unit) = self.program(fixed, varying, cap, force * scale);
                 if let Optimum::Found { pair, unique } = self.optimum(&system) {
                     return self.finite(&system, &pair, unique, varying, unit);
