@@ -226,7 +226,7 @@ fn of_a_writer(name: &str) -> bool {
             let numbered = |start: &str| {
                 stem.strip_prefix(start).and_then(|rest| rest.chars().next()).is_some_and(|c| c.is_ascii_digit())
             };
-            ["sweep", "curve", "map", "comparison", "envelope", "path"].contains(&stem)
+            ["sweep", "curve", "map", "comparison", "envelope", "moving-load", "path"].contains(&stem)
                 || numbered("case-")
                 || numbered("curve-")
                 || stem.starts_with("chart-")

@@ -38,7 +38,7 @@ pub fn envelope_chart(study: &str, results: &StudyResults) -> Option<String> {
 }
 
 /// Vehicle, way, variant and swept values of an entry.
-fn line_name(entry: &Json) -> String {
+pub(super) fn line_name(entry: &Json) -> String {
     let words = ["variant", "vehicle", "direction"].iter().filter_map(|key| entry[key].as_str().map(str::to_string));
     let swept = entry["parameters"].as_object().into_iter().flatten();
     let swept = swept.map(|(key, value)| format!("{} = {value}", key.rsplit('.').next().unwrap_or(key)));

@@ -16,6 +16,7 @@ pub mod hinges;
 pub mod loads;
 pub mod map;
 pub mod mechanism;
+pub mod moving_load;
 mod scale;
 pub mod series;
 pub mod svg_canvas;

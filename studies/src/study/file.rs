@@ -130,6 +130,7 @@ fn output(table: &Json, cases: usize) -> Output {
     Output {
         curve: flag("curve"),
         figures: Drawn::read(&table["figures"], cases),
+        animation: flag("animation"),
         vtu: flag("vtu"),
         writers: table["writers"].as_array().map(tags),
         options: table["options"].as_object().cloned().unwrap_or_default(),

@@ -108,6 +108,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         Need::Default("false"),
         "derivatives of the load factor of limit analysis with respect to every number, on both sides",
     ),
+    key(
+        "animation",
+        Shape::Boolean,
+        Need::Default("false"),
+        "of an envelope: figures/moving-load.svg, the load on its way with the mechanism at each place",
+    ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
 ];
 

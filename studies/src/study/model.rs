@@ -116,6 +116,8 @@ pub struct Output {
     pub curve: bool,
     /// Which cases are drawn.
     pub figures: Drawn,
+    /// The load of an envelope on its way.
+    pub animation: bool,
     /// Files for ParaView.
     pub vtu: bool,
     /// Tags of the writers that are wanted; all where there is no list.

@@ -114,5 +114,5 @@ fn every_table_and_figure_of_an_envelope_is_made_again() {
     let text = include_str!("../../../studies/cases/viaduct.toml");
     let text = changed(text, "from = -3.0, to = 20.0, scan = 47", "from = 1.0, to = 4.0, scan = 3, tolerance = 0.3");
     let text = changed(&text, "rings = 2", "rings = 1");
-    each_is_found("envelope", &text);
+    each_is_found("envelope", &format!("{text}[output]\nanimation = true\n"));
 }

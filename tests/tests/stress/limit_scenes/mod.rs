@@ -37,7 +37,7 @@ enum Verdict {
 fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usize> {
     let (mut counts, mut bad) = (BTreeMap::new(), Vec::new());
     for seed in seeds {
-        let Some(Scene { family, text, model }) = scene(seed) else { continue };
+        let Some(Scene { family, text, model }) = scene(seed).filter(|scene| scene.model.is_loaded()) else { continue };
         if let Err(why) = voussoir::study::load(&text, "random.toml", &[]) {
             if std::env::var_os("REFUSED").is_some() {
                 println!("{seed}, {family}: {why}");

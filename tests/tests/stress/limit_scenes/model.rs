@@ -192,6 +192,14 @@ impl Model {
         loads
     }
 
+    /// Whether live loads leave more on some block than the rounding of what cancels.
+    pub fn is_loaded(&self) -> bool {
+        let (pole, size) = self.frame();
+        let single: f64 = self.forces.iter().map(|force| force.force[0].hypot(force.force[1])).sum();
+        let [_, live] = self.loads(pole).map(|loads| greatest(&loads, size));
+        live > 1e-9 * single
+    }
+
     /// The factor at which live loads count as dead ones do.
     pub fn typical_factor(&self) -> f64 {
         let (pole, size) = self.frame();

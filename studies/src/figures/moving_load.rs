@@ -1,0 +1,136 @@
+//! The load of an envelope on its way, with the mechanism at each place: a drawing that moves.
+
+use super::displaced::displaced;
+use super::drawing::{extent, outline_width, supports};
+use super::envelope::line_name;
+use super::format::format_number;
+use super::hinge_closure::close_hinges;
+use super::svg_canvas::SvgCanvas;
+use super::symbols::{LOAD, OUTLINE, STONE, Symbol};
+use crate::results::CaseResult;
+use crate::writers::StudyOutput;
+use std::fmt::Write;
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::model::{Assembly, Stage};
+
+/// Places shown at the most.
+const MOST: usize = 60;
+/// How long each is shown \[s\].
+const EACH: f64 = 0.4;
+
+/// A place of the load: what stands there and how it moves.
+struct Place<'a> {
+    value: f64,
+    case: &'a CaseResult,
+    assembly: &'a Assembly,
+    stage: &'a Stage,
+    /// Outlines of the blocks as they move.
+    moved: Vec<Vec<Vec2>>,
+}
+
+/// The places of an envelope one after another, of the vehicle and way it lists first; `None` where the results are no
+/// envelope's. What does not play shows the worst place.
+pub fn moving_load_svg(study: &StudyOutput) -> Option<String> {
+    let places = places(study)?;
+    let further: Vec<Vec2> = places
+        .iter()
+        .flat_map(|place| {
+            let road = place.stage.spreads.iter().flat_map(|spread| spread.on_road);
+            place.moved.iter().flatten().copied().chain(road).collect::<Vec<_>>()
+        })
+        .collect();
+    let (low, high) = extent(places.first()?.assembly, &further);
+    let worst = (0..places.len()).min_by(|a, b| rank(&places[*a]).total_cmp(&rank(&places[*b])))?;
+    let frames: Vec<String> = places.iter().map(|place| frame(study.name, place, [low, high])).collect();
+    let size = frames.first()?.split("viewBox=\"0 0 ").nth(1)?.split('"').next()?.to_string();
+    let (width, height) = size.split_once(' ')?;
+    let count = frames.len() as f64;
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {size}\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+    );
+    for (index, frame) in frames.iter().enumerate() {
+        let (from, to) = (index as f64 / count, (index + 1) as f64 / count);
+        let shown = if index == worst { "visible" } else { "hidden" };
+        let (values, times) = match index {
+            0 => ("visible;hidden", format!("0;{to:.6}")),
+            _ => ("hidden;visible;hidden", format!("0;{from:.6};{to:.6}")),
+        };
+        let _ = write!(
+            text,
+            "<g visibility=\"{shown}\"><animate attributeName=\"visibility\" calcMode=\"discrete\" dur=\"{:.1}s\" \
+             repeatCount=\"indefinite\" values=\"{values}\" keyTimes=\"{times}\"/>\n{frame}\n</g>\n",
+            EACH * count
+        );
+    }
+    Some(text + "</svg>\n")
+}
+
+/// The load factor at a place; infinite where there is none.
+fn rank(place: &Place) -> f64 {
+    place.case.load_factor.unwrap_or(f64::INFINITY)
+}
+
+/// The places of the first line of the curve, from left to right.
+fn places<'a>(study: &StudyOutput<'a>) -> Option<Vec<Place<'a>>> {
+    let curve = study.results.own.get("curve")?.as_array()?;
+    let line = line_name(curve.first()?);
+    let mut found: Vec<(f64, usize)> = curve
+        .iter()
+        .filter(|entry| line_name(entry) == line)
+        .filter_map(|entry| {
+            let id = entry["case"].as_u64()? as usize;
+            let place = study.results.cases.iter().position(|case| case.label.id == id)?;
+            Some((entry["value"].as_f64()?, place))
+        })
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let step = found.len().div_ceil(MOST).max(1);
+    let of = |(value, index): (f64, usize)| {
+        let (assembly, stages) = study.scene(index)?;
+        let case = &study.results.cases[index];
+        let motion = case.proof.motion.as_deref().unwrap_or_default();
+        let placements = displaced(assembly, motion).map(|(placements, _)| match &case.mechanism {
+            Some(mechanism) => close_hinges(assembly, mechanism, placements),
+            None => placements,
+        });
+        let moved = assembly.bodies.iter().enumerate().filter(|(_, body)| !body.fixed).map(|(index, body)| {
+            let at = |vertex: &Vec2| placements.as_ref().map_or(*vertex, |placements| placements[index].of(*vertex));
+            body.vertices.iter().map(at).collect()
+        });
+        Some(Place { value, case, assembly, stage: stages.last()?, moved: moved.collect() })
+    };
+    let places: Vec<_> = found.into_iter().step_by(step).filter_map(of).collect();
+    (!places.is_empty()).then_some(places)
+}
+
+/// The drawing of one place.
+fn frame(study: &str, place: &Place, [low, high]: [Vec2; 2]) -> String {
+    let factor = place.case.load_factor.map_or("none".into(), |factor| format_number(factor, 4));
+    let titles = [
+        format!("{study}: the load on its way"),
+        format!("x = {:.3} m, load factor at collapse: {factor}", place.value),
+    ];
+    let mut canvas = SvgCanvas::new(low, high, [46.0, 60.0, 46.0, 30.0], &titles);
+    let width = outline_width(&canvas, place.assembly);
+    let ground = place.assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
+    canvas.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
+    canvas.outlines(place.moved.iter().map(Vec::as_slice), STONE, OUTLINE, width, "");
+    supports(&mut canvas, place.assembly);
+    if let Some(bridge) = &place.assembly.bridge {
+        let road: Vec<_> = bridge.road.iter().map(|point| canvas.at(*point)).collect();
+        canvas.line(&road, "#555555", 1.2, "");
+    }
+    for spread in &place.stage.spreads {
+        for (from, to) in spread.on_road.iter().zip(&spread.below) {
+            let ends = [canvas.at(*from), canvas.at(*to)];
+            canvas.line(&ends, LOAD, 0.8, "3 3");
+        }
+        let [a, b] = spread.on_road.map(|point| canvas.at(point));
+        canvas.line(&[a, b], LOAD, 4.0, "");
+        let tip = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+        canvas.arrow([tip[0], tip[1] - 46.0], tip, LOAD, 2.0, 8.0);
+    }
+    let caption = ["Displacements are exaggerated; at each place the mechanism has a scale of its own.".to_string()];
+    canvas.finish::<Symbol>(&[], &caption)
+}
