@@ -145,7 +145,10 @@ impl<'a> Trace<'a> {
 
     /// Gaps at the present state \[m\].
     fn gaps(&self) -> Vec<[f64; 2]> {
-        let mut gap = self.system.gaps(&self.state.x);
+        let mut gap = match &self.factors.chain {
+            Some(chain) => chain.gaps(&self.system, &self.state.x),
+            None => self.system.gaps(&self.state.x),
+        };
         gap.iter_mut().zip(&self.system.gap).for_each(|(g, initial)| g[0] += initial);
         let applied = self.problem.applied(self.state.load_step, self.state.factor);
         for (opened, factor) in self.loading_gaps.iter().zip(applied) {

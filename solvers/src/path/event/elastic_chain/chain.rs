@@ -241,7 +241,7 @@ impl ElasticChain {
             let before = rates.size();
             let share = self.closing(&Open::Corrected(&rates))?;
             rates.add(&self.responses, share);
-            rates.unchecked += 1;
+            rates.unchecked = rates.unchecked.saturating_add(1);
             if before <= CANCELS * rates.size() {
                 self.rates = Some(rates);
                 return Some(());
@@ -286,6 +286,24 @@ impl ElasticChain {
             });
         }
         Some(Rates { x: self.unknowns(system, &rates.own), factor: 1.0, gaps, worst: 0.0, refinements: 0 })
+    }
+
+    /// Gaps at a state of the whole system.
+    pub fn gaps(&self, system: &System, x: &[f64]) -> Vec<[f64; 2]> {
+        let own = |factor: &Factor| -> Vec<f64> {
+            let forces = factor.joint.contacts.iter().flat_map(|c| [x[2 * c], x[2 * c + 1]]);
+            forces.chain([0.0; 3]).collect()
+        };
+        let own: Vec<Vec<f64>> = self.factors.all.iter().map(own).collect();
+        let mut gaps = vec![[0.0; 2]; system.contacts];
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let elastic = factor.joint.gaps(e, &|e: usize| own[e].as_slice());
+            for (gap, c) in elastic.chunks_exact(2).zip(&factor.joint.contacts) {
+                let moved = |i: usize| system.kinematics.row_dot(2 * c + i, &x[2 * system.contacts..]);
+                gaps[*c] = [gap[0] + moved(0), gap[1] + moved(1)];
+            }
+        }
+        gaps
     }
 
     /// What the rates leave of the resultants, at most: a correction that is far smaller than a step that follows may
@@ -346,9 +364,9 @@ impl ElasticChain {
         self.rates = rates;
     }
 
-    /// The present rates have been examined.
-    pub fn checked(&mut self) {
-        self.rates.iter_mut().for_each(|rates| rates.unchecked = 0);
+    /// The present rates have been examined: as if after so many corrections.
+    pub fn checked(&mut self, unchecked: usize) {
+        self.rates.iter_mut().for_each(|rates| rates.unchecked = unchecked);
     }
 
     /// All unknowns of the system from what the joints do.

@@ -6,6 +6,8 @@ use crate::path::event::rates::{Rates, largest, leaving};
 use crate::path::event::trace::Trace;
 use crate::path::system::{Load, System};
 
+/// Residual, in terms of that which needs no refinement, above which the next correction is examined too.
+const CALM: f64 = 64.0;
 /// Rounds of the active set, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [40, 12];
 /// Residuals: up to which rates need no refinement, up to which they are believed, and from which on everything is
@@ -15,7 +17,8 @@ const RESIDUAL: [f64; 3] = [2e-15, 1e-12, 1e-11];
 const ERROR: f64 = 2e-13;
 /// Steps of refinement.
 const REFINEMENTS: usize = 3;
-/// Corrections after which rates are examined again. Each errs by rounding of what it changes.
+/// Corrections after which rates are examined again: each errs by rounding of what it changes. Resultants, on which the
+/// load at collapse rests, are examined each time.
 const UNCHECKED: usize = 8;
 
 /// Modes of all points from a guess, and the rates in them with λ̇ = 1. `None` where the whole system is to be asked.
@@ -101,6 +104,7 @@ fn refined(
         (worst, left) = chain.examined(load, sizes(&rates))?;
     }
     let enough = enough(&sizes(&rates));
+    let calm = worst <= CALM * enough;
     let mut refinements = 0;
     while refinements < REFINEMENTS as u64 && worst > enough {
         refinements += 1;
@@ -121,7 +125,7 @@ fn refined(
         chain.set_rates(None);
         return None;
     }
-    chain.checked();
+    chain.checked(if calm { 0 } else { UNCHECKED });
     (rates.worst, rates.refinements) = (worst, refinements);
     Some(rates)
 }
