@@ -23,6 +23,10 @@ const LARGEST_FINITE_STEP: f64 = 0.002;
 /// Length of the first step on another branch, relative to that of the load step.
 const BRANCH: f64 = 0.1;
 
+/// Length of the first step of all, relative to the strategy's, where friction that is not associated may slide at once:
+/// from nothing a load has no scale, and what slides first may come to rest within any step that is not short.
+const FROM_NOTHING: f64 = 1e-3;
+
 /// What bounds and shapes the steps of a load step.
 pub(super) struct StepLimits {
     /// Length of the first step.
@@ -140,6 +144,10 @@ impl<'d> Following<'d> {
         };
         let slope = tangent.factor * direction;
         let here = tracer.state.clone();
+        let from_nothing = here.force.iter().flatten().all(|r| *r == 0.0);
+        if from_nothing && tracer.system.finite() && !tracer.system.joints_flow_associated() {
+            length *= FROM_NOTHING;
+        }
         Ok(Following {
             load_step,
             target,
