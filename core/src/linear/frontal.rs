@@ -8,6 +8,7 @@
 //! Sources: Irons 1970, Int. J. Numer. Meth. Engng 2, 5-32; Hood 1976, Int. J. Numer. Meth. Engng 10, 379-399.
 
 use super::entries::Entries;
+use faer::traits::pulp::Arch;
 
 /// The elimination of the unknowns of one rank.
 struct Front {
@@ -44,6 +45,7 @@ struct Left {
 
 /// Takes L times the first `pivots` entries of a column out of the others, in place. L stands column by column, as high
 /// as the column.
+#[inline(always)]
 fn substitute(column: &mut [f64], lower: &[f64], pivots: usize) {
     let height = column.len();
     let first = column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots);
@@ -71,6 +73,7 @@ fn substitute(column: &mut [f64], lower: &[f64], pivots: usize) {
 }
 
 /// out −= A x, A column by column, four columns at a time.
+#[inline(always)]
 fn subtract_product(out: &mut [f64], a: &[f64], x: &[f64]) {
     let height = out.len();
     if height == 0 {
@@ -100,6 +103,7 @@ fn exchange(column: &mut [f64], exchanged: &[usize]) {
 
 /// Eliminates the first columns of a front with partial pivoting; the rows that were exchanged. A pivot of zero leaves no
 /// numbers, which solutions tell.
+#[inline(always)]
 fn eliminate(values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
     let mut exchanged = Vec::with_capacity(pivots);
     for j in 0..pivots {
@@ -168,10 +172,11 @@ impl FrontalLu {
 
     /// Solves for several right-hand sides. `None` where the matrix is singular to rounding.
     pub fn solve(&self, right: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-        let all: Vec<Vec<f64>> = right.iter().map(|right| self.solve_one(right)).collect();
+        let all: Vec<Vec<f64>> = right.iter().map(|right| Arch::new().dispatch(|| self.solve_one(right))).collect();
         all.iter().flatten().all(|v| v.is_finite()).then_some(all)
     }
 
+    #[inline(always)]
     fn solve_one(&self, right: &[f64]) -> Vec<f64> {
         let mut pivotal: Vec<f64> = Vec::with_capacity(self.size);
         let mut left: Vec<f64> = Vec::new();
@@ -235,7 +240,8 @@ impl Front {
             row.iter().for_each(|&(_, j, value)| values[place[j] * height + left.rows + k] += value);
         }
         columns.iter().for_each(|j| place[*j] = usize::MAX);
-        let exchanged = eliminate(&mut values, height, pivots);
+        // With the vectors of the processor; the order of operations does not depend on them.
+        let exchanged = Arch::new().dispatch(|| eliminate(&mut values, height, pivots));
         let rest = height - pivots;
         let mut upper = Vec::with_capacity(pivots * (columns.len() - pivots));
         let mut below = Vec::with_capacity(rest * (columns.len() - pivots));

@@ -364,11 +364,7 @@ impl Condensed {
     pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let mut worst = 0.0f64;
         let by_row = |(i, right): (usize, &f64)| {
-            let (mut left, mut size) = (*right, right.abs());
-            for &(j, value) in self.rows.row(i) {
-                left -= value * x[j];
-                size += (value * x[j]).abs();
-            }
+            let (left, size) = self.rows.left_of_row(i, *right, x);
             // A row of zeros is solved; what is no number is not.
             let error = if left == 0.0 { 0.0 } else { (left / size).abs() };
             worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };

@@ -2,6 +2,9 @@
 
 use voussoir_core::linear::Entries;
 
+/// Entries from which on a row is summed up in four sums, which do not wait for each other.
+const LONG: usize = 16;
+
 /// CsrMatrix of (column, value); repeated entries stay apart and add up in products.
 #[derive(Debug, Clone, Default)]
 pub struct CsrMatrix {
@@ -92,8 +95,38 @@ impl CsrMatrix {
         &self.entries[self.start[i]..self.start[i + 1]]
     }
 
+    /// A value less row i times a vector, and the sizes of all that adds up.
+    pub fn left_of_row(&self, i: usize, right: f64, x: &[f64]) -> (f64, f64) {
+        let row = self.row(i);
+        let (short, fours) = if row.len() < LONG { (row, &row[..0]) } else { row.split_at(row.len() % 4) };
+        let (mut left, mut size) = (right, right.abs());
+        for &(j, value) in short {
+            left -= value * x[j];
+            size += (value * x[j]).abs();
+        }
+        let (mut sums, mut sizes) = ([0.0; 4], [0.0; 4]);
+        for four in fours.chunks_exact(4) {
+            for (k, &(j, value)) in four.iter().enumerate() {
+                let product = value * x[j];
+                sums[k] += product;
+                sizes[k] += product.abs();
+            }
+        }
+        (left - sums.iter().sum::<f64>(), size + sizes.iter().sum::<f64>())
+    }
+
     /// Row i times a vector.
     pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
-        self.row(i).iter().map(|&(j, value)| value * x[j]).sum()
+        let row = self.row(i);
+        if row.len() < LONG {
+            return row.iter().map(|&(j, value)| value * x[j]).sum();
+        }
+        let fours = row.chunks_exact(4);
+        let rest: f64 = fours.remainder().iter().map(|&(j, value)| value * x[j]).sum();
+        let mut sums = [0.0; 4];
+        for four in fours {
+            sums.iter_mut().zip(four).for_each(|(sum, &(j, value))| *sum += value * x[j]);
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
     }
 }

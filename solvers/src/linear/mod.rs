@@ -1,8 +1,9 @@
-//! Sparse rows, factorisations that follow changes of few rows, equations bordered by a control.
+//! Sparse rows, factorisations that follow changes of few rows, small dense products, equations bordered by a control.
 
 pub(crate) mod bordered;
 pub(crate) mod condensed;
 pub(crate) mod csr;
+pub(crate) mod dense;
 pub(crate) mod updated;
 pub(crate) mod updated_inverse;
 

@@ -2,7 +2,9 @@
 
 mod bridges;
 mod cap;
+mod conic;
 mod limit;
+mod limit_scenes;
 mod nonassociated;
 mod path;
 mod settlements;

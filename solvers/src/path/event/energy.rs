@@ -4,6 +4,7 @@
 //! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron);
 //! the work of gravity on the elastic displacements vanishes, since their mean does.
 
+use crate::linear::dense::add_product;
 use crate::path::energy::WorkState;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Contact, PathProblem, PathState};
@@ -20,12 +21,13 @@ pub fn energies(problem: &PathProblem, state: &PathState) -> (WorkState, f64) {
         0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1])
     };
     let mut stored: f64 = problem.contacts.iter().zip(&state.force).map(of_joint).sum();
-    let mut elastic: Vec<Option<nalgebra::DVector<f64>>> = Vec::with_capacity(problem.bodies.len());
+    let mut elastic: Vec<Option<Vec<f64>>> = Vec::with_capacity(problem.bodies.len());
     for (body, f) in problem.bodies.iter().zip(&problem.forces_on_points(state, false)) {
         elastic.push(body.flexibility.as_ref().map(|flexibility| {
-            let flat = nalgebra::DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
-            let u = &**flexibility * &flat;
-            stored += 0.5 * flat.dot(&u);
+            let flat: Vec<f64> = f.iter().flat_map(|f| [f.x, f.y]).collect();
+            let mut u = vec![0.0; flat.len()];
+            add_product(&mut u, flexibility, &flat);
+            stored += 0.5 * flat.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>();
             u
         }));
     }

@@ -1,6 +1,7 @@
 //! A step along a direction: how far it is to the next events, and what they change.
 
-use super::rates::{Direction, MECHANISM};
+use super::point::Point;
+use super::rates::{Direction, MECHANISM, largest};
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
@@ -18,8 +19,8 @@ pub const MOMENT: f64 = 1e-11;
 /// closing) of which points they are; slacks and gaps below `same` are events of one moment.
 pub fn next_event(trace: &Trace, direction: &Direction, same: f64) -> (f64, Vec<(usize, usize)>) {
     // A rate that is rounding brings no event.
-    let size = direction.x[..2 * trace.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let gap_size = direction.gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let size = largest(&direction.x[..2 * trace.system.contacts]);
+    let gap_size = largest(direction.gaps.as_flattened());
     let (of_forces, share) = if direction.factor == 0.0 { (size.max(gap_size), MECHANISM) } else { (size, 1e-13) };
     let (least_force, least_gap) = (share * of_forces, share * gap_size);
     let mut step = f64::INFINITY;
@@ -74,7 +75,11 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
 /// Goes a step along a direction and notes the events at its end.
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
     let unit = trace.system.units.energy();
-    let openings: Vec<f64> = (0..trace.state.points.len()).map(|c| opening_rate(trace, c, direction.gaps[c])).collect();
+    let opening = |(c, point): (usize, &Point)| match point.mode {
+        ContactMode::Stick if !point.open() => 0.0,
+        _ => opening_rate(trace, c, direction.gaps[c]),
+    };
+    let openings: Vec<f64> = trace.state.points.iter().enumerate().map(opening).collect();
     let mut dissipated = trace.state.energy.dissipated;
     for (c, point) in trace.state.points.iter().enumerate() {
         if matches!(point.mode, ContactMode::Stick | ContactMode::Open) {
@@ -90,7 +95,7 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
         *x += step * rate;
     }
     trace.state.factor += sense * step * direction.factor;
-    let size = direction.x[..2 * trace.system.contacts].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let size = largest(&direction.x[..2 * trace.system.contacts]);
     for (c, opening_rate) in openings.into_iter().enumerate() {
         let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
         stepped(trace, c, rate, step * opening_rate, before, size);

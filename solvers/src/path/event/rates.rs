@@ -48,7 +48,13 @@ pub struct Rates {
 
 /// Greatest size of a number among these.
 pub fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |a: f64, b| a.max(b.abs()))
+    let eights = values.chunks_exact(8);
+    let rest = eights.remainder().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let mut lanes = [0.0f64; 8];
+    for eight in eights {
+        lanes.iter_mut().zip(eight).for_each(|(lane, value)| *lane = lane.max(value.abs()));
+    }
+    lanes.into_iter().fold(rest, f64::max)
 }
 
 impl Rates {
@@ -80,7 +86,7 @@ pub fn leaving(
     let (x, gaps) = (&rates.x, &rates.gaps);
     let least = if load.settles { CONSTANT * rates.factor.abs() * load.size } else { 0.0 };
     let force_size = largest(&x[..2 * system.contacts]).max(least);
-    let gap_size = gaps.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let gap_size = largest(gaps.as_flattened());
     if gap_size.is_nan() || gap_size > UNBOUNDED {
         return None;
     }

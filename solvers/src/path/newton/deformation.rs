@@ -4,6 +4,7 @@ use super::blocks::YieldingBlock;
 use super::derivatives::{Gradient, Hessian};
 use super::geometry::{Geometry, Place, Side};
 use super::loads::Loads;
+use crate::linear::dense::add_product;
 use crate::linear::inner;
 use nalgebra::{DMatrix, Matrix2};
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -23,13 +24,7 @@ fn flexibility<'b>(
 fn times_flexibility(geometry: &Geometry, body: usize, f: &[f64], blocks: &[Option<YieldingBlock>]) -> Vec<f64> {
     let Some(c) = flexibility(geometry, body, blocks) else { return Vec::new() };
     let mut v = vec![0.0; f.len()];
-    for (j, column) in c.column_iter().enumerate() {
-        if f[j] != 0.0 {
-            for (v, c) in v.iter_mut().zip(column.iter()) {
-                *v += c * f[j];
-            }
-        }
-    }
+    add_product(&mut v, c, f);
     v
 }
 

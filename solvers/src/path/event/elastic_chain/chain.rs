@@ -1,20 +1,24 @@
 //! What all joints of the chain do for the redundants and the load, while points change their modes.
 
-use super::dense::add_product;
 use super::factors::{Factor, Factors};
 use super::joint::joints;
+use super::rates::ChainRates;
 use super::redundants::{MOST_WEAK, Open, closing};
 use crate::contact::mode::ContactMode;
+use crate::linear::dense::add_product;
 use crate::path::event::force_method::Sections;
-use crate::path::event::rates::{Rates, largest};
+use crate::path::event::rates::Rates;
 use crate::path::system::{Load, System};
 use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
 use voussoir_core::path::PathProblem;
 
 /// Changes of modes after which everything is factorised anew.
-const CHANGES: usize = 200;
+const CHANGES: usize = 1000;
 /// Changes at once from which on that is cheaper.
 const AT_ONCE: usize = 24;
+/// How much greater rates were before a change of modes from which on they are not corrected: rounding of what cancels
+/// would stay in them.
+const CANCELS: f64 = 16.0;
 
 /// A chain of joints in the present modes.
 pub struct ElasticChain {
@@ -35,16 +39,10 @@ pub struct ElasticChain {
     ready: bool,
     /// Changes of modes since.
     changes: usize,
+    /// Rates with λ̇ = 1. Each change of modes corrects them, so that they stay as exact as they were made.
+    rates: Option<ChainRates>,
     /// How often everything was factorised.
     pub factorisations: u64,
-}
-
-/// What the joints do.
-pub struct ChainRates {
-    /// Forces and twist of every joint.
-    own: Vec<Vec<f64>>,
-    /// Factors of the columns of the responses.
-    share: DVector<f64>,
 }
 
 impl ElasticChain {
@@ -63,6 +61,7 @@ impl ElasticChain {
             load_step: None,
             ready: false,
             changes: 0,
+            rates: None,
             factorisations: 0,
         })
     }
@@ -103,7 +102,7 @@ impl ElasticChain {
     /// Factorises everything in given modes. `None` where that is singular.
     pub fn factorise(&mut self, system: &System, load: &Load, modes: &[ContactMode]) -> Option<()> {
         self.factorisations += 1;
-        (self.changes, self.ready) = (0, false);
+        (self.changes, self.ready, self.rates) = (0, false, None);
         self.modes = modes.to_vec();
         for factor in &mut self.factors.all {
             factor.rows = factor.joint.rows(system, modes)?;
@@ -181,21 +180,33 @@ impl ElasticChain {
                 left[(i, j)] = -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]);
             }
         }
-        self.respond(e, 2 * p, &left);
+        let kept = self.rates.as_ref().map(|rates| {
+            let gap = self.factors.all[e].joint.gap(e, p, &|e: usize| &rates.own[e]);
+            let gap = [gap[0] + load.gap[c][0], gap[1] + load.gap[c][1]];
+            let force = [rates.own[e][2 * p], rates.own[e][2 * p + 1]];
+            rows.map(|row| -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]))
+        });
+        self.respond(e, 2 * p, &left, kept.as_ref().map_or(&[], |kept| kept));
         if matches!(mode, ContactMode::Open | ContactMode::Corner(..)) {
             (0..columns).for_each(|j| (0..2).for_each(|i| self.responses[e][(2 * p + i, j)] = 0.0));
+            self.rates.iter_mut().for_each(|rates| rates.own[e][2 * p..2 * p + 2].fill(0.0));
         }
         Some(())
     }
 
-    /// Adds what right-hand sides of some rows of a joint give to all columns.
-    fn respond(&mut self, e: usize, first: usize, left: &DMatrix<f64>) {
+    /// Adds what right-hand sides of some rows of a joint give to all columns, and to the rates where any are `kept`.
+    fn respond(&mut self, e: usize, first: usize, left: &DMatrix<f64>, kept: &[f64]) {
         let window = self.factors.respond(e, first, left.nrows());
         for (response, columns) in self.responses[window.first..].iter_mut().zip(&window.columns) {
             let height = response.nrows();
-            for (response, left) in response.as_mut_slice().chunks_exact_mut(height).zip(left.column_iter()) {
-                add_product(response, columns, &left.iter().copied().collect::<Vec<_>>());
+            let lefts = left.as_slice().chunks_exact(left.nrows());
+            for (response, left) in response.as_mut_slice().chunks_exact_mut(height).zip(lefts) {
+                add_product(response, columns, left);
             }
+        }
+        if let (Some(rates), false) = (&mut self.rates, kept.is_empty()) {
+            let own = rates.own[window.first..].iter_mut().zip(&window.columns);
+            own.for_each(|(own, columns)| add_product(own, columns, kept));
         }
     }
 
@@ -215,70 +226,129 @@ impl ElasticChain {
         for response in &mut self.responses {
             *response = std::mem::replace(response, DMatrix::zeros(0, 0)).insert_columns(columns, 3, 0.0);
         }
-        self.respond(e, m, &left);
+        self.respond(e, m, &left, &[]);
+        if let Some(rates) = &mut self.rates {
+            let twist = &rates.own[e][m..];
+            rates.share = DVector::from_iterator(columns + 3, rates.share.iter().chain(twist).copied());
+        }
         self.weak.push(e);
         Some(())
     }
 
-    /// What the joints do in the present modes with λ̇ = 1. `None` near a mechanism.
-    pub fn rates(&self) -> Option<ChainRates> {
+    /// Finds what the joints do in the present modes with λ̇ = 1. `None` near a mechanism.
+    pub fn find_rates(&mut self) -> Option<()> {
+        if let Some(mut rates) = self.rates.take() {
+            let before = rates.size();
+            let share = self.closing(&Open::Corrected(&rates))?;
+            rates.add(&self.responses, share);
+            rates.unchecked += 1;
+            if before <= CANCELS * rates.size() {
+                self.rates = Some(rates);
+                return Some(());
+            }
+        }
         let share = self.closing(&Open::Load)?;
-        let own = self.responses.iter().map(|b| combined(b, &share)).collect();
-        Some(ChainRates { own, share })
+        let own = self.responses.iter().map(|b| vec![0.0; b.nrows()]).collect();
+        let mut rates = ChainRates { own, share: DVector::zeros(share.len()), unchecked: usize::MAX };
+        rates.add(&self.responses, share);
+        self.rates = Some(rates);
+        Some(())
     }
 
     fn closing(&self, open: &Open) -> Option<DVector<f64>> {
         closing(&self.sections, &self.factors.all, &self.responses, &self.weak, open)
     }
 
-    /// Rates as those of the whole system, with the worst relative residual and what they leave of the equations of
-    /// every joint; gaps of points that stick are zero.
-    pub fn examined(&self, system: &System, load: &Load, rates: &ChainRates) -> (Rates, Vec<DMatrix<f64>>) {
-        let x = self.unknowns(system, &rates.own);
-        let (forces, motions) = x.split_at(2 * system.contacts);
-        let forces = largest(forces).max(load.size).max(f64::MIN_POSITIVE);
-        let motions = largest(motions).max(forces);
-        let (mut gaps, mut worst) = (vec![[0.0; 2]; system.contacts], 0.0f64);
+    /// Changes of modes since the rates were last examined. `None` without rates.
+    pub fn unchecked(&self) -> Option<usize> {
+        self.rates.as_ref().map(|rates| rates.unchecked)
+    }
+
+    /// Rates as those of the whole system; gaps of points that stick are zero.
+    pub fn rates(&self, system: &System, load: &Load) -> Option<Rates> {
+        let rates = self.rates.as_ref()?;
+        let mut gaps = vec![[0.0; 2]; system.contacts];
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let contacts = &factor.joint.contacts;
+            if contacts.iter().all(|c| self.modes[*c] == ContactMode::Stick) {
+                continue;
+            }
+            let own = |e: usize| rates.own[e].as_slice();
+            let moving = contacts.iter().enumerate().filter(|(_, c)| self.modes[**c] != ContactMode::Stick);
+            if 2 * moving.clone().count() <= contacts.len() {
+                moving.for_each(|(p, c)| gaps[*c] = factor.joint.gap(e, p, &own));
+            } else {
+                let all = factor.joint.gaps(e, &own);
+                moving.for_each(|(p, c)| gaps[*c] = [all[2 * p], all[2 * p + 1]]);
+            }
+            contacts.iter().filter(|c| self.modes[**c] != ContactMode::Stick).for_each(|c| {
+                (0..2).for_each(|i| gaps[*c][i] += load.gap[*c][i]);
+            });
+        }
+        Some(Rates { x: self.unknowns(system, &rates.own), factor: 1.0, gaps, worst: 0.0, refinements: 0 })
+    }
+
+    /// What the rates leave of the resultants, at most: a correction that is far smaller than a step that follows may
+    /// leave more than that may.
+    pub fn unbalanced(&self) -> f64 {
+        let Some(rates) = &self.rates else { return f64::INFINITY };
+        let mut worst = 0.0f64;
+        for ((factor, statics), own) in self.factors.all.iter().zip(&self.statics).zip(&rates.own) {
+            for i in 0..3 {
+                worst = worst.max((given(statics, i, &rates.share) - factor.joint.resultant(i, own)).abs());
+            }
+        }
+        worst
+    }
+
+    /// The worst relative residual of the rates, with what they leave of the equations of every joint. `sizes`: of
+    /// forces and motions.
+    pub fn examined(&self, load: &Load, [forces, motions]: [f64; 2]) -> Option<(f64, Vec<DMatrix<f64>>)> {
+        let rates = self.rates.as_ref()?;
+        let mut worst = 0.0f64;
         let mut left = Vec::with_capacity(rates.own.len());
         for (e, factor) in self.factors.all.iter().enumerate() {
             let (joint, own) = (&factor.joint, &rates.own[e]);
             let m = 2 * joint.contacts.len();
             let mut gap = joint.gaps(e, &|e: usize| rates.own[e].as_slice());
             gap.iter_mut().zip(joint.contacts.iter().flat_map(|c| load.gap[*c])).for_each(|(g, load)| *g += load);
-            let statics = self.statics[e].ncols();
             let mut all = vec![0.0; m + 3];
-            for (p, (c, rows)) in joint.contacts.iter().zip(&factor.rows).enumerate() {
+            for (p, rows) in factor.rows.iter().enumerate() {
                 let (force, gap) = ([own[2 * p], own[2 * p + 1]], [gap[2 * p], gap[2 * p + 1]]);
                 for (i, row) in rows.iter().enumerate() {
                     let (by_force, by_gap) = (row[0] * force[0] + row[1] * force[1], row[2] * gap[0] + row[3] * gap[1]);
                     worst = worst.max(by_force.abs() / forces).max(by_gap.abs() / motions);
                     all[2 * p + i] = -(by_force + by_gap);
                 }
-                if self.modes[*c] != ContactMode::Stick {
-                    gaps[*c] = gap;
-                }
             }
             for i in 0..3 {
-                let given: f64 = (0..statics).map(|j| self.statics[e][(i, j)] * rates.share[j]).sum();
-                all[m + i] = given - joint.resultant(i, own);
+                all[m + i] = given(&self.statics[e], i, &rates.share) - joint.resultant(i, own);
                 worst = worst.max(all[m + i].abs() / forces);
             }
             left.push(DMatrix::from_vec(m + 3, 1, all));
         }
-        (Rates { x, factor: 1.0, gaps, worst, refinements: 0 }, left)
+        Some((worst, left))
     }
 
-    /// With what takes away what is left of the equations. `None` near a mechanism.
-    pub fn refined(&self, rates: &ChainRates, left: Vec<DMatrix<f64>>) -> Option<ChainRates> {
+    /// Takes away what is left of the equations. Returns the rates before. `None` near a mechanism.
+    pub fn refine(&mut self, left: Vec<DMatrix<f64>>) -> Option<ChainRates> {
+        let before = self.rates.clone()?;
         let added = self.factors.solve(left);
-        let share = self.closing(&Open::Refined(&rates.own, &added))?;
-        let all = rates.own.iter().zip(&added).zip(&self.responses);
-        let sum = |((own, added), b): ((&Vec<f64>, &DMatrix<f64>), &DMatrix<f64>)| {
-            let mut sum: Vec<f64> = own.iter().zip(added).map(|(a, b)| a + b).collect();
-            add_product(&mut sum, b, share.as_slice());
-            sum
-        };
-        Some(ChainRates { own: all.map(sum).collect(), share: &rates.share + &share })
+        let share = self.closing(&Open::Refined(&before.own, &added))?;
+        let rates = self.rates.as_mut()?;
+        rates.own.iter_mut().zip(&added).for_each(|(own, added)| own.iter_mut().zip(added).for_each(|(o, a)| *o += a));
+        rates.add(&self.responses, share);
+        Some(before)
+    }
+
+    /// Puts rates in the place of the present ones, or forgets these.
+    pub fn set_rates(&mut self, rates: Option<ChainRates>) {
+        self.rates = rates;
+    }
+
+    /// The present rates have been examined.
+    pub fn checked(&mut self) {
+        self.rates.iter_mut().for_each(|rates| rates.unchecked = 0);
     }
 
     /// All unknowns of the system from what the joints do.
@@ -299,14 +369,12 @@ impl ElasticChain {
     }
 }
 
+/// A component of the resultant that redundants and load give.
+fn given(statics: &Matrix3xX<f64>, i: usize, share: &DVector<f64>) -> f64 {
+    (0..statics.ncols()).map(|j| statics[(i, j)] * share[j]).sum()
+}
+
 /// One column.
 fn column(columns: &DMatrix<f64>, j: usize) -> &[f64] {
     &columns.as_slice()[columns.nrows() * j..columns.nrows() * (j + 1)]
-}
-
-/// Columns times factors.
-fn combined(columns: &DMatrix<f64>, factors: &DVector<f64>) -> Vec<f64> {
-    let mut sum = vec![0.0; columns.nrows()];
-    add_product(&mut sum, columns, factors.as_slice());
-    sum
 }

@@ -1,11 +1,10 @@
 //! The rate problem on the chain: modes change until no point leaves its own.
 
-use super::chain::{ChainRates, ElasticChain};
+use super::chain::ElasticChain;
 use crate::contact::mode::ContactMode;
 use crate::path::event::rates::{Rates, largest, leaving};
 use crate::path::event::trace::Trace;
 use crate::path::system::{Load, System};
-use nalgebra::DMatrix;
 
 /// Rounds of the active set, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [40, 12];
@@ -16,6 +15,8 @@ const RESIDUAL: [f64; 3] = [2e-15, 1e-12, 1e-11];
 const ERROR: f64 = 2e-13;
 /// Steps of refinement.
 const REFINEMENTS: usize = 3;
+/// Corrections after which rates are examined again. Each errs by rounding of what it changes.
+const UNCHECKED: usize = 8;
 
 /// Modes of all points from a guess, and the rates in them with λ̇ = 1. `None` where the whole system is to be asked.
 pub fn by_elastic_chain(
@@ -48,14 +49,16 @@ fn decided(
         trace.log.counts.rates.trials += 1;
         let (system, points) = (&trace.system, trace.state.points.as_slice());
         chain.set_modes(system, at, modes)?;
-        let own = chain.rates()?;
-        let (rates, left) = chain.examined(system, load, &own);
+        chain.find_rates()?;
+        let rates = chain.rates(system, load)?;
         let mut moved = leaving((system, points), (&rates, load), active, modes)?;
         if moved.is_empty() {
             if rates.nears_mechanism(2 * system.contacts) {
                 return None;
             }
-            let rates = refined(chain, (system, load), modes, (own, rates, left))?;
+            let sizes = sizes((system, load), &rates);
+            let good = chain.unchecked()? < UNCHECKED && chain.unbalanced() <= enough(&sizes) * sizes[0];
+            let rates = if good { rates } else { refined(chain, (system, load), modes, rates)? };
             trace.log.counts.solves += rates.refinements;
             return Some(rates);
         }
@@ -70,35 +73,55 @@ fn decided(
     None
 }
 
+/// Sizes of forces and motions to which residuals are relative.
+fn sizes((system, load): (&System, &Load), rates: &Rates) -> [f64; 2] {
+    let (forces, motions) = rates.x.split_at(2 * system.contacts);
+    let forces = largest(forces).max(load.size).max(f64::MIN_POSITIVE);
+    [forces, largest(motions).max(forces)]
+}
+
+/// Relative residual up to which rates of these sizes need no refinement.
+fn enough([forces, motions]: &[f64; 2]) -> f64 {
+    RESIDUAL[0].max(ERROR * forces / motions)
+}
+
 /// Rates refined against the equations of all joints. `None` where they are not believed.
 fn refined(
     chain: &mut ElasticChain,
     (system, load): (&System, &Load),
     modes: &[ContactMode],
-    (mut own, mut rates, mut left): (ChainRates, Rates, Vec<DMatrix<f64>>),
+    mut rates: Rates,
 ) -> Option<Rates> {
-    if rates.worst > RESIDUAL[2] {
+    let sizes = |rates: &Rates| sizes((system, load), rates);
+    let (mut worst, mut left) = chain.examined(load, sizes(&rates))?;
+    if worst > RESIDUAL[2] {
         chain.factorise(system, load, modes)?;
-        own = chain.rates()?;
-        (rates, left) = chain.examined(system, load, &own);
+        chain.find_rates()?;
+        rates = chain.rates(system, load)?;
+        (worst, left) = chain.examined(load, sizes(&rates))?;
     }
+    let enough = enough(&sizes(&rates));
     let mut refinements = 0;
-    let (forces, motions) = rates.x.split_at(2 * system.contacts);
-    let enough =
-        RESIDUAL[0].max(ERROR * largest(forces) / largest(motions).max(largest(forces)).max(f64::MIN_POSITIVE));
-    while refinements < REFINEMENTS as u64 && rates.worst > enough {
+    while refinements < REFINEMENTS as u64 && worst > enough {
         refinements += 1;
-        let better = chain.refined(&own, left)?;
-        let (now, still) = chain.examined(system, load, &better);
-        if now.worst >= rates.worst {
+        let before = chain.refine(left)?;
+        let better = chain.rates(system, load)?;
+        let (now, still) = chain.examined(load, sizes(&better))?;
+        if now >= worst {
+            chain.set_rates(Some(before));
             break;
         }
-        let rounding = now.worst > 0.5 * rates.worst;
-        (own, rates, left) = (better, now, still);
+        let rounding = now > 0.5 * worst;
+        (rates, worst, left) = (better, now, still);
         if rounding {
             break;
         }
     }
-    rates.refinements = refinements;
-    (rates.worst <= RESIDUAL[1]).then_some(rates)
+    if worst > RESIDUAL[1] {
+        chain.set_rates(None);
+        return None;
+    }
+    chain.checked();
+    (rates.worst, rates.refinements) = (worst, refinements);
+    Some(rates)
 }

@@ -9,8 +9,8 @@
 //! M and A: what the modes of the points ask of gaps and forces. A change of a few rows of one joint is a change of the
 //! same rank of what the next one sees of it, and so on (Sherman, Morrison & Woodbury in every joint).
 
-use super::dense::{add_outer, dot, product, row_product};
 use super::joint::{Joint, ModeRows};
+use crate::linear::dense::{add_outer, dot, product, row_product};
 use nalgebra::DMatrix;
 
 /// Share of what it began with at which an update or a response has died away.
@@ -254,7 +254,7 @@ impl Factors {
         let least = DIES * ahead[0].amax();
         for j in e + 1..self.all.len() {
             let Some(block) = &self.all[j].joint.before else { break };
-            let columns = -self.all[j].solve_gaps(product(block, &self.points(j - 1, &ahead[j - 1 - e])));
+            let columns = -self.all[j].solve_gaps(product(block, &ahead[j - 1 - e]));
             let dies = columns.amax() <= least;
             ahead.push(columns);
             if dies {
@@ -285,12 +285,7 @@ impl Factors {
     /// P M C x for x of the next joint.
     fn by_next(&self, e: usize, next: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let block = self.all[e].joint.after.as_ref()?;
-        Some(self.all[e].solve_gaps(product(block, &self.points(e + 1, next))))
-    }
-
-    /// Forces alone.
-    fn points(&self, e: usize, columns: &DMatrix<f64>) -> DMatrix<f64> {
-        columns.rows(0, self.all[e].forces()).clone_owned()
+        Some(self.all[e].solve_gaps(product(block, next)))
     }
 
     /// Solutions for several right-hand sides of all rows, joint after joint.
@@ -299,7 +294,7 @@ impl Factors {
         for (e, mut right) in right.into_iter().enumerate() {
             let factor = &self.all[e];
             if let (Some(block), Some(before)) = (&factor.joint.before, all.last()) {
-                let mut gaps = product(block, &self.points(e - 1, before));
+                let mut gaps = product(block, before);
                 ask_gaps(&factor.rows, &mut gaps);
                 let mut points = right.rows_mut(0, factor.forces());
                 points -= gaps;

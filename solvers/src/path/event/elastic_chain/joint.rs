@@ -1,7 +1,7 @@
 //! A joint of the chain: which points it has, what they feel of each other and of the joints beside them.
 
-use super::dense::add_product;
 use crate::contact::mode::ContactMode;
+use crate::linear::dense::{add_product, dot};
 use crate::path::event::force_method::{Section, Sections};
 use crate::path::system::System;
 use nalgebra::{DMatrix, Vector3};
@@ -29,6 +29,8 @@ pub struct Joint {
     pub before: Option<Rc<DMatrix<f64>>>,
     /// The same of the joint after.
     pub after: Option<Rc<DMatrix<f64>>>,
+    /// The three the other way round, so that the gap of one point reads columns.
+    rows: [Option<Rc<DMatrix<f64>>>; 3],
     /// κ.
     pub spring: Vector3<f64>,
 }
@@ -111,7 +113,7 @@ pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
         section.places.iter().enumerate().for_each(|(k, p)| within[p.contact] = k);
     }
     let mut places = vec![(0, 0); system.contacts];
-    let (mut all, mut kinds) = (Vec::with_capacity(order.len()), Shared::default());
+    let (mut all, mut kinds, mut turned) = (Vec::with_capacity(order.len()), Shared::default(), Shared::default());
     for (position, &(e, begins)) in order.iter().enumerate() {
         let section = &sections.all[e];
         let n = section.places.len();
@@ -124,13 +126,19 @@ pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
         let stiffness = by_twist.transpose() * stuck;
         let last = order.get(position + 1).is_none_or(|next| next.1);
         let beside = |other: usize| felt(system, section, &sections.all[order[other].0], &within);
+        let own = kinds.of(own);
+        let before = (!begins).then(|| kinds.of(beside(position - 1)));
+        let after = (!last).then(|| kinds.of(beside(position + 1)));
+        let rows = [Some(&own), before.as_ref(), after.as_ref()];
+        let rows = rows.map(|block| block.map(|block| turned.of(block.transpose())));
         all.push(Joint {
+            rows,
             section: e,
             contacts: section.places.iter().map(|p| p.contact).collect(),
             by_twist,
-            own: kinds.of(own),
-            before: (!begins).then(|| kinds.of(beside(position - 1))),
-            after: (!last).then(|| kinds.of(beside(position + 1))),
+            own,
+            before,
+            after,
             spring: Vector3::from_fn(|i, _| SPRING * stiffness[(i, i)]),
         });
     }
@@ -172,14 +180,16 @@ impl Joint {
 
     /// Gap of one of its points.
     pub fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
-        let row = |block: &DMatrix<f64>, i: usize, x: &[f64]| -> f64 {
-            (0..block.ncols()).map(|j| block[(2 * p + i, j)] * x[j]).sum()
-        };
         let m = 2 * self.contacts.len();
+        let row = |k: usize, i: usize, e: usize| {
+            let block = self.rows[k].as_ref()?;
+            let row = &block.as_slice()[block.nrows() * (2 * p + i)..][..block.nrows()];
+            Some(dot(row, &of(e)[..row.len()]))
+        };
         [0, 1].map(|i| {
-            let mut sum = row(&self.own, i, of(e)) + row(&self.by_twist, i, &of(e)[m..]);
-            sum += self.before.as_ref().map_or(0.0, |block| row(block, i, of(e - 1)));
-            sum + self.after.as_ref().map_or(0.0, |block| row(block, i, of(e + 1)))
+            let twist: f64 = (0..3).map(|j| self.by_twist[(2 * p + i, j)] * of(e)[m + j]).sum();
+            let beside = row(1, i, e.wrapping_sub(1)).unwrap_or(0.0) + row(2, i, e + 1).unwrap_or(0.0);
+            row(0, i, e).unwrap_or(0.0) + twist + beside
         })
     }
 

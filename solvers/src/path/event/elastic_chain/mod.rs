@@ -13,7 +13,9 @@
 //! The first two are block tridiagonal; their inverse is kept as that of every joint with all joints before it
 //! condensed out ([`factors`]). A point that changes its mode changes two rows, and with them two columns of what is
 //! handed on from joint to joint: updates die away along the chain, as the stresses of forces without resultant do
-//! (Saint-Venant). What X, s and all joints do is kept beside ([`chain`]) and changed by the same few columns.
+//! (Saint-Venant). What X, s and all joints do is kept beside ([`chain`]) and changed by the same few columns. So are the
+//! rates themselves ([`rates`]): what a change of a mode leaves of them is two numbers, and a correction of rates that are
+//! exact to rounding is more exact than their sum from responses that cancel.
 //!
 //! A joint with fewer than two stuck points (a hinge, a joint that slides) may leave no room for a resultant: there
 //! H_eᵀ ṙ_e − κ ξ̇_e = R_e − κ ξ̇ with its twist ξ̇ as a further redundant.
@@ -22,9 +24,9 @@
 
 mod chain;
 mod decide;
-mod dense;
 mod factors;
 mod joint;
+mod rates;
 mod redundants;
 
 pub use chain::ElasticChain;

@@ -1,6 +1,7 @@
 //! The few equations that are left of a rate problem: compatibility of the cycles, and the twists of weak joints.
 
 use super::factors::Factor;
+use super::rates::ChainRates;
 use crate::path::event::force_method::{Sections, solved};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -19,6 +20,8 @@ pub enum Open<'a> {
     Load,
     /// Rates of the joints, and what right-hand sides of their own equations add to them.
     Refined(&'a [Vec<f64>], &'a [DMatrix<f64>]),
+    /// Rates whose joints satisfy their own equations with the resultants that they had.
+    Corrected(&'a ChainRates),
 }
 
 /// Factors of the columns of all responses that close the cycles and give weak joints their twists: redundants, then
@@ -39,24 +42,34 @@ pub fn closing(
         let section = &sections.all[factor.joint.section];
         let to_origin: Matrix3<f64> = section.to_centre.transpose();
         let m = 2 * factor.joint.contacts.len();
+        let w = weak.iter().position(|w| *w == e);
+        let own = |own: &[Vec<f64>]| Vector3::new(own[e][m], own[e][m + 1], own[e][m + 2]);
         let (constant, before) = match open {
             Open::Load => (twist(factor, &responses[e], n), Vector3::zeros()),
-            Open::Refined(own, added) => {
-                (twist(factor, &added[e], 0), Vector3::new(own[e][m], own[e][m + 1], own[e][m + 2]))
+            Open::Refined(rates, added) => (twist(factor, &added[e], 0), own(rates)),
+            Open::Corrected(rates) => {
+                let given = w.map(|w| Vector3::from_fn(|i, _| rates.share[n + 1 + 3 * w + i]));
+                let twist = own(&rates.own);
+                (twist - given.unwrap_or(twist), given.unwrap_or(twist))
             }
         };
         if section.shares.iter().any(|s| *s != 0.0) {
-            let by_column: Vec<Vector3<f64>> =
-                (0..size).map(|j| to_origin * twist(factor, &responses[e], column(j))).collect();
-            let constant = to_origin * (constant + before);
-            for (k, share) in section.shares.iter().enumerate().filter(|s| *s.1 != 0.0) {
-                for i in 0..3 {
-                    by_column.iter().enumerate().for_each(|(j, v)| matrix[(3 * k + i, j)] += share * v[i]);
-                    right[3 * k + i] -= share * constant[i];
+            for j in 0..=size {
+                let v = match j < size {
+                    true => to_origin * twist(factor, &responses[e], column(j)),
+                    false => to_origin * (constant + before),
+                };
+                for (k, share) in section.shares.iter().enumerate().filter(|s| *s.1 != 0.0) {
+                    for i in 0..3 {
+                        match j < size {
+                            true => matrix[(3 * k + i, j)] += share * v[i],
+                            false => right[3 * k + i] -= share * v[i],
+                        }
+                    }
                 }
             }
         }
-        if let Some(w) = weak.iter().position(|w| *w == e) {
+        if let Some(w) = w {
             let at = n + 3 * w;
             for i in 0..3 {
                 for j in 0..size {

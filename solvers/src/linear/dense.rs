@@ -1,0 +1,122 @@
+//! Products of small dense matrices with few columns, with the vectors of the processor.
+
+use faer::traits::pulp::Arch;
+use nalgebra::DMatrix;
+
+/// out += A x over the first rows and columns of A, four columns at a time; zeros of x cost nothing.
+pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
+    if !out.is_empty() {
+        Arch::new().dispatch(|| add_columns(out, a.nrows(), a.as_slice(), x));
+    }
+}
+
+/// The same with the vectors of the processor; the order of operations does not depend on them.
+#[inline(always)]
+fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
+    let height = out.len();
+    let mut columns = a.chunks_exact(rows).zip(x).filter(|(_, x)| **x != 0.0);
+    loop {
+        let next: [Option<(&[f64], &f64)>; 4] = std::array::from_fn(|_| columns.next());
+        if let [Some((a, w)), Some((b, x)), Some((c, y)), Some((d, z))] = next {
+            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
+            for (i, out) in out.iter_mut().enumerate() {
+                *out += (a[i] * w + b[i] * x) + (c[i] * y + d[i] * z);
+            }
+            continue;
+        }
+        for (a, x) in next.into_iter().flatten() {
+            out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
+        }
+        return;
+    }
+}
+
+/// A times two columns added to two: each number of A is read once.
+#[inline(always)]
+fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
+    let height = first.len();
+    let second = &mut second[..height];
+    let mut columns = a.chunks_exact(height).zip(x.iter().zip(y)).filter(|(_, (x, y))| **x != 0.0 || **y != 0.0);
+    loop {
+        let next: [Option<(&[f64], (&f64, &f64))>; 4] = std::array::from_fn(|_| columns.next());
+        if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
+            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
+            for i in 0..height {
+                first[i] += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
+                second[i] += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
+            }
+            continue;
+        }
+        for (a, (x, y)) in next.into_iter().flatten() {
+            for ((first, second), a) in first.iter_mut().zip(second.iter_mut()).zip(a) {
+                *first += a * x;
+                *second += a * y;
+            }
+        }
+        return;
+    }
+}
+
+/// Dot product in four sums.
+#[inline(always)]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a4.zip(b4) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// A times columns, of which the first entries count.
+pub fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(a.nrows(), columns.ncols());
+    let (rows, entries) = (a.nrows(), columns.nrows());
+    Arch::new().dispatch(|| {
+        let pairs = out.as_mut_slice().chunks_mut(2 * rows).zip(columns.as_slice().chunks(2 * entries));
+        for (out, x) in pairs {
+            if x.len() == 2 * entries {
+                add_to_two(out.split_at_mut(rows), a.as_slice(), x.split_at(entries));
+            } else {
+                add_columns(out, rows, a.as_slice(), x);
+            }
+        }
+    });
+    out
+}
+
+/// Rows, given as columns, times A, again as columns: of A's rows as many count as they have entries.
+pub fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(a.ncols(), rows.ncols());
+    Arch::new().dispatch(|| {
+        let each = out.as_mut_slice().chunks_exact_mut(a.ncols()).zip(rows.as_slice().chunks_exact(rows.nrows()));
+        for (out, row) in each {
+            for (out, column) in out.iter_mut().zip(a.as_slice().chunks_exact(a.nrows())) {
+                *out = dot(row, &column[..row.len()]);
+            }
+        }
+    });
+    out
+}
+
+/// A += a bᵀ.
+pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+    let (height, rows) = (target.nrows(), a.nrows());
+    Arch::new().dispatch(|| {
+        let mut factors = vec![0.0; a.ncols()];
+        for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
+            factors.iter_mut().enumerate().for_each(|(i, f)| *f = b[(j, i)]);
+            match factors.as_slice() {
+                [0.0, 0.0] => {}
+                [f, g] => {
+                    let (a, b) = a.as_slice().split_at(height);
+                    column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);
+                }
+                _ => add_columns(column, rows, a.as_slice(), &factors),
+            }
+        }
+    });
+}

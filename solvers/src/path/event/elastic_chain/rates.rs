@@ -1,0 +1,29 @@
+//! Rates of the joints of a chain, kept from event to event.
+
+use crate::linear::dense::add_product;
+use crate::path::event::rates::largest;
+use nalgebra::{DMatrix, DVector};
+
+/// What the joints do.
+#[derive(Clone)]
+pub struct ChainRates {
+    /// Forces and twist of every joint.
+    pub own: Vec<Vec<f64>>,
+    /// Factors of the columns of the responses: rates of the redundants, λ̇, twists of weak joints.
+    pub share: DVector<f64>,
+    /// How often they have been corrected since they were last examined.
+    pub unchecked: usize,
+}
+
+impl ChainRates {
+    /// Adds responses in these shares.
+    pub fn add(&mut self, responses: &[DMatrix<f64>], share: DVector<f64>) {
+        self.own.iter_mut().zip(responses).for_each(|(own, response)| add_product(own, response, share.as_slice()));
+        self.share += share;
+    }
+
+    /// Their greatest size.
+    pub fn size(&self) -> f64 {
+        self.own.iter().map(|own| largest(own)).fold(0.0, f64::max)
+    }
+}
