@@ -120,3 +120,21 @@ pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) 
         }
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Products by pairs of columns, with a column over and zeros, and by rows are those of the definition.
+    #[test]
+    fn products_are_those_of_the_definition() {
+        let a = DMatrix::from_fn(7, 9, |i, j| ((3 * i + 5 * j * j + 1) as f64).sin());
+        let b = DMatrix::from_fn(9, 3, |i, j| if (i + j) % 3 == 0 { 0.0 } else { ((i * j + 2) as f64).cos() });
+        let close = |x: &DMatrix<f64>, y: DMatrix<f64>| (x - y).amax() < 1e-14;
+        assert!(close(&product(&a, &b), &a * &b));
+        assert!(close(&row_product(&a.columns(0, 3).clone_owned(), &a), a.transpose() * a.columns(0, 3)));
+        let mut sum = a.clone();
+        add_outer(&mut sum, &a.columns(0, 2).clone_owned(), &b.columns(0, 2).clone_owned());
+        assert!(close(&sum, &a + a.columns(0, 2) * b.columns(0, 2).transpose()));
+    }
+}
