@@ -39,7 +39,7 @@ impl InterfaceLaw for MohrCoulomb {
         let dilatancy = self.dilatancy_angle.map_or(mu, |angle| tangent(angle).min(mu));
         let [left, right] = Facet::friction(mu, self.cohesion, dilatancy);
         let mut facets = vec![Facet::opening(self.tensile_strength), left, right];
-        facets.extend(self.compressive_strength.map(Facet::crushing));
+        facets.extend(self.compressive_strength.filter(|strength| *strength < NO_CRUSHING).map(Facet::crushing));
         Some(facets)
     }
 
@@ -49,6 +49,8 @@ impl InterfaceLaw for MohrCoulomb {
 }
 
 const STRENGTH: Range = Range::NON_NEGATIVE;
+/// f_c \[Pa\] from which on a joint does not crush: the rounding of a motion times such a strength would outweigh all loads.
+const NO_CRUSHING: f64 = 1e15;
 
 const TABLE: &str = "friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9";
 

@@ -3,7 +3,7 @@
 
 use voussoir::kinds::read_source;
 use voussoir::solve_case;
-use voussoir::study::{StudySource, load};
+use voussoir::study::{StudyError, StudySource, load};
 
 /// A polyline as DXF; a closed one ends without its first corner.
 fn polyline(handle: &str, layer: &str, closed: bool, points: &[[f64; 2]]) -> String {
@@ -31,9 +31,7 @@ const HEAD: &str = "name = \"drawn\"\n[materials.stone]\nlaw = \"rigid\"\ndensit
 /// The load factor of a study, as it is and read again from its resolved text; or what is said against it.
 fn answered(text: &str, file: &str) -> Result<f64, String> {
     let read = |name: &str| if name == "survey.dxf" { Ok(file.to_string()) } else { Err("not there".into()) };
-    let said = |wrong: Vec<voussoir::config::diagnostic::LocatedDiagnostic>| {
-        wrong.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
-    };
+    let said = |wrong: StudyError| wrong.to_string();
     let source = StudySource::parse_with(text, "a.toml", &[], &read).map_err(said)?;
     let resolved = toml::to_string(&source.root.to_toml()).expect("TOML");
     assert!(!resolved.contains("survey.dxf"), "{resolved}");

@@ -4,7 +4,6 @@
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
-use voussoir::config::diagnostic::LocatedDiagnostic;
 use voussoir::core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::model::stage_loads;
 use voussoir::core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -12,7 +11,7 @@ use voussoir::kinds::{KindEntry, LoadedStudy, OwnResults, RunRequest, StudyKind,
 use voussoir::results::{CaseLabel, CaseResult};
 use voussoir::solve::auto::{limit_solvers, path_solvers};
 use voussoir::solve::{CaseInput, Observer, solve_case, solve_cases};
-use voussoir::study::{Case, Outline, SelectedSolver, Study, StudySource, load};
+use voussoir::study::{Case, Outline, SelectedSolver, Study, StudyError, StudySource, load};
 
 /// A number that the card takes up to 10 and the solver up to 5.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -103,7 +102,7 @@ loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
 fn wrong(more: &str, sets: &[(&str, &str)]) -> Vec<String> {
     let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
     let Err(wrong) = load(&format!("{ARCH}{more}"), "a.toml", &sets) else { panic!("{more} is accepted") };
-    wrong.iter().map(ToString::to_string).collect()
+    wrong.mistakes().iter().map(ToString::to_string).collect()
 }
 
 /// A plug-in that panics ends its case, not the others.
@@ -155,9 +154,8 @@ fn every_study() -> Vec<(String, Study)> {
     files.sort();
     let texts = files.iter().map(|path| (path, std::fs::read_to_string(path).expect("a text")));
     let scenes = texts.filter(|(_, text)| text.contains("[scene]"));
-    let read = |path: &Path, text: &str| {
-        load(text, "study.toml", &[]).unwrap_or_else(|e| panic!("{}: {}", path.display(), e[0]))
-    };
+    let read =
+        |path: &Path, text: &str| load(text, "study.toml", &[]).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     scenes.map(|(path, text)| (path.display().to_string(), read(path, &text))).collect()
 }
 
@@ -226,7 +224,7 @@ fn a_study_makes_cases_at_other_values() {
     let same = study.at(1, &[]).expect("a case");
     assert_eq!(same.resolved, study.cases[1].resolved);
     let wrong = study.at(0, &[("scene.profile.rise".into(), (-1.0).into())]).expect_err("no arch");
-    assert_eq!(wrong[0].key, "scene.profile.rise");
+    assert_eq!(wrong.mistakes()[0].key, "scene.profile.rise");
 }
 
 /// A study kind of one's own: it tries another value of one key for each case, and says which case carries more.
@@ -242,7 +240,7 @@ impl Try {
 }
 
 impl StudyKind for Try {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         Ok(Box::new(Study::from_source(source)?))
     }
 
@@ -297,7 +295,7 @@ fn a_study_kind_of_ones_own() {
     let kind = "kind = \"try_value\"\n";
     let with = |table: &str| format!("{kind}{ARCH}[output]\nwriters = [\"results_csv\"]\n[try_value]\n{table}");
     let text = with("key = \"scene.thickness\"\nvalue = 0.4\n");
-    let study = read_study(&text, "a.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = read_study(&text, "a.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let output = study.run(&RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() }, &Silent);
     assert!(output.certified);
     let (_, bytes) = output.files.iter().find(|(name, _)| name == "results.json").expect("results");
@@ -313,9 +311,9 @@ fn a_study_kind_of_ones_own() {
     assert!(!study.verify(&results.replace(&factor, "1.0")).expect("results").findings.is_empty());
     assert!(voussoir::kinds::json_schema::json_schema().to_string().contains("\"try_value\""));
     let wrong = read_study(&with("kee = \"scene.thickness\"\nvalue = 0.4\n"), "a.toml", &[]).err().expect("a mistake");
-    assert!(wrong.iter().any(|one| one.to_string().contains("did you mean \"key\"?")), "{wrong:?}");
+    assert!(wrong.mistakes().iter().any(|one| one.to_string().contains("did you mean \"key\"?")), "{wrong:?}");
     let wrong = read_study(&format!("{kind}{ARCH}"), "a.toml", &[]).err().expect("a mistake");
-    assert!(wrong[0].message.contains("[try_value]"));
+    assert!(wrong.mistakes()[0].message.contains("[try_value]"));
 }
 
 struct Silent;
@@ -328,7 +326,7 @@ impl Observer for Silent {
 #[test]
 fn writers_are_chosen_and_have_options() {
     let run = |more: &str| {
-        let study = read_study(&format!("{ARCH}{more}"), "a.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+        let study = read_study(&format!("{ARCH}{more}"), "a.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
         study.run(&RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() }, &Silent).files
     };
     let names = |more: &str| run(more).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
@@ -354,7 +352,10 @@ fn mistakes_in_loads_have_the_nearest_right_name() {
         load_text(&text)
     };
     fn load_text(text: &str) -> Vec<String> {
-        load(text, "a.toml", &[]).err().map(|wrong| wrong.iter().map(ToString::to_string).collect()).unwrap_or_default()
+        load(text, "a.toml", &[])
+            .err()
+            .map(|wrong| wrong.mistakes().iter().map(ToString::to_string).collect())
+            .unwrap_or_default()
     }
     let point = "kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0]";
     assert_eq!(

@@ -101,13 +101,13 @@ fn a_served_answer_is_that_of_run() {
     let asked = json!({ "case": 28, "set": [["scene.profile.span", 9.0], ["scene.thickness", "70 cm"], ["scene.voussoirs", 13]] });
     let answer = served.answer(&asked);
     let study = voussoir::study::load(answer["toml"].as_str().expect("a study file"), "seen.toml", &[]);
-    let study = study.unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = study.unwrap_or_else(|wrong| panic!("{wrong}"));
     assert_eq!(study.cases.len(), 1);
     let case = &study.run().cases[0];
     let text = std::fs::read_to_string(STUDY).expect("the study");
     let sets = [("scene.profile.span", "9.0"), ("scene.thickness", "70 cm"), ("scene.voussoirs", "13")];
     let sets = sets.map(|(key, value)| (key.to_string(), value.to_string()));
-    let whole = voussoir::study::load(&text, STUDY, &sets).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let whole = voussoir::study::load(&text, STUDY, &sets).unwrap_or_else(|wrong| panic!("{wrong}"));
     let run = voussoir::solve_case(&whole.cases[28]);
     for factor in [answer["load_factor"].as_f64(), case.load_factor] {
         assert_eq!(factor, run.load_factor);
@@ -116,7 +116,7 @@ fn a_served_answer_is_that_of_run() {
 
     let mistake = served.answer(&json!({ "case": 0, "set": [["joints.dry.frction", 0.5]] }));
     let told = voussoir::study::load(&text, STUDY, &[("joints.dry.frction".into(), "0.5".into())]);
-    let words = told.expect_err("a mistake")[0].to_string();
+    let words = told.expect_err("a mistake").to_string();
     assert!(words.starts_with(mistake["mistakes"].as_str().expect("a text")), "{mistake} {words}");
     // Nothing is read from files, whatever is set.
     let profile = json!({ "shape": "points", "file": "/etc/hostname" });

@@ -252,8 +252,9 @@ const FOLDERS: [(&str, &str); 8] = [
 ];
 
 fn verification() -> String {
-    let mut text = "# Every test\n\nFrom the tests themselves: what each proves, and the widest relative difference that it lets pass \
-                    where it compares numbers with `assert_close`. Long forms, which are run by hand, are marked so.\n"
+    let mut text = "# Every test\n\nFrom the tests themselves: what each proves, whose number it is held against as far as its own \
+                    words say so (else the head of its file does), and the widest relative difference that it lets pass where it compares \
+                    numbers with `assert_close`. Long forms, which are run by hand, are marked so.\n"
         .to_string();
     for (folder, kind) in FOLDERS {
         text += &format!("\n## {}{}: {kind}\n", folder[..1].to_uppercase(), &folder[1..]);
@@ -262,14 +263,17 @@ fn verification() -> String {
         files.sort();
         for path in files {
             let source = std::fs::read_to_string(&path).expect("a test");
-            let tests = tests_of(&source);
+            let head: Vec<&str> = source.lines().map_while(|line| line.strip_prefix("//!")).map(str::trim).collect();
+            let head = head.join(" ");
+            let tests = tests_of(&source, folder);
             if tests.is_empty() {
                 continue;
             }
             let name = path.strip_prefix(tree().join("tests/tests")).expect("below").display().to_string();
-            let head: Vec<&str> = source.lines().map_while(|line| line.strip_prefix("//!")).map(str::trim).collect();
-            text +=
-                &format!("\n### `{name}`\n\n{}\n\n| test | what it proves | within |\n|---|---|---|\n", head.join(" "));
+            text += &format!(
+                "\n### `{name}`\n\n{}\n\n| test | what it proves | whose number | within |\n|---|---|---|---|\n",
+                head
+            );
             tests.iter().for_each(|test| text += test);
         }
     }
@@ -286,8 +290,51 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
+/// Words that tell whose number a test is held against, and what the table says then; the first that is found counts.
+const SOURCES: [(&[&str], &str); 8] = [
+    (&["independent", "another program", "other program", "external program"], "another program"),
+    (&["closed form", "by hand", "statics", "patch test", "exact", "timoshenko", "theory", " = "], "closed form"),
+    (&["published", "doi", "et al", "table of"], "published"),
+    (&["linear program", "conic program", "energy program", "minimum of the energy"], "another formulation"),
+    (&["difference quotient", "differences", "solved again", "re-solved"], "differences of our own"),
+    (&["known", "reference"], "known values of the file"),
+    (&["same as", "agree", "the same", "equal"], "another way of ours"),
+    (&["mirror", "units", "numbering"], "what must not matter"),
+];
+
+/// Whether a text cites somebody by a year in parentheses: `Milankovitch (1907)`, `(Livesley 1978)`.
+fn cites(text: &str) -> bool {
+    let year = |part: &str| {
+        let digits: String = part.chars().take(4).collect();
+        let after = part.chars().nth(4).is_none_or(|c| !c.is_ascii_digit());
+        digits.len() == 4
+            && after
+            && (digits.starts_with("19") || digits.starts_with("20"))
+            && digits.parse::<u32>().is_ok()
+    };
+    let open = text.match_indices('(').filter_map(|(at, _)| text[at + 1..].split(')').next());
+    open.into_iter().any(|inside| inside.split([' ', ',']).any(year))
+}
+
+/// Whose number a test is held against, by its own words.
+fn whose(folder: &str, said: &str) -> &'static str {
+    match folder {
+        "regression" => return "our own last",
+        "invariance" => return "the same scene, otherwise said",
+        "verification" | "stress" => {}
+        _ => return "",
+    }
+    let found = |text: &str| {
+        let lower = text.to_lowercase();
+        let by_words =
+            || SOURCES.iter().find(|(words, _)| words.iter().any(|word| lower.contains(word))).map(|own| own.1);
+        if cites(text) { Some("published") } else { by_words() }
+    };
+    found(said).unwrap_or("its file says")
+}
+
 /// A row for each test of a file.
-fn tests_of(source: &str) -> Vec<String> {
+fn tests_of(source: &str, folder: &str) -> Vec<String> {
     let lines: Vec<&str> = source.lines().collect();
     let mut rows = Vec::new();
     for at in (0..lines.len()).filter(|at| lines[*at] == "#[test]") {
@@ -301,7 +348,8 @@ fn tests_of(source: &str) -> Vec<String> {
         let within = widest(&lines[open..end].concat()).map_or(String::new(), |most| format!("{most:.0e}"));
         let statement = if said.is_empty() { name.replace('_', " ") } else { said.join(" ") };
         let mark = if by_hand { " (by hand)" } else { "" };
-        rows.push(format!("| `{name}`{mark} | {} | {within} |\n", cell(&statement)));
+        let whose = whose(folder, &statement);
+        rows.push(format!("| `{name}`{mark} | {} | {whose} | {within} |\n", cell(&statement)));
     }
     rows
 }

@@ -45,7 +45,7 @@ pub fn above_gates(result: &CaseResult, tolerance: f64, uncertain: f64) -> Vec<S
         let fine = match (name.as_str(), gate(name, &result.solver, tolerance)) {
             // The work that the loads do beyond what is dissipated.
             ("excess_power", _) => *value > 1e-13,
-            ("gap", Some(gate)) => *value <= gate.max(uncertain),
+            ("gap" | "interval_gap", Some(gate)) => *value <= gate.max(uncertain),
             (_, Some(gate)) => *value <= gate,
             (_, None) => false,
         };

@@ -13,6 +13,7 @@ pub mod gates;
 pub mod known;
 pub mod random;
 pub mod seen;
+pub mod sequence;
 pub mod settled;
 mod wall;
 pub mod written;
@@ -28,10 +29,7 @@ use voussoir::study::{Case, Study, load};
 
 /// Reads a study that must be right.
 pub fn study(text: &str) -> Study {
-    load(text, "test.toml", &[]).unwrap_or_else(|mistakes| {
-        let all: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
-        panic!("the test's study is wrong:\n{}\n{text}", all.join("\n"))
-    })
+    load(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("the test's study is wrong:\n{wrong}\n{text}"))
 }
 
 /// The first case of a study.

@@ -15,7 +15,7 @@ use voussoir::verify::{solve_again, verify_against};
 pub fn results(text: &str) -> (Study, Value) {
     let original = study(text);
     let resolved = toml::to_string(&original.resolved).expect("a study can be written");
-    let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{}\n{resolved}", m[0]));
+    let again = load(&resolved, "resolved.toml", &[]).unwrap_or_else(|m| panic!("{m}\n{resolved}"));
     let (kind, wanted) =
         (kind(&original.kind).expect("a registered kind"), (0..original.cases.len()).collect::<Vec<_>>());
     let results = original.results("test", kind.solve(&original, &wanted, 1, &Unobserved));

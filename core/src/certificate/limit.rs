@@ -91,6 +91,14 @@ pub fn largest_jump(jumps: &[Jump]) -> f64 {
     jumps.iter().map(Jump::size).fold(0.0, f64::max)
 }
 
+/// The size of a motion: its greatest jump, or its greatest speed where it has none to speak of, as where blocks move that
+/// nothing touches.
+pub fn motion_size(jumps: &[Jump], motion: &[CentroidVelocity]) -> f64 {
+    let speed = motion.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+    let jump = largest_jump(jumps);
+    if jump > 1e-9 * speed { jump } else { speed }
+}
+
 struct Check<'a> {
     assembly: &'a Assembly,
     loads: &'a StageLoads,
@@ -185,14 +193,14 @@ impl Check<'_> {
         (if dead > 0.0 { at } else { at.max(self.load_scale(1.0)) }).max(f64::MIN_POSITIVE)
     }
 
-    /// Factors below this do not change the loads that are there anyway: differences of factors
-    /// are compared with it where the factor itself is nearly zero.
+    /// A thousandth of the loads that are there anyway: differences of factors are compared with it where the factor itself
+    /// is less. A gap of 1e-9 is then 1e-12 of these loads; the equilibrium of a field is only asked for to 1e-10 of them.
     fn factor_scale(&self) -> f64 {
         let (dead, both) = (self.load_scale(0.0), self.load_scale(1.0));
         if dead == 0.0 {
             1.0
         } else if both > dead {
-            1e-6 * dead / (both - dead)
+            1e-3 * dead / (both - dead)
         } else {
             0.0
         }
@@ -331,7 +339,7 @@ impl Check<'_> {
             varying += power(&self.loads.varying[body]);
         }
         let jumps = jumps(self.assembly, motion);
-        let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
+        let largest = motion_size(&jumps, motion).max(f64::MIN_POSITIVE);
         let (mut dissipated, mut impossible, mut uncertain) = (0.0, 0.0f64, 0.0);
         for (joint, jump) in self.assembly.joints.iter().zip(&jumps) {
             let Bond::Law(law) = joint.bond else {
@@ -510,10 +518,10 @@ impl Check<'_> {
             return self.fail("no motion that refutes equilibrium");
         };
         self.held(motion);
-        let Powers { fixed, varying, dissipated, impossible, .. } = self.powers(motion);
+        let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
         self.residual("flow", impossible, ROUNDING);
         let excess = fixed + claim.start * varying - dissipated;
-        let largest = largest_jump(&jumps(self.assembly, motion));
+        let largest = motion_size(&jumps(self.assembly, motion), motion);
         let scale = self.residual_scale(claim.start) * largest;
         if excess.is_nan() || excess <= EXCESS * scale {
             self.fail(format!("the loads do no more work on the motion than is dissipated: excess {excess:.3e}"));
@@ -524,8 +532,12 @@ impl Check<'_> {
                 let near = if low > claim.start { low } else { high };
                 self.residual("motion_scale", (varying.abs() - 1.0).abs(), 1e-9);
                 let proven = (dissipated - fixed) / varying;
-                let spread = (proven - near).abs() / proven.abs().max(near.abs()).max(self.factor_scale());
-                self.residual("interval_gap", spread, gap);
+                let scale = proven.abs().max(near.abs()).max(self.factor_scale());
+                self.residual(
+                    "interval_gap",
+                    (proven - near).abs() / scale,
+                    gap.max(uncertain / varying.abs() / scale),
+                );
             }
             None => {
                 self.residual("motion_scale", (largest - 1.0).abs(), 1e-9);

@@ -6,7 +6,9 @@ mod path;
 mod products;
 mod settlement;
 
-pub use self::limit::{Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump};
+pub use self::limit::{
+    Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump, motion_size,
+};
 pub use self::mechanism::{
     CRUSHES, CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
     mechanism_above, velocity_at,

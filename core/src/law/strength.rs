@@ -69,6 +69,30 @@ impl JointStrength {
             Tangential::Friction
         }
     }
+
+    /// The same without crushing and cohesion that forces of this size never come near; `None` where it has none such.
+    pub fn within_reach(&self, force: f64) -> Option<JointStrength> {
+        let block = self.block.filter(|block| block.total - block.tension <= UNCRUSHED * force);
+        let slides = |row: &&ForceRow| row.mode == FacetMode::Sliding && row.bound > STUCK * force;
+        if block == self.block && !self.rows.iter().any(|row| slides(&row)) {
+            return None;
+        }
+        let mut rows: Vec<ForceRow> = self.rows.iter().filter(|row| !slides(row)).copied().collect();
+        if let Some(gone) = self.block.filter(|_| block.is_none()) {
+            rows.splice(0..0, opening(gone.tension));
+        }
+        Some(JointStrength { rows, block })
+    }
+}
+
+/// Crushing strength over force from which it changes no digit that a certificate looks at: it enters as its inverse.
+const UNCRUSHED: f64 = 1e8;
+/// Cohesion over force from which a joint is not expected to slide: it does not enter where it is not reached.
+const STUCK: f64 = 1e3;
+
+/// The rows of a joint that opens at this tension \[N\].
+fn opening(tension: f64) -> [ForceRow; 2] {
+    [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]].map(|normal| ForceRow::associated(FacetMode::Opening, normal, tension / 2.0))
 }
 
 /// The three ways a joint treats T.
@@ -101,8 +125,7 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
     let tension = -least * area;
     let mut rows = Vec::new();
     if greatest.is_infinite() {
-        rows.push(ForceRow::associated(FacetMode::Opening, [-1.0, 0.0, 0.0], tension / 2.0));
-        rows.push(ForceRow::associated(FacetMode::Opening, [0.0, -1.0, 0.0], tension / 2.0));
+        rows.extend(opening(tension));
     }
     for sense in [1.0, -1.0] {
         let on_side: Vec<&Facet> = facets.iter().filter(|f| bounds_sliding(f, sense)).collect();
@@ -206,6 +229,20 @@ mod tests {
             let strength = integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap();
             assert_eq!(strength.rows.len(), rows, "{mu:e}");
         }
+    }
+
+    /// What never crushes opens as before; a joint that can be reached is left alone.
+    #[test]
+    fn strengths_out_of_reach_leave_opening_and_friction() {
+        let [left, right] = Facet::friction(0.6, 0.0, 0.6);
+        let facets = [Facet::opening(0.0), Facet::crushing(1e15), left, right];
+        let strong = integrate(&facets, 1.0).unwrap();
+        assert_eq!(strong.within_reach(1e8), None);
+        let dry = integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap();
+        assert_eq!(strong.within_reach(1e3), Some(dry));
+        let glued = integrate(&mohr_coulomb(0.0, 1e6, 1e12, 0.6), 1.0).unwrap();
+        let left = glued.within_reach(1e3).unwrap();
+        assert_eq!((left.tangential(), left.block), (Tangential::Stuck, glued.block));
     }
 
     #[test]

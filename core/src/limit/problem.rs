@@ -150,6 +150,21 @@ impl LimitProblem {
         })
     }
 
+    /// The same with crushing and cohesion that the loads never come near taken for unlimited: a problem of better numbers,
+    /// whose answer is one of this problem where the certificate says so. `None` where there are none such.
+    pub fn within_reach(&self) -> Option<Self> {
+        let force = self.magnitude(&self.fixed) + self.magnitude(&self.varying);
+        let mut changed = self.clone();
+        let mut any = false;
+        for joint in changed.joints.iter_mut().filter(|joint| joint.fill.is_none()) {
+            if let Some(strength) = joint.strength.within_reach(force) {
+                joint.strength = strength;
+                any = true;
+            }
+        }
+        any.then_some(changed)
+    }
+
     /// Forces of the fill \[N\] given those of the problem's joints: one for each of its reactions, of which `bounds`
     /// are the least and greatest.
     pub fn fill_forces(&self, forces: &[JointForce], bounds: &[[f64; 2]]) -> Vec<f64> {

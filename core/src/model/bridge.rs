@@ -60,7 +60,7 @@ pub fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(
     cuts.retain(|&x| start <= x && x <= end);
     cuts.sort_by(f64::total_cmp);
     // Between two cuts one chord is the upper one all along. Its parts are joined again, so that
-    // each voussoir gets one force at the middle of what it carries.
+    // each chord gets one force at the middle of what it carries.
     let mut parts: Vec<(Chord, f64, f64)> = Vec::new();
     for pair in cuts.windows(2).filter(|pair| pair[0] < pair[1]) {
         let middle = (pair[0] + pair[1]) / 2.0;
@@ -69,7 +69,7 @@ pub fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(
             continue;
         };
         match parts.last_mut() {
-            Some((chord, _, high)) if chord.body == top.body && *high == pair[0] => *high = pair[1],
+            Some((chord, _, high)) if *chord == top && *high == pair[0] => *high = pair[1],
             _ => parts.push((top, pair[0], pair[1])),
         }
     }

@@ -1,6 +1,7 @@
 //! Equilibrium of groups over the joints' force variables, scaled: forces in units of F, moments in F × length.
 
 use voussoir_core::limit::{JointForce, LimitProblem};
+use voussoir_core::model::Wrenches;
 
 /// Entries of a row: (variable, coefficient).
 pub type Row = Vec<(usize, f64)>;
@@ -54,4 +55,24 @@ impl ForceVariables {
         };
         self.joints.iter().map(of).collect()
     }
+}
+
+/// What joint forces leave of loads on any group, and by how much they exceed a linear row, as a share of the loads.
+pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
+    let (mut left, mut worst) = (loads.clone(), 0.0f64);
+    for (joint, force) in problem.joints.iter().zip(forces) {
+        let components = [force.normal[0], force.normal[1], force.shear];
+        for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+            let Some(group) = group else { continue };
+            for (wrench, component) in joint.wrenches(problem.pole).iter().zip(components) {
+                (0..3).for_each(|i| left[group][i] += sign * wrench[i] * component);
+            }
+        }
+        for row in &joint.strength.rows {
+            let reached: f64 = row.normal.iter().zip(components).map(|(normal, component)| normal * component).sum();
+            worst = worst.max(reached - row.bound);
+        }
+    }
+    let unbalanced = left.iter().map(|w| w[0].abs().max(w[1].abs()).max(w[2].abs() / problem.length));
+    unbalanced.fold(worst, f64::max) / problem.magnitude(loads).max(f64::MIN_POSITIVE)
 }

@@ -10,6 +10,7 @@ pub mod chain;
 pub mod conic;
 mod engine;
 mod equilibrium;
+mod floating;
 pub mod nonassociated;
 mod question;
 mod recovery;

@@ -1,9 +1,12 @@
 //! The sequence of questions behind every status of limit analysis with associated flow.
 
 use super::engine::{Engine, Equilibrium, Greatest};
+use super::floating::loose_motion;
 use super::scale::combined;
 use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::Wrenches;
+
+const IMPOSSIBLE: &str = "no factor of the last stage's loads makes equilibrium possible";
 
 /// Answers a question by an engine: every status with its proof.
 pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn Engine) -> LimitAnswer {
@@ -25,6 +28,12 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         notes: Vec::new(),
     };
     let base = combined(&problem.fixed, &problem.varying, start);
+    if let Some(motion) = loose_motion(problem, &base, &problem.varying) {
+        answer.status = Status::NoEquilibrium;
+        answer.motion = Some(motion);
+        answer.notes.push(IMPOSSIBLE.into());
+        return answer;
+    }
     let grows = matches!(question, LimitQuestion::Collapse { .. }) && problem.magnitude(&problem.varying) > 0.0;
     let at_once = if grows { engine.greatest_if_carried(&base, &problem.varying, max - start) } else { None };
     if let Some(greatest) = at_once {
@@ -33,7 +42,10 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         answer.counters = engine.counters();
         return answer;
     }
-    match engine.admissible(&base) {
+    // Nothing is carried by no forces: a solver would scale them by nothing.
+    let idle = problem.magnitude(&base) == 0.0;
+    let nothing = || Equilibrium::Field(vec![JointForce::default(); problem.joints.len()]);
+    match if idle { nothing() } else { engine.admissible(&base) } {
         Equilibrium::Field(field) => {
             answer.field = Some(field);
             answer.status = Status::Stands;
@@ -116,7 +128,7 @@ fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, sta
         Equilibrium::Field(_) => {}
         Equilibrium::Motion(motion) => {
             answer.motion = Some(motion);
-            answer.notes.push("no factor of the last stage's loads makes equilibrium possible".into());
+            answer.notes.push(IMPOSSIBLE.into());
             return;
         }
         Equilibrium::Failed(why) => return answer.notes.push(why),

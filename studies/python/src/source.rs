@@ -52,14 +52,14 @@ impl Source {
     pub fn read(&self) -> PyResult<StudySource> {
         match self {
             Source::Toml { text, file, sets } => StudySource::parse_with(text, file, sets, &|name| self.beside(name))
-                .map_err(|wrong| study_error(&wrong)),
+                .map_err(|wrong| study_error(wrong.mistakes())),
             Source::Json { text, sets } => {
                 let json = |text: &str| {
                     serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("not a study: {error}")))
                 };
                 let sets =
                     sets.iter().map(|(key, value)| Ok((key.clone(), json(value)?))).collect::<PyResult<Vec<_>>>()?;
-                StudySource::of_value(&json(text)?, &sets).map_err(|wrong| study_error(&wrong))
+                StudySource::of_value(&json(text)?, &sets).map_err(|wrong| study_error(wrong.mistakes()))
             }
         }
     }
@@ -68,7 +68,7 @@ impl Source {
 impl Source {
     /// The study, of any kind.
     pub fn load(&self) -> PyResult<Box<dyn LoadedStudy>> {
-        read_source_beside(self.read()?, &|name| self.beside(name)).map_err(|wrong| study_error(&wrong))
+        read_source_beside(self.read()?, &|name| self.beside(name)).map_err(|wrong| study_error(wrong.mistakes()))
     }
 
     /// The text of a file beside the study's.

@@ -32,8 +32,8 @@ impl Sweep {
     #[pyo3(signature = (source, checked=true))]
     fn new(py: Python<'_>, source: Source, checked: bool) -> PyResult<Self> {
         let sweep = py.detach(|| {
-            let file = StudyFile::read(source.read()?).map_err(|wrong| study_error(&wrong))?;
-            if checked { file.sweep() } else { file.sweep_unchecked() }.map_err(|wrong| study_error(&wrong))
+            let file = StudyFile::read(source.read()?).map_err(|wrong| study_error(wrong.mistakes()))?;
+            if checked { file.sweep() } else { file.sweep_unchecked() }.map_err(|wrong| study_error(wrong.mistakes()))
         })?;
         if sweep.kind != "run" {
             let message =

@@ -147,6 +147,24 @@ def test_a_sweep_is_read_back_from_parquet_by_others(tmp_path):
     assert sum(count for _, count in statuses) == table.count
 
 
+def test_tables_of_the_command_line_are_read_back_from_parquet(tmp_path):
+    duckdb, polars = pytest.importorskip("duckdb"), pytest.importorskip("polars")
+    run = lambda *words: subprocess.run([sys.executable, "-m", "voussoir", *words], cwd=tmp_path).returncode
+    assert run("new", "arch") == 0
+    # Held, and so many that they are streamed in several groups of rows.
+    for count in (5, 5200):
+        rises = f'sweep={{"scene.profile.rise"={{from=2.0, to=4.0, count={count}}}}}'
+        sets = ["--set", rises, "--set", 'output.writers=["results_parquet"]', "--set", "output.figures=false"]
+        assert run("run", "arch.toml", "--quiet", "--out", f"p{count}", *sets) == 0
+        path = tmp_path / f"p{count}" / "results.parquet"
+        cases = json.loads(path.with_name("results.json").read_text())["cases"]
+        factors, passed = [c["load_factor"] for c in cases], [c["certificate"]["passed"] for c in cases]
+        table = polars.read_parquet(path)
+        assert table["load_factor [-]"].to_list() == factors and table["certificate_passed"].to_list() == passed
+        read = duckdb.sql(f"select \"load_factor [-]\", certificate_passed from '{path}' order by id").fetchall()
+        assert read == list(zip(factors, passed))
+
+
 def test_sweeps_are_columns_and_the_same_whoever_works():
     pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
     seen = []

@@ -52,14 +52,14 @@ pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStu
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
     let study = source.and_then(|source| read_source_beside(source, &beside(path)));
-    study.map_err(|diagnostics| report(path, &diagnostics))
+    study.map_err(|diagnostics| report(path, diagnostics.mistakes()))
 }
 
 /// Reads a study to be looked at, printing every mistake in its first case.
 pub fn session(path: &Path, sets: &[(String, String)]) -> Result<Session, u8> {
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
-    source.and_then(Session::read).map_err(|diagnostics| report(path, &diagnostics))
+    source.and_then(Session::read).map_err(|diagnostics| report(path, diagnostics.mistakes()))
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {

@@ -161,7 +161,8 @@ impl ResultFolder {
 
 /// Files of a folder that have names which writers give, but for results.json.
 pub fn named_by_writers(path: &Path) -> Vec<String> {
-    let top = ["results.csv", "curve.csv", "comparison.csv", "sensitivities.csv", "report.html"].map(String::from);
+    let top = ["results.csv", "results.parquet", "curve.csv", "comparison.csv", "sensitivities.csv", "report.html"];
+    let top = top.map(String::from);
     let filled = FILLED.into_iter().flat_map(|folder| {
         let names = entries(&path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
         names.collect::<Vec<_>>()

@@ -22,6 +22,7 @@ pub mod run;
 pub mod serve;
 pub mod shard;
 mod stream;
+mod tables;
 mod today;
 mod topics;
 pub mod verify;

@@ -102,7 +102,7 @@ mod tests {
             let word = template.word();
             assert!(template.text().starts_with(&format!("name = \"{word}\" ")), "{word}");
             let study = read_study(template.text(), word, &[("output.figures".into(), "false".into())]);
-            let study = study.unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+            let study = study.unwrap_or_else(|wrong| panic!("{wrong}"));
             assert!(study.notes().is_empty(), "{word}: {:?}", study.notes());
             let request = RunRequest { wanted: (0..study.count()).collect(), jobs: 1, ..RunRequest::default() };
             assert!(study.run(&request, &Unobserved).certified, "{word}");

@@ -1,17 +1,18 @@
 //! A run of so many cases that none is held: from the journal to results.json and results.csv, case by case.
 
-use super::by_case::{no_access, solve_into_journal};
+use super::by_case::solve_into_journal;
 use super::case_lines::CaseLines;
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::Options;
 use super::refill::refill;
+use super::tables::Tables;
 use super::today::today;
 use crate::figures::format::{format_number, format_value, status_word};
 use crate::kinds::CasesOf;
 use crate::results::CaseResult;
 use crate::study::Sweep;
-use crate::writers::stream::{CsvStream, StreamedResults, write_json};
+use crate::writers::stream::{StreamedResults, write_json};
 use std::collections::BTreeMap;
 use std::path::Path;
 use voussoir_core::limit::Status;
@@ -68,7 +69,7 @@ pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Resu
     finish(sweep, &folder, &lines, options.case.map(|id| vec![id]), options.quiet || options.json)
 }
 
-/// Writes results.json and results.csv from lines of all cases, and says what they hold.
+/// Writes results.json and the tables from lines of all cases, and says what they hold.
 pub fn finish(
     sweep: &Sweep,
     folder: &ResultFolder,
@@ -76,34 +77,22 @@ pub fn finish(
     only_cases: Option<Vec<usize>>,
     quiet: bool,
 ) -> Result<u8, u8> {
-    let wants_csv = sweep.output.writers.as_ref().is_none_or(|tags| tags.iter().any(|tag| tag == "results_csv"));
     let mut tally = Tally::default();
     let mut json = folder.aside("results.json")?;
-    let mut csv = None;
-    if wants_csv {
-        let aside = folder.aside("results.csv")?;
-        let new =
-            CsvStream::new(aside, sweep.keys()).map_err(|error| no_access(&folder.path().join("results.csv"), error));
-        csv = Some(new?);
-    }
+    let mut tables = Tables::begin(sweep, folder)?;
     let version = env!("CARGO_PKG_VERSION").to_string();
     let head = StreamedResults { study: sweep.name.clone(), version, date: Some(today()), only_cases };
     let mut rows = lines.cases().map(|case| {
         let case = case?;
         tally.add(&case);
-        csv.as_mut().map_or(Ok(()), |csv| csv.add(&case))?;
+        tables.add(&case)?;
         Ok(case)
     });
     let written = write_json(&mut json, &head, &mut rows);
     drop(rows);
     json.done(written)?;
-    if let Some(csv) = csv {
-        let aside = csv.finish().map_err(|error| no_access(&folder.path().join("results.csv"), error))?;
-        aside.done(Ok(()))?;
-    } else {
-        folder.remove("results.csv");
-    }
     folder.remove_drawn();
+    tables.done()?;
     folder.remove(JOURNAL);
     if !quiet {
         say(tally.text());

@@ -117,6 +117,15 @@ impl Expansion {
         self.axes.iter().map(|axis| (keys(axis), numbers(axis))).collect()
     }
 
+    /// Keys that are swept, and whether all values of each are numbers.
+    pub fn number_keys(&self) -> Vec<(String, bool)> {
+        let of = |axis: &Axis, place: usize| axis.values.iter().all(|step| step[place].number().is_some());
+        let keys = |axis: &Axis| -> Vec<_> {
+            axis.keys.iter().enumerate().map(|(place, (key, _))| (key.clone(), of(axis, place))).collect()
+        };
+        self.axes.iter().flat_map(keys).collect()
+    }
+
     /// Names of the variants; empty where the study has none.
     pub fn variants(&self) -> Vec<String> {
         self.variants.iter().filter_map(|variant| variant.name.clone()).collect()

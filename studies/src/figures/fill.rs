@@ -108,7 +108,11 @@ pub fn mark_lost_mortar(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
     let Some(bridge) = &assembly.bridge else { return false };
     let size = assembly.size();
     let mut found = false;
-    for (index, joint) in assembly.joints.iter().take(bridge.radial).enumerate() {
+    let across = |index: usize, name: &str| index < bridge.radial || name.starts_with('p');
+    for (index, joint) in assembly.joints.iter().enumerate() {
+        if !across(index, &assembly.bodies[joint.plus].name) {
+            continue;
+        }
         let along = joint.frame().1;
         for (end, outwards) in [(joint.ends[0], -along), (joint.ends[1], along)] {
             // The cap of a pier reaches over all rings that stand on it.

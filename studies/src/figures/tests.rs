@@ -273,7 +273,17 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
         let tags: Vec<_> = writers().iter().map(|entry| entry.tag).collect();
         assert_eq!(
             tags,
-            ["comparison", "curve_csv", "figures", "report", "results_csv", "results_json", "sensitivities_csv", "vtu"]
+            [
+                "comparison",
+                "curve_csv",
+                "figures",
+                "report",
+                "results_csv",
+                "results_json",
+                "results_parquet",
+                "sensitivities_csv",
+                "vtu"
+            ]
         );
         for entry in writers() {
             for (name, bytes) in entry.writer.files(study, &Json::Null) {

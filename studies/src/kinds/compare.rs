@@ -2,9 +2,9 @@
 #![doc = include_str!("compare.md")]
 
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
-use crate::config::diagnostic::{LocatedDiagnostic, suggest};
+use crate::config::diagnostic::suggest;
 use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
-use crate::study::{Outline, Study, StudySource, VARIANT};
+use crate::study::{Outline, Study, StudyError, StudySource, VARIANT};
 use voussoir_core::limit::Status;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
 
@@ -111,7 +111,7 @@ fn factor(case: &CaseResult) -> Option<f64> {
 }
 
 impl StudyKind for Compare {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         Ok(Box::new(Study::from_source(source)?))
     }
 

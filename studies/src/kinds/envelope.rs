@@ -9,10 +9,9 @@ mod worsts;
 use self::request::{Request, Run};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use super::search::{case_at, range_mistakes};
-use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
 use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
-use crate::study::{Case, Outline, Study, StudySource};
+use crate::study::{Case, Outline, Study, StudyError, StudySource};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
@@ -93,7 +92,7 @@ impl Envelope {
 }
 
 impl StudyKind for Envelope {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source(source)?;
         let Some(request) = Request::of(&study.outline) else { return Ok(Box::new(study)) };
         // Mistakes at one end of the range show before anything is solved.

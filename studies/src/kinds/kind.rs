@@ -1,10 +1,9 @@
 //! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
 
 use super::same_bytes::SameBytes;
-use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, Unobserved, solve_cases};
-use crate::study::{Case, Outline, ReadFile, Study, StudySource, Sweep};
+use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource, Sweep};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::io::{Cursor, Read, Write};
@@ -15,10 +14,10 @@ use voussoir_core::plugin::{Diagnostic, Parameter};
 /// table that is called like the kind.
 pub trait StudyKind: Sync {
     /// Reads a study file of this kind.
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>>;
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError>;
 
     /// The same where files that the study names can be read: relative to its own, by `read`.
-    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let _ = read;
         self.read(source)
     }

@@ -3,10 +3,9 @@
 
 use super::compare::{REFERENCE, beside_each_other, check_variants};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
-use crate::config::diagnostic::LocatedDiagnostic;
 use crate::figures::words::title_of_key;
 use crate::results::{CaseResult, Comparison, MapAxes};
-use crate::study::{Outline, Study, StudySource};
+use crate::study::{Outline, Study, StudyError, StudySource};
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
 
 struct Map;
@@ -55,7 +54,7 @@ fn values(study: &Study, key: &str) -> Option<Vec<f64>> {
 }
 
 impl StudyKind for Map {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         Ok(Box::new(Study::from_source(source)?))
     }
 

@@ -8,10 +8,9 @@ mod search;
 use self::request::{Request, STRIDE};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use super::search::{case_at, range_mistakes};
-use crate::config::diagnostic::LocatedDiagnostic;
 use crate::results::{CaseLabel, CaseResult};
 use crate::solve::{Observer, side_by_side, solve_cases, solve_unless_cancelled};
-use crate::study::{Case, Outline, Study, StudySource};
+use crate::study::{Case, Outline, Study, StudyError, StudySource};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
 
@@ -79,7 +78,7 @@ voussoir_core::inventory::submit! {
 }
 
 impl StudyKind for Optimise {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source(source)?;
         if let Some(request) = Request::of(&study.outline) {
             // A key that does not exist, or that takes no number, shows at both ends.

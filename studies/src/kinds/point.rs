@@ -10,8 +10,7 @@ pub mod study;
 mod surface;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::study::StudySource;
+use crate::study::{StudyError, StudySource};
 use voussoir_core::plugin::{Card, Parameter, PluginKind};
 
 struct Point;
@@ -34,7 +33,7 @@ voussoir_core::inventory::submit! {
 }
 
 impl StudyKind for Point {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         Ok(Box::new(study::PointStudy::from_source(source)?))
     }
 

@@ -2,24 +2,20 @@
 
 use super::kind::{LoadedStudy, kind, kinds};
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
-use crate::study::{ReadFile, StudySource, no_files};
+use crate::study::{ReadFile, StudyError, StudySource, no_files};
 
 /// Reads a study of any kind; every mistake at once. Arguments as of [`crate::study::load`].
-pub fn read_study(
-    text: &str,
-    file: &str,
-    sets: &[(String, String)],
-) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+pub fn read_study(text: &str, file: &str, sets: &[(String, String)]) -> Result<Box<dyn LoadedStudy>, StudyError> {
     read_source(StudySource::parse(text, file, sets)?)
 }
 
 /// Reads a study of any kind from its source.
-pub fn read_source(source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+pub fn read_source(source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
     read_source_beside(source, &no_files)
 }
 
 /// The same where the study may name other files, which are read by `read`.
-pub fn read_source_beside(source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+pub fn read_source_beside(source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, StudyError> {
     // A kind that does not exist is one mistake among others of a file with a scene.
     let kind = kind(source.kind()).or_else(|| kind("run"));
     match kind {
@@ -28,7 +24,7 @@ pub fn read_source_beside(source: StudySource, read: ReadFile) -> Result<Box<dyn
             let names: Vec<_> = kinds().iter().map(|entry| entry.tag).collect();
             let help = suggest(source.kind(), &names, "kinds available");
             let message = format!("there is no study kind \"{}\"", source.kind());
-            Err(vec![LocatedDiagnostic::new(&source.root.place("kind"), "kind", message).help(help)])
+            Err(vec![LocatedDiagnostic::new(&source.root.place("kind"), "kind", message).help(help)].into())
         }
     }
 }

@@ -14,8 +14,7 @@ mod study;
 mod value;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::study::{ReadFile, StudySource, no_files};
+use crate::study::{ReadFile, StudyError, StudySource, no_files};
 use voussoir_core::plugin::{Card, Parameter, PluginKind};
 
 struct Report;
@@ -35,11 +34,11 @@ voussoir_core::inventory::submit! {
 }
 
 impl StudyKind for Report {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         self.read_beside(source, &no_files)
     }
 
-    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, StudyError> {
         Ok(Box::new(study::ReportStudy::read(source, read)?))
     }
 

@@ -1,8 +1,7 @@
 //! `run`: every case of the study is solved on its own.
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::study::{StudyFile, StudySource};
+use crate::study::{StudyError, StudyFile, StudySource};
 use voussoir_core::plugin::{Card, PluginKind};
 
 /// Studies of more cases are streamed: each case is made, solved, written and forgotten.
@@ -25,7 +24,7 @@ voussoir_core::inventory::submit! {
 }
 
 impl StudyKind for Run {
-    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, Vec<LocatedDiagnostic>> {
+    fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let file = StudyFile::read(source)?;
         if file.count() > HELD { Ok(Box::new(file.sweep()?)) } else { Ok(Box::new(file.study()?)) }
     }

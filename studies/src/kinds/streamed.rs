@@ -31,7 +31,7 @@ impl LoadedStudy for Sweep {
     }
 
     fn as_blocks(&self) -> Result<String, String> {
-        as_blocks(&self.case(0).map_err(|wrong| wrong.iter().map(ToString::to_string).collect::<String>())?, &self.name)
+        as_blocks(&self.case(0).map_err(|wrong| wrong.to_string())?, &self.name)
     }
 
     fn cases(&self) -> Option<CasesOf<'_>> {

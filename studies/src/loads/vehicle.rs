@@ -72,9 +72,8 @@ impl VehicleLoad {
 impl LoadKind for VehicleLoad {
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
         site.finite(&[("at", &[self.at])])?;
-        let Some(vehicle) = site.tables.vehicles.get(&self.vehicle) else {
-            return site.fail("vehicle", format!("there is no vehicle called \"{}\"", self.vehicle));
-        };
+        // A name that stands for nothing, or for an entry with mistakes of its own, is named where keys are checked.
+        let Some(vehicle) = site.tables.vehicles.get(&self.vehicle) else { return Err(Vec::new()) };
         if let Some((key, message)) = self.track.as_ref().and_then(Track::mistake) {
             return site.fail(key, message);
         }

@@ -186,7 +186,7 @@ impl Scene for BridgeScene {
         let (Some(indices), Some(shapes)) = (indices, shapes) else { return Err(from_root(diagnostics)) };
         let mut builder = self.put_together(&shapes, &indices);
         builder.damage(&self.damage, catalogue).map_err(from_root)?;
-        let Builder { bodies, radial, other, extrados, rings: _ } = builder;
+        let Builder { bodies, radial, other, extrados, rings: _, piers: _ } = builder;
         if let Some(wrong) = overlap(&bodies) {
             return Err(from_root(vec![wrong]));
         }

@@ -6,7 +6,7 @@ use crate::config::document::{Node, Value, from_json};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use crate::solve::{Observer, solve_unless_cancelled};
-use crate::study::{Study, StudyFile, StudySource, Sweep, value_of};
+use crate::study::{Study, StudyError, StudyFile, StudySource, Sweep, value_of};
 use crate::writers::StudyOutput;
 use crate::writers::report::report_html;
 use serde::Deserialize;
@@ -36,7 +36,7 @@ const LISTED: usize = 500;
 
 impl Session {
     /// Reads a study; every mistake in its first case and its axes.
-    pub fn read(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn read(source: StudySource) -> Result<Self, StudyError> {
         Ok(Session { sweep: StudyFile::read(source)?.sweep_unchecked()? })
     }
 
@@ -85,10 +85,10 @@ impl Session {
         if wrong.is_empty() { Ok(root) } else { Err(wrong) }
     }
 
-    fn study(&self, asked: &Asked) -> Result<(Node, Study), Vec<LocatedDiagnostic>> {
+    fn study(&self, asked: &Asked) -> Result<(Node, Study), StudyError> {
         if asked.case >= self.count() {
             let message = format!("the study \"{}\" has cases 0 to {}", self.name(), self.count().saturating_sub(1));
-            return Err(vec![LocatedDiagnostic::new(&Origin::Value, "case", message)]);
+            return Err(vec![LocatedDiagnostic::new(&Origin::Value, "case", message)].into());
         }
         let root = self.root(asked)?;
         let source = StudySource { root: root.clone(), sets: Vec::new(), diagnostics: Vec::new() };
@@ -100,7 +100,7 @@ impl Session {
     pub fn answer(&self, asked: &Asked, observer: &dyn Observer) -> Json {
         let (root, study) = match self.study(asked) {
             Ok(study) => study,
-            Err(wrong) => return json!({ "mistakes": lines(&wrong) }),
+            Err(wrong) => return json!({ "mistakes": wrong.to_string() }),
         };
         let Some(case) = study.cases.first() else { return json!({ "mistakes": "the study has no case" }) };
         let toml = toml::to_string(&root.to_toml()).unwrap_or_default();
@@ -115,7 +115,7 @@ impl Session {
 
     /// The report of what is asked for, as `run` writes it; an error is text for the reader.
     pub fn report(&self, asked: &Asked, observer: &dyn Observer) -> Result<String, String> {
-        let (_, study) = self.study(asked).map_err(|wrong| lines(&wrong))?;
+        let (_, study) = self.study(asked).map_err(|wrong| wrong.to_string())?;
         let result = study.cases.first().and_then(|case| solve_unless_cancelled(case, observer));
         let result = result.ok_or("this takes too long here: copy the study file and give it to voussoir run")?;
         let results = study.results(env!("CARGO_PKG_VERSION"), vec![result]);
@@ -125,7 +125,7 @@ impl Session {
 
     /// The page of a case, with sliders at the values of the study file.
     pub fn page(&self, case: usize) -> Result<String, String> {
-        let (_, study) = self.study(&Asked { case, set: Vec::new() }).map_err(|wrong| lines(&wrong))?;
+        let (_, study) = self.study(&Asked { case, set: Vec::new() }).map_err(|wrong| wrong.to_string())?;
         let first = study.cases.first().ok_or("the study has no case")?;
         Ok(page::page(&page::Shown {
             name: self.name(),
@@ -142,8 +142,4 @@ impl Session {
 fn placed(mut node: Node, origin: &Origin) -> Node {
     node.set_origin(origin);
     node
-}
-
-fn lines(wrong: &[LocatedDiagnostic]) -> String {
-    wrong.iter().map(LocatedDiagnostic::to_string).collect::<Vec<_>>().join("\n")
 }

@@ -5,7 +5,7 @@ use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::sensitivity::sensitivities;
 use super::side_by_side::side_by_side;
-use super::statics::stands_by_statics;
+use super::statics::{falls_by_statics, stands_by_statics};
 use super::{limit, path};
 use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
@@ -24,7 +24,9 @@ pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseRe
     if solvers.is_empty() {
         return limit::solve_by_limit_analysis(input);
     }
-    stands_by_statics(input).unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
+    stands_by_statics(input)
+        .or_else(|| falls_by_statics(input))
+        .unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
 }
 
 /// What tells a case from all others.

@@ -131,6 +131,13 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
         let asked = ask(stage, problem);
         let solved = solver.solve(problem, asked);
         let mut result = certified(input, stage, (problem, loads), asked, solved);
+        if !result.certificate.passed
+            && let Some(within) = problem.within_reach()
+        {
+            // Numbers of very unlike sizes are what solvers fail on; the certificate reads the laws as they are.
+            let again = certified(input, stage, (problem, loads), asked, solver.solve(&within, asked));
+            result = if again.certificate.passed { again } else { result };
+        }
         result.solver = tag.clone();
         if result.certificate.passed {
             best = Some(result);

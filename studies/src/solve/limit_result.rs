@@ -6,7 +6,7 @@ use crate::results::load_entries::fill_entries;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields};
 use voussoir_core::certificate::{
-    CentroidVelocity, Claim, ContactForce, NonAssociatedClaim, certify, jumps, largest_jump, mechanism,
+    CentroidVelocity, Claim, ContactForce, NonAssociatedClaim, certify, jumps, mechanism, motion_size,
 };
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity};
@@ -88,7 +88,7 @@ pub(super) fn certified(
 fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnswer) -> Option<Vec<CentroidVelocity>> {
     let mut motion = body_velocities(assembly, problem, solved.motion.as_ref()?);
     if (solved.status, solved.feasible_interval) == (Status::NoEquilibrium, None) {
-        let largest = largest_jump(&jumps(assembly, &motion));
+        let largest = motion_size(&jumps(assembly, &motion), &motion);
         motion.iter_mut().flatten().for_each(|v| *v /= largest);
     }
     Some(motion)

@@ -47,7 +47,8 @@ fn assembled(case: &Case, changed: Option<(&str, f64)>) -> Result<LimitProblem, 
     let run = ("kind".to_string(), json!("run"));
     let sets: Vec<_> = [run].into_iter().chain(changed.map(|(key, value)| (key.to_string(), json!(value)))).collect();
     let study = StudySource::of_value(&case.resolved, &sets).and_then(Study::from_source);
-    let study = study.map_err(|wrong| wrong.first().map_or(String::new(), |wrong| wrong.message.clone()))?;
+    let study = study
+        .map_err(|wrong| wrong.mistakes().first().map_or_else(|| wrong.to_string(), |first| first.message.clone()))?;
     problem_of(study.cases.first().ok_or("the study has no case")?)
 }
 

@@ -11,7 +11,7 @@ use std::path::Path;
 impl Study {
     /// Reads a study from TOML.
     pub fn from_toml(text: &str) -> Result<Study, StudyError> {
-        Ok(load(text, "study", &[])?)
+        load(text, "study", &[])
     }
 
     /// Reads a study file.
@@ -20,12 +20,12 @@ impl Study {
         let read = std::fs::read_to_string(path);
         let text = read.map_err(|error| StudyError::File { path: path.into(), error })?;
         let source = StudySource::parse_with(&text, &path.display().to_string(), &[], &beside(path))?;
-        Ok(Study::from_source(source)?)
+        Study::from_source(source)
     }
 
     /// The study of a value with the tables and keys of a study file.
     pub fn from_value(value: &Json) -> Result<Study, StudyError> {
-        Ok(Study::from_source(StudySource::of_value(value, &[])?)?)
+        Study::from_source(StudySource::of_value(value, &[])?)
     }
 
     /// Begins a study of this name, to be built piece by piece.
@@ -135,6 +135,6 @@ impl StudyBuilder {
 
     /// Checks the study; every mistake at once.
     pub fn build(self) -> Result<Study, StudyError> {
-        Ok(Study::from_source(StudySource::of_value(&Json::Object(self.study), &self.sets)?)?)
+        Study::from_source(StudySource::of_value(&Json::Object(self.study), &self.sets)?)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::case::build_case;
 use super::diagnostics::located;
+use super::error::StudyError;
 use super::keys::{VARIANT, kind_tables, study_keys};
 use super::model::{Case, Drawn, Output, Study};
 use super::outline::Outline;
@@ -34,13 +35,13 @@ pub struct StudyFile {
 
 impl StudyFile {
     /// Reads the axes of a source. Mistakes that leave them readable are told with those of the cases.
-    pub fn read(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn read(source: StudySource) -> Result<Self, StudyError> {
         let StudySource { root, sets, mut diagnostics } = source;
         if kind(kind_of(&root)).is_some_and(|kind| kind.file_keys().is_some()) {
             let message = format!("\"{}\" has no scene to solve", kind_of(&root));
             let wrong = LocatedDiagnostic::new(&root.place("kind"), "kind", message);
             diagnostics.push(wrong.help("run it by `voussoir run STUDY.toml`"));
-            return Err(diagnostics);
+            return Err(diagnostics.into());
         }
         check_variants(&root, &mut diagnostics);
         let before = diagnostics.len();
@@ -51,7 +52,7 @@ impl StudyFile {
             Err(wrong) => {
                 diagnostics.extend(wrong);
                 sort(&mut diagnostics);
-                return Err(diagnostics);
+                return Err(diagnostics.into());
             }
         };
         check_sets(&sets, &expansion, &mut diagnostics);
@@ -70,7 +71,7 @@ impl StudyFile {
     }
 
     /// The study with all its cases; every mistake at once.
-    pub fn study(mut self) -> Result<Study, Vec<LocatedDiagnostic>> {
+    pub fn study(mut self) -> Result<Study, StudyError> {
         let mut cases = Vec::new();
         make_cases(&self.expansion, &mut self.diagnostics, |case| cases.push(case));
         let Sweep { name, kind, outline, output, resolved, expansion, .. } = self.sweep_of(cases.first())?;
@@ -78,7 +79,7 @@ impl StudyFile {
     }
 
     /// The study with none of its cases kept; each is made once, so that every mistake is told at once.
-    pub fn sweep(mut self) -> Result<Sweep, Vec<LocatedDiagnostic>> {
+    pub fn sweep(mut self) -> Result<Sweep, StudyError> {
         let (mut first, mut notes) = (None, Vec::new());
         make_cases(&self.expansion, &mut self.diagnostics, |case| {
             for note in &case.notes {
@@ -92,22 +93,22 @@ impl StudyFile {
     }
 
     /// The study with none of its cases made but the first: for those who know that [`StudyFile::sweep`] takes it.
-    pub fn sweep_unchecked(mut self) -> Result<Sweep, Vec<LocatedDiagnostic>> {
+    pub fn sweep_unchecked(mut self) -> Result<Sweep, StudyError> {
         let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded));
         let first = first.map_err(|wrong| self.diagnostics.extend(wrong)).ok();
         self.sweep_of(first.as_ref())
     }
 
     /// What does not depend on the cases but the first, or all mistakes.
-    fn sweep_of(mut self, first: Option<&Case>) -> Result<Sweep, Vec<LocatedDiagnostic>> {
+    fn sweep_of(mut self, first: Option<&Case>) -> Result<Sweep, StudyError> {
         if !self.diagnostics.is_empty() {
             sort(&mut self.diagnostics);
-            return Err(self.diagnostics);
+            return Err(self.diagnostics.into());
         }
         let first = first.map(|case| &case.resolved);
         // A sweep or a variant may have changed it.
         if let Some(why) = first.and_then(|case| case["name"].as_str()).and_then(no_file_name) {
-            return Err(vec![LocatedDiagnostic::new(&self.root.place("name"), "name", why).help(FILE_NAME)]);
+            return Err(vec![LocatedDiagnostic::new(&self.root.place("name"), "name", why).help(FILE_NAME)].into());
         }
         let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
         Ok(Sweep {

@@ -1,11 +1,11 @@
 //! From the text of a study file to a [`Study`]: every mistake of the whole file at once.
 
 use super::case::build_case;
+use super::error::StudyError;
 use super::file::StudyFile;
 use super::model::{Case, Study};
 use super::source::StudySource;
 use super::sweep::Sweep;
-use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
@@ -13,19 +13,19 @@ use serde_json::Value as Json;
 
 /// Reads a study. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
 /// a value that is no TOML is taken as text.
-pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, Vec<LocatedDiagnostic>> {
+pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, StudyError> {
     Study::from_source(StudySource::parse(text, file, sets)?)
 }
 
 impl Study {
     /// The study that a source describes.
-    pub fn from_source(source: StudySource) -> Result<Study, Vec<LocatedDiagnostic>> {
+    pub fn from_source(source: StudySource) -> Result<Study, StudyError> {
         StudyFile::read(source)?.study()
     }
 
     /// Case `id` with other values of some keys, numbers or texts, as a study kind needs it that chooses values itself. Its `id`
     /// and `parameters` are those of the case, with the keys that are set.
-    pub fn at(&self, id: usize, values: &[(String, Json)]) -> Result<Case, Vec<LocatedDiagnostic>> {
+    pub fn at(&self, id: usize, values: &[(String, Json)]) -> Result<Case, StudyError> {
         let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {
             let origin = Origin::Set(key.as_str().into());
@@ -37,13 +37,13 @@ impl Study {
             set(&mut expanded.root, key, node, &origin).map_err(|wrong| vec![*wrong])?;
             expanded.parameters.insert(key.clone(), value.clone());
         }
-        build_case(id, expanded)
+        Ok(build_case(id, expanded)?)
     }
 }
 
 impl Sweep {
     /// Case `id < count()`.
-    pub fn case(&self, id: usize) -> Result<Case, Vec<LocatedDiagnostic>> {
-        build_case(id, self.expansion.case(id)?)
+    pub fn case(&self, id: usize) -> Result<Case, StudyError> {
+        Ok(build_case(id, self.expansion.case(id)?)?)
     }
 }

@@ -25,7 +25,8 @@ pub(super) fn warnings(resolved: &Map<String, Json>, assembly: &Assembly) -> Vec
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
         if let Some(friction) = law["friction"].as_f64().filter(|friction| *friction > FRICTION) {
             found.push(format!(
-                "joints.{name}.friction = {friction} is an angle of {:.0}°; stone on stone has 0.5 to 0.8",
+                "joints.{name}.friction = {} is an angle of {:.0}°; stone on stone has 0.5 to 0.8",
+                if friction < 1e6 { friction.to_string() } else { format!("{friction:e}") },
                 friction.atan().to_degrees()
             ));
         }

@@ -1,6 +1,7 @@
 //! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
 
 use super::documented_vehicles;
+use super::error::StudyError;
 use super::survey::{ReadFile, import, no_files};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, from_json, parse, parse_value};
@@ -22,17 +23,12 @@ pub struct StudySource {
 impl StudySource {
     /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
     /// a value that is no TOML is taken as text. Errors are those of syntax.
-    pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, StudyError> {
         Self::parse_with(text, file, sets, &no_files)
     }
 
     /// As [`StudySource::parse`]; the files that the study names are read by `read`.
-    pub fn parse_with(
-        text: &str,
-        file: &str,
-        sets: &[(String, String)],
-        read: ReadFile,
-    ) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn parse_with(text: &str, file: &str, sets: &[(String, String)], read: ReadFile) -> Result<Self, StudyError> {
         let mut source = StudySource { root: parse(text, file)?, sets: sets.to_vec(), diagnostics: Vec::new() };
         for (path, value) in sets {
             let origin = Origin::Set(path.as_str().into());
@@ -43,7 +39,7 @@ impl StudySource {
 
     /// A study from a value that a program has made, with the tables and keys of a study file; then `sets`, keys
     /// and values in order. Errors are values that no study can hold.
-    pub fn of_value(value: &Json, sets: &[(String, Json)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn of_value(value: &Json, sets: &[(String, Json)]) -> Result<Self, StudyError> {
         let mut source = StudySource { root: from_json(value)?, sets: Vec::new(), diagnostics: Vec::new() };
         for (path, value) in sets {
             source.set(path, from_json(value)?, &Origin::Value);
@@ -57,12 +53,12 @@ impl StudySource {
 
     /// The same with what it names besides: documented vehicles, and points of files; and with what is wrong with its name.
     /// What a file lacks would be missing in the study too: then that is all that is said.
-    fn complete(mut self, read: ReadFile) -> Result<Self, Vec<LocatedDiagnostic>> {
+    fn complete(mut self, read: ReadFile) -> Result<Self, StudyError> {
         documented_vehicles::add(&mut self.root);
         let before = self.diagnostics.len();
         import(&mut self.root, read, &mut self.diagnostics);
         if self.diagnostics.len() > before {
-            return Err(self.diagnostics);
+            return Err(self.diagnostics.into());
         }
         if let Some(node) = self.root.table().and_then(|table| table.get("name"))
             && let Some(wrong) = node.text().and_then(no_file_name)

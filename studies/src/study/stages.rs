@@ -25,8 +25,8 @@ pub(super) fn build_stages(
         let (target, factors) = build_target(diagnostics, stages, index, &at);
         let settlements = assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
         let settlements = settlements.unwrap_or_default();
-        let Placed { forces, accelerations, spreads, notes: own } =
-            build_loads(diagnostics, stage, assembly, &tables, &at);
+        let (placed, whole) = build_loads(diagnostics, stage, assembly, &tables, &at);
+        let Placed { forces, accelerations, spreads, notes: own } = placed;
         let stage = Stage {
             name: stage["name"].as_str().unwrap_or_default().to_string(),
             gravity: gravity(&stage["gravity"]),
@@ -41,7 +41,7 @@ pub(super) fn build_stages(
         // A vehicle that is off the bridge is no mistake: its note says so.
         let stands_off = !own.is_empty();
         notes.extend(own);
-        if assembly.is_some() && diagnostics.found.len() == before && !stands_off && raises_nothing(&stage) {
+        if whole && assembly.is_some() && diagnostics.found.len() == before && !stands_off && raises_nothing(&stage) {
             let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
             let message = "\"collapse\" needs a load to raise, but this stage has none";
             diagnostics.wrong(&join(&at, "until"), message, help);
@@ -102,15 +102,15 @@ fn gravity(value: &Json) -> Option<Vec2> {
     }
 }
 
-/// Forces on blocks and accelerations of all of them, load by load.
+/// Forces on blocks and accelerations of all of them, load by load; whether all loads are among them.
 fn build_loads(
     diagnostics: &mut DiagnosticList<'_>,
     stage: &Json,
     assembly: Option<&Assembly>,
     tables: &LoadTables,
     at: &str,
-) -> Placed {
-    let mut all = Placed::default();
+) -> (Placed, bool) {
+    let (mut all, mut whole) = (Placed::default(), true);
     for (number, table) in stage["loads"].as_array().into_iter().flatten().enumerate() {
         let path = format!("{at}.loads.{number}");
         let load: Option<Box<dyn LoadKind>> = match serde_json::from_value(table.clone()) {
@@ -138,10 +138,13 @@ fn build_loads(
                 all.spreads.extend(spreads);
                 all.notes.extend(notes);
             }
-            Err(wrong) => diagnostics.extend(wrong),
+            Err(wrong) => {
+                whole = false;
+                diagnostics.extend(wrong);
+            }
         }
     }
-    all
+    (all, whole)
 }
 
 /// The movements of supports of a stage.

@@ -12,12 +12,14 @@ pub mod figures;
 pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;
+pub mod parquet;
 #[cfg(feature = "png")]
 pub mod png;
 pub mod record;
 mod register;
 pub mod report;
 pub mod results_json;
+pub mod results_parquet;
 pub mod sensitivities_csv;
 pub mod stream;
 mod study_output;

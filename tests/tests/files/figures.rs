@@ -9,7 +9,7 @@ fn figures(count: usize, output: &str, jobs: usize) -> Vec<(String, Vec<u8>)> {
     let sweep = format!("[sweep]\n\"scene.profile.rise\" = {{ from = 2.0, to = 3.0, count = {count} }}\n");
     let variants = "[[variants]]\nname = \"a\"\n[[variants]]\nname = \"b\"\nset = { \"joints.dry.friction\" = 0.4 }\n";
     let text = format!("{}{sweep}{variants}[output]\nwriters = [\"figures\"]\n{output}", Arch::default().study());
-    let study = read_study(&text, "a.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = read_study(&text, "a.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let request = RunRequest { wanted: (0..study.count()).collect(), jobs, ..RunRequest::default() };
     let files = study.run(&request, &Unobserved).files;
     files.into_iter().filter(|(name, _)| name.starts_with("figures/")).collect()

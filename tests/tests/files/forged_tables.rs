@@ -55,7 +55,7 @@ fn stored(files: &[(String, Vec<u8>)], name: &str) -> Option<Box<dyn Read>> {
 
 /// Each place of each file, against the files as they are made again; and all files at once against `verify`.
 fn each_is_found(name: &str, text: &str) {
-    let study = read_study(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = read_study(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let files = written(study.as_ref());
     let verified = |files: &Files| {
         let file = |name: &str| stored(files, name);

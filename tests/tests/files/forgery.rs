@@ -269,7 +269,7 @@ fn point_results() {
     let name = "point_cap_uniaxial.toml";
     let place = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies/cases").join(name);
     let text = std::fs::read_to_string(place).expect("a study of points");
-    let study = read_study(&text, name, &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = read_study(&text, name, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let wanted = (0..study.count()).collect();
     let output =
         study.run(&voussoir::kinds::RunRequest { wanted, jobs: 1, ..Default::default() }, &voussoir::solve::Unobserved);

@@ -14,7 +14,7 @@ fn cases(path: &Path) -> Vec<CaseResult> {
     let text = std::fs::read_to_string(path).expect("a study");
     let source = StudySource::parse_with(&text, &path.display().to_string(), &[], &beside(path));
     let study = source.and_then(|source| read_source_beside(source, &beside(path)));
-    let study = study.unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = study.unwrap_or_else(|wrong| panic!("{wrong}"));
     if study.cases().is_none() {
         return Vec::new();
     }

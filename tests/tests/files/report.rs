@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 use voussoir::kinds::{LoadedStudy, RunOutput, RunRequest, StoredResults, read_source_beside};
 use voussoir::solve::Unobserved;
-use voussoir::study::StudySource;
+use voussoir::study::{StudyError, StudySource};
 use voussoir_tests::{Arch, changed};
 
 /// The reference arch and a flat one.
@@ -46,8 +46,7 @@ tests = [
 
 fn read(report: &str) -> Result<Box<dyn LoadedStudy>, Vec<String>> {
     let neighbour = |name: &str| if name == "rises.toml" { Ok(rises()) } else { Err("no such file".into()) };
-    let words =
-        |wrong: Vec<voussoir::config::diagnostic::LocatedDiagnostic>| wrong.iter().map(|w| w.to_string()).collect();
+    let words = |wrong: StudyError| wrong.mistakes().iter().map(|w| w.to_string()).collect();
     let source = StudySource::parse(report, "report.toml", &[]).map_err(words)?;
     read_source_beside(source, &neighbour).map_err(words)
 }

@@ -47,9 +47,7 @@ set = { "stages.dead.gravity" = 1.62 }
 
 fn read(text: &str, sets: &[(&str, &str)]) -> Study {
     let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-    load(text, "a.toml", &sets).unwrap_or_else(|mistakes| {
-        panic!("{}", mistakes.iter().map(|mistake| format!("{mistake}\n")).collect::<String>())
-    })
+    load(text, "a.toml", &sets).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
 #[test]

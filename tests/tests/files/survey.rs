@@ -51,8 +51,9 @@ fn a_survey_is_its_points() {
 fn mistakes_of_a_survey() {
     let said = |text: &str, survey: Option<&str>| {
         let read = |_: &str| survey.map(str::to_string).ok_or("there is none".to_string());
-        StudySource::parse_with(text, "a.toml", &[], &read).and_then(read_source).err().expect("a mistake")[0]
-            .to_string()
+        StudySource::parse_with(text, "a.toml", &[], &read).and_then(read_source).err().expect("a mistake").mistakes()
+            [0]
+        .to_string()
     };
     let broken = changed(SURVEY, "-450,980,-500,1370", "-450,980,-500,1e");
     assert_eq!(said(STUDY, Some(&broken)), "survey.csv:4:15: \"1e\" is not a number");

@@ -17,7 +17,7 @@ fn message_of(path: &Path) -> String {
         .collect();
     match read_study(&text, file, &sets) {
         Ok(_) => "no mistake was found\n".into(),
-        Err(mistakes) => mistakes.iter().map(|mistake| format!("{mistake}\n")).collect(),
+        Err(wrong) => wrong.mistakes().iter().map(|mistake| format!("{mistake}\n")).collect(),
     }
 }
 

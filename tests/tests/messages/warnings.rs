@@ -56,7 +56,7 @@ fn blocks(x: f64, top: f64, more: &str) -> Vec<String> {
          [materials.s]\nlaw = \"rigid\"\ndensity = 2000\n[joints.d]\nlaw = \"coulomb\"\nfriction = 0.6\n\
          [[stages]]\nname = \"dead\"\ngravity = 9.81\n"
     );
-    load(&text, "blocks.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0])).cases[0].notes.clone()
+    load(&text, "blocks.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}")).cases[0].notes.clone()
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn an_axle_off_the_arch_counts_nothing() {
 
 /// Number of forces of the last stage, and notes; or the first mistake.
 fn load_text(text: &str) -> Result<(usize, Vec<String>), String> {
-    let study = load(text, "axles.toml", &[]).map_err(|wrong| wrong[0].to_string())?;
+    let study = load(text, "axles.toml", &[]).map_err(|wrong| wrong.mistakes()[0].to_string())?;
     let case = &study.cases[0];
     Ok((case.stages.last().map_or(0, |stage| stage.forces.len()), case.notes.clone()))
 }

@@ -2,8 +2,11 @@
 
 mod bridges;
 mod cap;
+mod conic;
 mod limit;
+mod limit_scenes;
 mod nonassociated;
 mod path;
 mod settlements;
 mod strategies;
+mod uniqueness;

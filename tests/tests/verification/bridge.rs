@@ -510,7 +510,7 @@ fn joints_that_lost_mortar_are_shorter() {
     assert_close(joint.height(), 0.1075 - 0.05, 1e-12);
 }
 
-/// A voussoir of the inner ring is gone with its weight and its four joints; of the outer ring none can be.
+/// A voussoir of the inner ring is gone with its weight and its four joints; of the outer ring only where a ring below goes on.
 #[test]
 fn a_lost_voussoir() {
     let (case, sound) = (first_case(&two_rings("{ kind = \"lost_voussoir\", voussoirs = [12] }")), first_case(RINGS));
@@ -519,9 +519,42 @@ fn a_lost_voussoir() {
     for joint in &case.assembly.joints {
         assert!(joint.minus < case.assembly.bodies.len() && joint.plus < case.assembly.bodies.len());
     }
-    let outer = two_rings("{ kind = \"lost_voussoir\", ring = 1, voussoirs = [12] }");
-    let wrong = voussoir::study::load(&outer, "a.toml", &[]).unwrap_err();
-    assert!(wrong[0].to_string().contains("carries the fill"), "{}", wrong[0]);
+    let outer = "{ kind = \"lost_voussoir\", ring = 1, voussoirs = [12] }";
+    let rough = |text: &str| changed(text, "friction = 0.3", "friction = 100.0");
+    let lost = collapse_factor(&rough(&two_rings(outer)));
+    assert!(lost < collapse_factor(&rough(RINGS)), "{lost}");
+    let faces = first_case(&two_rings(outer)).assembly.extrados();
+    let below = faces.iter().filter(|face| face.from_middle == 15).count();
+    assert_eq!((faces.len(), below), (41, 2), "the ring below and the side of one neighbour");
+    let both = two_rings(&format!("{outer}, {{ kind = \"lost_voussoir\", voussoirs = [12] }}"));
+    let wrong = voussoir::study::load(&both, "a.toml", &[]).unwrap_err();
+    assert!(wrong.to_string().contains("nothing is left under it"), "{wrong}");
+}
+
+/// Bed joints of a pier count from under its cap and lose mortar on a side that must be named.
+#[test]
+fn a_pier_that_lost_mortar() {
+    let with = |damage: &str| changed(SPANS, "[materials.stone]", &format!("damage = [{damage}]\n[materials.stone]"));
+    let lost =
+        |side: &str| format!("{{ kind = \"lost_mortar\", pier = 0, joints = [1], side = \"{side}\", depth = 0.1 }}");
+    let sound = first_case(SPANS);
+    let foot = sound.assembly.joints.len() - 1;
+    for (side, end) in [("right", 0), ("left", 1)] {
+        let joint = first_case(&with(&lost(side))).assembly.joints[foot].clone();
+        let whole = &sound.assembly.joints[foot];
+        assert_close((joint.ends[end] - whole.ends[end]).norm(), 0.1, 1e-12);
+        assert_eq!(joint.ends[1 - end], whole.ends[1 - end]);
+    }
+    assert!(collapse_factor(&with(&lost("left"))) <= collapse_factor(SPANS));
+    for (wrong, said) in [
+        (lost("intrados"), "\"left\" or \"right\""),
+        (lost("left").replace("pier = 0", "pier = 0, ring = 0"), "besides pier"),
+        (lost("left").replace("pier = 0", "pier = 1"), "they are 0 to 0"),
+        (lost("left").replace("pier = 0, ", ""), "\"intrados\" or \"extrados\""),
+    ] {
+        let found = voussoir::study::load(&with(&wrong), "a.toml", &[]).unwrap_err();
+        assert!(found.to_string().contains(said), "{found}");
+    }
 }
 
 /// Partial factors: weights and loads scale the load of a ring that cannot crush, and each strength is divided.

@@ -44,7 +44,7 @@ vehicles = ["bogie", "single"]
 
 /// results.json of a run.
 fn run(text: &str, jobs: usize) -> Value {
-    let study = read_study(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("{}", wrong[0]));
+    let study = read_study(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let request = RunRequest { wanted: vec![0], jobs, version: "test".into(), ..RunRequest::default() };
     let output = study.run(&request, &Unobserved);
     assert!(output.certified);

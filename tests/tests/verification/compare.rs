@@ -234,6 +234,6 @@ set = {{ "joints.dry.law" = "coulomb_associated" }}
 fn what_cannot_be_compared_is_refused() {
     for (kind, words) in [("compare", "sets variants beside each other"), ("map", "needs two axes")] {
         let wrong = load(&format!("name = \"x\"\nkind = \"{kind}\"\n{BLOCK}"), "x.toml", &[]).expect_err("no variants");
-        assert!(wrong.iter().any(|mistake| mistake.message.contains(words)), "{wrong:?}");
+        assert!(wrong.mistakes().iter().any(|mistake| mistake.message.contains(words)), "{wrong:?}");
     }
 }

@@ -110,7 +110,7 @@ fn a_rock_joint_slides_at_its_peak_strength() {
 fn wear_is_refused_by_limit_analysis_by_name() {
     let joint = "law = \"coulomb_wearing\"\nfriction = 0.5\ndilatancy_angle = 15.0\nwear_slip = 2e-3";
     let wrong = load(&pushed(joint, 1.0, "limit_chain", ""), "a.toml", &[]).expect_err("refused");
-    let text = wrong[0].to_string();
+    let text = wrong.mistakes()[0].to_string();
     assert!(text.contains("coulomb_wearing") && text.contains("solvers that can take it: newton_path"), "{text}");
 }
 

@@ -415,7 +415,7 @@ fn elements_too_large_to_soften_are_refused() {
                      pressure_coefficient = 0.2\nyield_stress = 8e6\ncrushing_fracture_energy = 100.0";
     let text = Press::new(softening.into(), COLLAPSE).study();
     let Err(mistakes) = voussoir::study::load(&text, "bar.toml", &[]) else { panic!("it must be refused") };
-    let all: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+    let all: Vec<String> = mistakes.mistakes().iter().map(ToString::to_string).collect();
     assert!(all.len() == 1 && all[0].contains("elements") && all[0].contains("fracture energy"), "{all:?}");
 }
 
@@ -426,7 +426,7 @@ fn solvers_say_what_they_can() {
     let press = Press::new(stone("[[0.0, 10e6], [0.02, 30e6]]"), &stages(&[3.0]));
     let with = |solver: &str| format!("{}[solver]\nsolver = \"{solver}\"\n", press.study());
     let Err(mistakes) = voussoir::study::load(&with("event_path"), "press.toml", &[]) else { panic!("refused") };
-    assert!(mistakes.iter().any(|m| m.to_string().contains("newton_path")), "{mistakes:?}");
+    assert!(mistakes.mistakes().iter().any(|m| m.to_string().contains("newton_path")), "{mistakes:?}");
     let limit = answered(&with("limit_conic"));
     assert!(limit.notes.iter().any(|note| note.contains("yields")), "{:?}", limit.notes);
     let study = voussoir_tests::study(&press.study());

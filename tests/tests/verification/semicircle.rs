@@ -3,7 +3,7 @@
 //! Strutturale 51, doi 10.3221/IGF-ESIS.51.26.
 
 use voussoir::core::limit::Status;
-use voussoir_tests::{Arch, answered, friction};
+use voussoir_tests::{Arch, answered, elastic, friction};
 
 /// A semicircular ring of centreline radius 1 m with thickness `eta` m, radial joints.
 fn ring(voussoirs: usize, eta: f64, joint: &str) -> String {
@@ -59,6 +59,23 @@ fn least_thickness_tends_to_milankovitch() {
         assert!(error < 1.0 / (n * n) as f64, "{n} voussoirs: {error:e}");
     }
     assert!((least_thickness(640) - limit).abs() < 1e-6);
+}
+
+/// Elastic voussoirs with finite displacements: below Milankovitch's thickness no path begins, above it one ends at rest.
+#[test]
+fn thin_elastic_rings_have_no_path_under_their_weight() {
+    let text = |eta: f64| {
+        let study = ring(10, eta, &friction(0.6)).replace("law = \"rigid\"", &elastic(5e9, 0.2));
+        let mesh = "[scene.mesh]\nelements = [1, 2]\norder = 1\n[materials.stone]";
+        study
+            .replace("[materials.stone]", mesh)
+            .replace("solver = \"auto\"", "solver = \"newton_path\"\nkinematics = \"finite\"")
+    };
+    let thin = answered(&text(0.106));
+    assert!(thin.certificate.passed && thin.notes[0].contains("no path begins"), "{:?}", thin.notes);
+    assert_eq!((thin.status, thin.stages[0].status), (Status::NoEquilibrium, Status::NoEquilibrium));
+    let thick = answered(&text(0.109));
+    assert_eq!((thick.status, thick.solver.as_str()), (Status::Stands, "newton_path"), "{:?}", thick.notes);
 }
 
 /// Below μ = 0.309215444330 no semicircular arch stands; a ring thick enough tends to that value.

@@ -2,7 +2,7 @@
 
 use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
-use voussoir_tests::{answered, assert_close, changed};
+use voussoir_tests::{answered, assert_close, changed, compliant};
 
 /// A block of 1 m × 1 m × 1 m, density 1000, g 10 (weight 10 kN), on a rough ground.
 fn block(joint: &str, gravity: &str, stages: &str, solver: &str) -> String {
@@ -90,6 +90,23 @@ fn dead_load_alone_fails() {
         assert_eq!((dead.status, dead.feasible_interval), (Status::NoEquilibrium, None));
         assert!(dead.certificate.passed, "{:?}", dead.certificate);
     }
+}
+
+/// With finite displacements too: where friction alone holds no share of gravity is carried, and none is tried; with
+/// cohesion c A = 1 kN the block slides away at the share c A / (8 kN − 0.6 · 10 kN) = ½ of it.
+#[test]
+fn finite_displacements_know_what_carries_no_share_of_its_weight() {
+    let tilted = |joint: &str| {
+        let joint = compliant(joint, 1e9, 1e9);
+        answered(&block(&joint, "[8.0, -10.0]", "", "newton_path\"\nkinematics = \"finite"))
+    };
+    let dry = tilted("law = \"coulomb\"\nfriction = 0.6");
+    assert_eq!(dry.status, Status::NoEquilibrium);
+    assert!(dry.certificate.passed && dry.notes[0].contains("no path begins"), "{:?}", dry.notes);
+    let glued = tilted("law = \"mohr_coulomb\"\nfriction = 0.6\ncohesion = 1000.0\ndilatancy_angle = 0.0");
+    assert_eq!((glued.status, glued.solver.as_str()), (Status::NoEquilibrium, "newton_path"), "{:?}", glued.notes);
+    assert!(glued.notes.iter().any(|note| note.contains("up to 0.500000")), "{:?}", glued.notes);
+    assert_eq!(tilted("law = \"coulomb\"\nfriction = 0.81").status, Status::Stands);
 }
 
 /// No factor helps: pushing upwards on a block that slides away leaves equilibrium impossible.

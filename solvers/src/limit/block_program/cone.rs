@@ -57,9 +57,9 @@ impl Cone {
         (!splits.is_empty()).then_some(Cone { forces, normals, splits })
     }
 
-    /// R of (Aᵀ W A)⁻¹ = R Rᵀ, by rows. Weights may differ by any power of ten: the row that weighs least is left
-    /// over from a basis, so that no difference is taken of great numbers.
-    pub fn root(&self, weights: &[f64; ROWS]) -> [[f64; 3]; 3] {
+    /// R of (Aᵀ W A)⁻¹ = R Rᵀ and A R, by rows. Weights may differ by any power of ten: the row that weighs least is left
+    /// over from a basis, so that no difference is taken of great numbers, in A R neither.
+    pub fn root(&self, weights: &[f64; ROWS]) -> ([[f64; 3]; 3], [[f64; 3]; ROWS]) {
         let weight = |row: usize| if row < self.normals.len() { weights[row] } else { UNBOUNDED };
         let least = |split: &Split| split.over.map_or(0.0, weight);
         let mut split = &self.splits[0];
@@ -80,7 +80,15 @@ impl Cone {
             let along = beta * (scaled[0] * u[0] + scaled[1] * u[1] + scaled[2] * u[2]);
             *line = std::array::from_fn(|i| scaled[i] - along * u[i]);
         }
-        root
+        let mut rows = [[0.0; 3]; ROWS];
+        for (i, row) in split.basis.iter().enumerate() {
+            rows[*row] = std::array::from_fn(|k| inverse[i] * (f64::from(u8::from(i == k)) - beta * u[i] * u[k]));
+        }
+        if let Some(over) = split.over {
+            let rest = 1.0 - beta * squared;
+            rows[over] = std::array::from_fn(|k| split.shares[k] * inverse[k] * rest);
+        }
+        (root, rows)
     }
 }
 
@@ -158,7 +166,14 @@ mod tests {
         ];
         for (forces, normals, weights) in cases {
             let cone = Cone::new(forces, normals.clone()).unwrap();
-            let root = cone.root(&weights);
+            let (root, rows) = cone.root(&weights);
+            for (row, normal) in rows.iter().zip(&normals) {
+                for k in 0..3 {
+                    let product: f64 = (0..3).map(|i| normal[i] * root[i][k]).sum();
+                    let size: f64 = (0..3).map(|i| (normal[i] * root[i][k]).abs()).sum();
+                    assert!((row[k] - product).abs() <= 1e-14 * size, "{forces} {weights:?} {rows:?}");
+                }
+            }
             let root = Matrix3::from_fn(|i, k| root[i][k]);
             let mut normal = Matrix3::zeros();
             for (row, weight) in normals.iter().zip(weights) {
@@ -179,7 +194,7 @@ mod tests {
     #[test]
     fn forces_without_rows_have_soft_springs() {
         let cone = Cone::new(3, friction(0.65)[..2].to_vec()).unwrap();
-        let root = cone.root(&[1.0, 4.0, 0.0, 0.0]);
+        let (root, _) = cone.root(&[1.0, 4.0, 0.0, 0.0]);
         assert!((root[2][2] - UNBOUNDED.powf(-0.5)).abs() < 1.0 && root[0][0].abs() == 1.0 && root[1][1].abs() == 0.5);
     }
 }

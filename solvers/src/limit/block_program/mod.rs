@@ -3,10 +3,11 @@
 //! Maximise θ subject to E x + θ p + w = 0, A x ≤ b and θ ≤ t, where x are the forces of the joints. A joint has three
 //! forces and four rows at the most, and touches two bodies: with weights W of the rows, E (Aᵀ W A)⁻¹ Eᵀ is the
 //! stiffness matrix of bodies on springs, as sparse as the bodies touch, whatever the number of rows. An interior
-//! point method ([`interior_point`]) solves the program, [`polish`] takes it to rounding by the same matrix with other
-//! springs. Source: Wright (1997), *Primal–dual interior-point methods*, chapters 10 and 11; Mehrotra (1992).
+//! point method ([`interior_point`], its [`directions`]) solves the program, to rounding where [`polish`] does not get there sooner, by
+//! the same matrix with other springs. Source: Wright (1997), *Primal–dual interior-point methods*, chapters 10 and 11; Mehrotra (1992).
 
 mod cone;
+mod directions;
 mod interior_point;
 mod polish;
 mod program;

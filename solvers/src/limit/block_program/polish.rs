@@ -110,13 +110,25 @@ pub fn polish(
         }
     }
     let (error, state, capped) = best?;
-    polish.state = state;
-    let unique = capped || polish.unique(stiffness)?;
-    let (forces, motion) = (program.joint_forces(&polish.state.x), program.motion(&polish.state.q));
-    Some((error, Solution { factor: polish.state.theta * program.unit, capped, forces, motion, unique }))
+    (polish.state, polish.capped) = (state, capped);
+    Some((error, polish.solution(stiffness)?))
+}
+
+/// A state as it is: the optimum where no set of carrying rows is clear.
+pub fn unpolished(program: &Program, state: &State, stiffness: &mut Stiffness) -> Option<Solution> {
+    let capped = program.cap.is_some() && state.cap[1] > state.cap[0];
+    let polish = Polish { program, state: state.clone(), carrying: Vec::new(), capped, frames: Vec::new() };
+    polish.solution(stiffness)
 }
 
 impl Polish<'_> {
+    /// The optimum of the present state.
+    fn solution(&self, stiffness: &mut Stiffness) -> Option<Solution> {
+        let unique = self.capped || self.unique(stiffness)?;
+        let (forces, motion) = (self.program.joint_forces(&self.state.x), self.program.motion(&self.state.q));
+        Some(Solution { factor: self.state.theta * self.program.unit, capped: self.capped, forces, motion, unique })
+    }
+
     /// Factorises the stiffness of what the carrying rows leave, and the motion that the varying load causes.
     fn factorise(&mut self, stiffness: &mut Stiffness) -> Option<Vec<f64>> {
         let joints = self.program.members.iter().zip(&self.carrying);

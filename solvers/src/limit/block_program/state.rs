@@ -20,22 +20,41 @@ pub struct State {
     pub q: Vec<f64>,
 }
 
-/// A change of a state; of velocities none where there are none.
-pub type Step = State;
+/// A change of a state.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Of x.
+    pub x: Vec<[f64; 3]>,
+    /// Of θ.
+    pub theta: f64,
+    /// Of the slacks.
+    pub slacks: Vec<[f64; ROWS]>,
+    /// Of the multipliers.
+    pub multipliers: Vec<[f64; ROWS]>,
+    /// Of the cap's slack and multiplier.
+    pub cap: [f64; 2],
+    /// Of q.
+    pub q: Vec<f64>,
+    /// Of x as R of each joint's flexibility R Rᵀ times these: of size one however far flexibilities differ.
+    pub along: Vec<[f64; 3]>,
+}
 
-impl State {
-    /// Nothing, of so many joints; of velocities nothing at all.
+impl Step {
+    /// No change of a program of so many joints; of velocities nothing at all.
     pub fn none(count: usize) -> Self {
-        State {
+        Step {
             x: vec![[0.0; 3]; count],
             theta: 0.0,
             slacks: vec![[0.0; ROWS]; count],
             multipliers: vec![[0.0; ROWS]; count],
             cap: [0.0; 2],
             q: Vec::new(),
+            along: vec![[0.0; 3]; count],
         }
     }
+}
 
+impl State {
     /// No forces, no motion; slacks and multipliers at `size` or, where bounds are greater, theirs.
     pub fn start(program: &Program, size: f64) -> Self {
         let count = program.members.len();

@@ -5,8 +5,9 @@ use super::polish::{balanced, polish};
 use super::system::{Loads, System};
 use crate::limit::block_program::{self, Program, Solution, Solved};
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
+use crate::limit::equilibrium::field_error;
 use crate::limit::question::answer_by;
-use crate::limit::scale::{force_scale, force_unit, with_unit_power};
+use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{
@@ -18,9 +19,11 @@ use voussoir_core::plugin::{Capability, Card, PluginKind};
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;
 
-/// Bodies up to which a program by blocks is tried first: on walls of 30 × 30 bricks its polish does not settle.
-const MOST_BY_BLOCKS: usize = 500;
-/// Units of force that are tried besides, where the polish does not settle and a program costs little.
+/// Error of a field by blocks, as a share of the loads, up to which it is taken.
+const FIELD: f64 = 1e-11;
+
+/// Units of force that are tried besides, where the polish does not settle, on scenes of so many bodies at the most.
+const MOST_IN_UNITS: usize = 500;
 const UNITS: [f64; 2] = [0.1, 10.0];
 
 /// Strength in units of the loads from which a program that was not solved is tried in the unit of the strength.
@@ -123,14 +126,19 @@ impl ConicEngine<'_> {
 
     /// A program by its blocks, with the work counted. `None` where it is not linear.
     fn by_blocks(&mut self, loads: block_program::Loads, solve: impl Fn(&Program) -> Solved) -> Option<Solved> {
-        let few = self.problem.groups <= MOST_BY_BLOCKS;
-        let program = few.then(|| Program::new(self.problem, loads))??;
+        let program = Program::new(self.problem, loads)?;
         let solved = solve(&program);
         self.count("programs", 1);
         self.count("interior_point_iterations", solved.iterations);
         self.count("factorisations", solved.factorisations);
         self.count("newton_iterations", solved.corrections);
         Some(solved)
+    }
+
+    /// Whether the field of a program by blocks is one of the scene: in its own units errors may look smaller than they are.
+    fn holds(&self, fixed: &Wrenches, varying: &Wrenches, solution: &Solution) -> bool {
+        let loads = combined(fixed, varying, solution.factor);
+        field_error(self.problem, &loads, &solution.forces) <= FIELD
     }
 
     /// The greatest share θ ≤ 1 of `loads` by the blocks of the program.
@@ -228,7 +236,8 @@ impl Engine for ConicEngine<'_> {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let again = self.unsolved.take_if(|(known, _)| known == fixed).is_some_and(|(_, known)| known == *varying);
         let solved = if again { None } else { self.by_blocks(loads, |program| block_program::solve(program, false)) };
-        if let Some(solution) = solved.and_then(|solved| solved.solution) {
+        let solution = solved.and_then(|solved| solved.solution);
+        if let Some(solution) = solution.filter(|solution| self.holds(fixed, varying, solution)) {
             return greatest_of(solution, varying);
         }
         let force = force_scale(self.problem, fixed, varying);
@@ -248,7 +257,7 @@ impl Engine for ConicEngine<'_> {
         }
         // Another unit leads the interior point another way: to a point from which the polish may settle.
         if let Optimum::Unsettled(_) = optimum {
-            for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_BY_BLOCKS) {
+            for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
                 let (system, unit) = self.program(fixed, varying, cap, force * scale);
                 if let Optimum::Found { pair, unique } = self.optimum(&system) {
                     return self.finite(&system, &pair, unique, varying, unit);
@@ -277,11 +286,12 @@ impl Engine for ConicEngine<'_> {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let solved = self.by_blocks(loads, |program| block_program::solve(program, true))?;
         let stands = solved.stands?;
-        if solved.solution.is_none() {
+        let solution = solved.solution.filter(|solution| self.holds(fixed, varying, solution));
+        if solution.is_none() {
             self.carried = Some((fixed.clone(), stands));
             self.unsolved = Some((fixed.clone(), varying.clone()));
         }
-        Some(greatest_of(solved.solution?, varying))
+        Some(greatest_of(solution?, varying))
     }
 
     fn counters(&self) -> Counters {

@@ -5,7 +5,7 @@ use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort, suggest};
 use crate::config::dotted_key::join;
 use crate::config::expand::{Expanded, Expansion};
-use crate::study::{DiagnosticList, Drawn, OUTPUT, StudySource, read_plugin};
+use crate::study::{DiagnosticList, Drawn, OUTPUT, StudyError, StudySource, read_plugin};
 use serde_json::{Map, Value as Json};
 use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate, Plane};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -152,19 +152,19 @@ pub struct PointStudy {
 
 impl PointStudy {
     /// Reads a study from TOML; every mistake at once. Arguments as of [`crate::study::load`].
-    pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, StudyError> {
         PointStudy::from_source(StudySource::parse(text, file, sets)?)
     }
 
     /// The study that a source describes.
-    pub fn from_source(source: StudySource) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn from_source(source: StudySource) -> Result<Self, StudyError> {
         let StudySource { root, mut diagnostics, .. } = source;
         let expansion = match Expansion::new(&root, &[]) {
             Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
                 sort(&mut diagnostics);
-                return Err(diagnostics);
+                return Err(diagnostics.into());
             }
         };
         let (mut cases, mut figures) = (Vec::new(), true);
@@ -188,7 +188,7 @@ impl PointStudy {
         }
         if !diagnostics.is_empty() {
             sort(&mut diagnostics);
-            return Err(diagnostics);
+            return Err(diagnostics.into());
         }
         let name = root.table().and_then(|table| table.get("name")?.text()).unwrap_or_default().to_string();
         Ok(PointStudy { name, figures, cases, resolved: root.to_toml() })

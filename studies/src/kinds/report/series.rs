@@ -190,10 +190,18 @@ fn sides(hinges: &[Json]) -> Value {
     Value::List(named_hinges(&hinges).iter().map(|hinge| Value::Word(side(hinge).into())).collect())
 }
 
+/// Number of places of hinges along the ring: hinges that touch on one side, one after the other, are at one place.
+fn places(hinges: &[Json]) -> Value {
+    let mut sides: Vec<&Json> = hinges.iter().map(|hinge| &hinge["side"]).collect();
+    sides.dedup();
+    Value::Number(sides.len() as f64)
+}
+
 fn follow(value: &Json, path: &[&str]) -> Value {
     let Some((name, rest)) = path.split_first() else { return plain(value) };
     match (*name, value) {
         ("sides", Json::Array(hinges)) => sides(hinges),
+        ("places", Json::Array(hinges)) => places(hinges),
         ("*", Json::Array(items)) => Value::List(items.iter().map(|item| follow(item, rest)).collect()),
         (index, Json::Array(items)) => match index.parse::<usize>().ok().and_then(|index| items.get(index)) {
             Some(item) => follow(item, rest),
@@ -231,7 +239,7 @@ mod tests {
     fn results_are_found_by_variant_and_swept_key() {
         let case = |variant: &str, rise: f64, place: f64, status: &str, factor: Json| {
             json!({ "variant": variant, "parameters": { "scene.profile.rise": rise, "a.b": place }, "status": status, "load_factor": factor,
-                    "mechanism": { "hinges": [{ "joint": 1 }, { "joint": 4 }] } })
+                    "mechanism": { "hinges": [{ "joint": 1, "side": "extrados" }, { "joint": 4, "side": "intrados" }, { "joint": 5, "side": "intrados" }] } })
         };
         let results = json!({ "cases": [
             case("one", 2.0, 0.5, "collapse", json!(7.0)), case("one", 1.0, 0.5, "unbounded", json!(null)),
@@ -241,8 +249,10 @@ mod tests {
         let found = value(json!({ "variant": "one", "where": { "b": 0.5 } }));
         assert_eq!(found, Value::Series(vec![(1.0, Value::Number(f64::INFINITY)), (2.0, Value::Number(7.0))]));
         let joints = value(json!({ "variant": "two", "over": "rise", "result": "mechanism.hinges.*.joint" }));
-        let list = Value::List(vec![Value::Number(1.0), Value::Number(4.0)]);
+        let list = Value::List([1.0, 4.0, 5.0].map(Value::Number).into());
         assert_eq!(joints, Value::Series(vec![(1.0, list)]));
+        let places = value(json!({ "variant": "two", "over": "rise", "result": "mechanism.hinges.places" }));
+        assert_eq!(places, Value::Series(vec![(1.0, Value::Number(2.0))]));
         assert!(matches!(value(json!({ "variant": "three" })), Value::Missing { proven: false, .. }));
     }
 }

@@ -8,13 +8,13 @@ use super::page::results_page;
 use super::parts::Parts;
 use super::value::Value;
 use crate::config::check::Checker;
-use crate::config::diagnostic::{LocatedDiagnostic, sort};
+use crate::config::diagnostic::sort;
 use crate::config::document::Node;
 use crate::config::origin::Origin;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, StoredResults, Verification};
 use crate::kinds::read::read_source;
 use crate::solve::Observer;
-use crate::study::{DiagnosticList, Drawn, ReadFile, StudySource};
+use crate::study::{DiagnosticList, Drawn, ReadFile, StudyError, StudySource};
 use crate::verify::repeat::differences;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -34,19 +34,21 @@ pub struct ReportStudy {
 
 impl ReportStudy {
     /// Reads a study of studies and its parts; every mistake at once.
-    pub fn read(source: StudySource, read: ReadFile) -> Result<Self, Vec<LocatedDiagnostic>> {
+    pub fn read(source: StudySource, read: ReadFile) -> Result<Self, StudyError> {
         let StudySource { root, diagnostics, .. } = source;
         let mut checker = Checker::new(&root);
         let checked = checker.check(&root, &Shape::Table(STUDY), "");
         let found: Vec<_> = diagnostics.into_iter().chain(checker.diagnostics).collect();
         let contents = checked.as_ref().and_then(|table| Contents::deserialize(&table["report"]).ok());
-        let (Some(table), Some(mut contents), true) = (checked, contents, found.is_empty()) else { return Err(found) };
+        let (Some(table), Some(mut contents), true) = (checked, contents, found.is_empty()) else {
+            return Err(found.into());
+        };
         let mut diagnostics = DiagnosticList::new(&root, found);
         let parts = read_parts(&mut diagnostics, &contents, &root, read);
         contents.check(&mut diagnostics, &parts);
         if !diagnostics.found.is_empty() {
             sort(&mut diagnostics.found);
-            return Err(diagnostics.found);
+            return Err(diagnostics.found.into());
         }
         let mut resolved = root.to_toml();
         let own = parts.iter().map(|part| toml::Value::from(format!("{}/resolved.toml", part.folder)));
@@ -122,7 +124,7 @@ fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &
                 diagnostics.wrong(&key, message, "each study has a folder of its name: give one another name");
             }
             Ok(study) => parts.push(Part { folder: study.name().to_string(), file, study }),
-            Err(wrong) => diagnostics.found.extend(wrong),
+            Err(wrong) => diagnostics.found.extend_from_slice(wrong.mistakes()),
         }
     }
     parts

@@ -16,6 +16,17 @@ pub(super) struct RingPlace {
     pub count: usize,
 }
 
+/// Joints that damage counts from 0: across a ring, or the bed joints of a pier.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NumberedJoints {
+    /// Whether they stand among the other joints, not among the radial ones.
+    pub of_pier: bool,
+    /// Index of the first.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
 /// Bodies and joints as they are put together.
 #[derive(Default)]
 pub(super) struct Builder {
@@ -29,6 +40,8 @@ pub(super) struct Builder {
     pub extrados: Vec<Chord>,
     /// By span and ring.
     pub rings: Vec<Vec<RingPlace>>,
+    /// Bed joints of each pier from its cap downwards; their first ends are on the right.
+    pub piers: Vec<NumberedJoints>,
 }
 
 impl Builder {
@@ -105,6 +118,7 @@ impl Builder {
         let above = cap.into_iter().chain(courses.iter().copied());
         let levels = if cap.is_some() { &blocks.levels[..] } else { &blocks.levels[1..] };
         let below = below.skip(usize::from(cap.is_none()));
+        self.piers.push(NumberedJoints { of_pier: true, first: self.other.len(), count: levels.len() });
         for ((minus, plus), [left, right]) in below.zip(above).zip(levels) {
             let bond = if minus == ground && pier.footing == Footing::Bonded { Bond::Bonded } else { bond };
             self.other.push(Joint { minus, plus, ends: [*right, *left], bond, gap: Gap::default() });

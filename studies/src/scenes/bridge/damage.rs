@@ -1,22 +1,25 @@
 //! Damage of a bridge: joints that have lost mortar, joints that are repointed, voussoirs that are gone.
 
-use super::builder::{Builder, RingPlace};
+use super::builder::{Builder, NumberedJoints, RingPlace};
 use crate::scenes::lookup::{law, take};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{Bond, Catalogue, Joint};
+use voussoir_core::model::{Bond, Catalogue, Chord, Joint};
 use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};
 
-/// The face of a ring from which a joint is damaged.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+/// The face of a ring or a pier from which a joint is damaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Face {
     /// The lower face of the ring.
-    #[default]
     Intrados,
     /// Its upper face.
     Extrados,
+    /// The left face of the pier.
+    Left,
+    /// Its right face.
+    Right,
 }
 
 /// A piece of damage.
@@ -25,33 +28,31 @@ pub enum Face {
 pub enum Damage {
     /// Joints across a ring that touch no longer down to a depth.
     LostMortar {
-        /// From 0 at the left.
-        #[serde(default)]
-        span: usize,
+        /// From 0 at the left; of a ring.
+        span: Option<usize>,
         /// From 0 at the inside.
-        #[serde(default)]
-        ring: usize,
-        /// From 0 at the left springing; all of the ring where they are not given.
+        ring: Option<usize>,
+        /// Instead of a ring, from 0 at the left.
+        pier: Option<usize>,
+        /// From 0 at the left springing, of piers at the top; all where they are not given.
         joints: Option<Vec<usize>>,
-        /// From which face.
-        #[serde(default)]
-        side: Face,
+        /// From which face; of rings the intrados where it is not given.
+        side: Option<Face>,
         /// \[m\].
         depth: f64,
     },
     /// Joints across a ring that follow another law down to a depth.
     Repointed {
-        /// From 0 at the left.
-        #[serde(default)]
-        span: usize,
+        /// From 0 at the left; of a ring.
+        span: Option<usize>,
         /// From 0 at the inside.
-        #[serde(default)]
-        ring: usize,
-        /// From 0 at the left springing; all of the ring where they are not given.
+        ring: Option<usize>,
+        /// Instead of a ring, from 0 at the left.
+        pier: Option<usize>,
+        /// From 0 at the left springing, of piers at the top; all where they are not given.
         joints: Option<Vec<usize>>,
-        /// From which face.
-        #[serde(default)]
-        side: Face,
+        /// From which face; of rings the intrados where it is not given.
+        side: Option<Face>,
         /// \[m\].
         depth: f64,
         /// The law of the part that is repointed.
@@ -60,34 +61,33 @@ pub enum Damage {
     /// Voussoirs that are gone.
     LostVoussoir {
         /// From 0 at the left.
-        #[serde(default)]
-        span: usize,
+        span: Option<usize>,
         /// From 0 at the inside.
-        #[serde(default)]
-        ring: usize,
+        ring: Option<usize>,
         /// From 0 at the left.
         voussoirs: Vec<usize>,
     },
 }
 
-const fn number(name: &'static str, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape: Shape::Integer { min: 0, max: 1_000_000 }, need: Need::Default("0") }
+const fn number(name: &'static str, doc: &'static str, without: &'static str) -> Parameter {
+    Parameter { name, doc, shape: Shape::Integer { min: 0, max: 1_000_000 }, need: Need::Optional(without) }
 }
 
 const NUMBERS: Shape = Shape::List { of: &Shape::Integer { min: 0, max: 1_000_000 }, min: 1, max: usize::MAX };
-const SPAN: Parameter = number("span", "span, from 0 at the left");
-const RING: Parameter = number("ring", "ring, from 0 at the inside");
+const SPAN: Parameter = number("span", "span, from 0 at the left", "the first");
+const RING: Parameter = number("ring", "ring, from 0 at the inside", "the innermost");
+const PIER: Parameter = number("pier", "pier instead of a ring, from 0 at the left", "a ring");
 const JOINTS: Parameter = Parameter {
     name: "joints",
-    doc: "numbers of joints across the ring, from 0 at the left springing",
+    doc: "numbers of joints across the ring, from 0 at the left springing; of a pier from 0 under its cap",
     shape: NUMBERS,
-    need: Need::Optional("all of the ring but bonded ones"),
+    need: Need::Optional("all but bonded ones"),
 };
 const SIDE: Parameter = Parameter {
     name: "side",
-    doc: "the face of the ring from which the depth counts",
-    shape: Shape::Choice(&["intrados", "extrados"]),
-    need: Need::Default("\"intrados\""),
+    doc: "the face from which the depth counts: of rings intrados or extrados, of piers left or right",
+    shape: Shape::Choice(&["intrados", "extrados", "left", "right"]),
+    need: Need::Optional("intrados; of piers it must be given"),
 };
 const DEPTH: Parameter =
     Parameter::number("depth", Quantity::Length, Range::POSITIVE, "along the joint, from that face");
@@ -98,15 +98,16 @@ pub(super) const DAMAGE: Shape = Shape::Tagged {
     variants: &[
         Variant {
             tag: "lost_mortar",
-            doc: "joints across a ring that touch no longer down to a depth",
-            parameters: &[SPAN, RING, JOINTS, SIDE, DEPTH],
+            doc: "joints across a ring or a pier that touch no longer down to a depth",
+            parameters: &[SPAN, RING, PIER, JOINTS, SIDE, DEPTH],
         },
         Variant {
             tag: "repointed",
-            doc: "joints across a ring that follow another law down to a depth",
+            doc: "joints across a ring or a pier that follow another law down to a depth",
             parameters: &[
                 SPAN,
                 RING,
+                PIER,
                 JOINTS,
                 SIDE,
                 DEPTH,
@@ -120,7 +121,7 @@ pub(super) const DAMAGE: Shape = Shape::Tagged {
         },
         Variant {
             tag: "lost_voussoir",
-            doc: "voussoirs of an inner ring that are gone",
+            doc: "voussoirs that are gone; the fill then stands on the ring below",
             parameters: &[
                 SPAN,
                 RING,
@@ -135,50 +136,51 @@ pub(super) const DAMAGE: Shape = Shape::Tagged {
     ],
 };
 
-/// Joints of a ring that are damaged in the same way.
+/// Joints of a ring or a pier that are damaged in the same way.
 struct Section<'a> {
-    span: usize,
-    ring: usize,
+    span: Option<usize>,
+    ring: Option<usize>,
+    pier: Option<usize>,
     joints: Option<&'a [usize]>,
-    side: Face,
+    side: Option<Face>,
     depth: f64,
     joint: Option<&'a str>,
 }
 
-/// What is left of joints: places along them from their intrados end \[m\].
+/// What is left of joints: places along them from their first end \[m\].
 #[derive(Default)]
 struct Remains {
-    left: BTreeMap<usize, [f64; 2]>,
+    left: BTreeMap<(bool, usize), [f64; 2]>,
     repointed: Vec<Joint>,
+}
+
+impl Damage {
+    /// The joints of a piece of damage; `None` where voussoirs are gone.
+    fn section(&self) -> Option<Section<'_>> {
+        let (Damage::LostMortar { span, ring, pier, joints, side, depth }
+        | Damage::Repointed { span, ring, pier, joints, side, depth, .. }) = self
+        else {
+            return None;
+        };
+        let joint = if let Damage::Repointed { joint, .. } = self { Some(joint.as_str()) } else { None };
+        let (joints, depth) = (joints.as_deref(), *depth);
+        Some(Section { span: *span, ring: *ring, pier: *pier, joints, side: *side, depth, joint })
+    }
 }
 
 impl Builder {
     /// Damages what has been put together. Issues have paths from the scene's table.
     pub(super) fn damage(&mut self, list: &[Damage], catalogue: &Catalogue) -> Result<(), Vec<Diagnostic>> {
-        let (mut diagnostics, mut remains, mut gone) = (Vec::new(), Remains::default(), BTreeSet::new());
+        let (mut diagnostics, mut remains, mut gone) = (Vec::new(), Remains::default(), BTreeMap::new());
         for (i, entry) in list.iter().enumerate() {
             let path = format!("damage.{i}");
-            let section = match entry {
-                Damage::LostMortar { span, ring, joints, side, depth } => Section {
-                    span: *span,
-                    ring: *ring,
-                    joints: joints.as_deref(),
-                    side: *side,
-                    depth: *depth,
-                    joint: None,
-                },
-                Damage::Repointed { span, ring, joints, side, depth, joint } => {
-                    let (joints, joint) = (joints.as_deref(), Some(joint.as_str()));
-                    Section { span: *span, ring: *ring, joints, side: *side, depth: *depth, joint }
+            if let Damage::LostVoussoir { span, ring, voussoirs } = entry {
+                match self.voussoirs([*span, *ring], voussoirs, &path) {
+                    Ok(lost) => gone.extend(lost.into_iter().map(|body| (body, path.clone()))),
+                    Err(wrong) => diagnostics.push(wrong),
                 }
-                Damage::LostVoussoir { span, ring, voussoirs } => {
-                    match self.voussoirs([*span, *ring], voussoirs, &path) {
-                        Ok(lost) => gone.extend(lost),
-                        Err(wrong) => diagnostics.push(wrong),
-                    }
-                    continue;
-                }
-            };
+            }
+            let Some(section) = entry.section() else { continue };
             let bond = section.joint.map(|name| take(law(catalogue, name, &format!("{path}.joint")), &mut diagnostics));
             if let Some(None) = bond {
                 continue;
@@ -186,11 +188,12 @@ impl Builder {
             let wrong = self.shorten(&section, bond.flatten().map(Bond::Law), &mut remains, &path);
             diagnostics.extend(wrong.err());
         }
-        if !diagnostics.is_empty() {
-            return Err(diagnostics);
-        }
-        for (index, [from, to]) in remains.left {
-            let joint = &mut self.radial[index];
+        // Where joints still have their whole height.
+        let extrados = self.uncovered(&gone).map_err(|wrong| diagnostics.push(wrong));
+        let Some(extrados) = extrados.ok().filter(|_| diagnostics.is_empty()) else { return Err(diagnostics) };
+        self.extrados = extrados;
+        for ((of_pier, index), [from, to]) in remains.left {
+            let joint = if of_pier { &mut self.other[index] } else { &mut self.radial[index] };
             joint.ends = part(joint.ends, from, to);
         }
         self.other.append(&mut remains.repointed);
@@ -199,29 +202,81 @@ impl Builder {
     }
 
     /// A ring by span and ring, or the mistake.
-    fn ring_place(&self, [span, ring]: [usize; 2], path: &str) -> Result<RingPlace, Diagnostic> {
-        let missing = |key: &str, what: &str, number: usize, count: usize| {
-            Diagnostic::new(
-                format!("{path}.{key}"),
-                format!("there is no {what} {number}: they are 0 to {}", count - 1),
-            )
+    fn ring_place(&self, [span, ring]: [Option<usize>; 2], path: &str) -> Result<RingPlace, Diagnostic> {
+        let (span, ring) = (span.unwrap_or(0), ring.unwrap_or(0));
+        let rings = self.rings.get(span).ok_or_else(|| missing(path, "span", span, self.rings.len()))?;
+        rings.get(ring).copied().ok_or_else(|| missing(path, "ring", ring, rings.len()))
+    }
+
+    /// The joints that a section counts, and whether its side is that of their first ends.
+    fn numbered(&self, section: &Section<'_>, path: &str) -> Result<(NumberedJoints, bool), Diagnostic> {
+        let Some(pier) = section.pier else {
+            let place = self.ring_place([section.span, section.ring], path)?;
+            let joints = NumberedJoints { of_pier: false, first: place.joint, count: place.count + 1 };
+            return match section.side {
+                None | Some(Face::Intrados) => Ok((joints, true)),
+                Some(Face::Extrados) => Ok((joints, false)),
+                Some(Face::Left | Face::Right) => {
+                    Err(Diagnostic::new(format!("{path}.side"), "of a ring is \"intrados\" or \"extrados\""))
+                }
+            };
         };
-        let rings = self.rings.get(span).ok_or_else(|| missing("span", "span", span, self.rings.len()))?;
-        rings.get(ring).copied().ok_or_else(|| missing("ring", "ring", ring, rings.len()))
+        for (key, given) in [("span", section.span), ("ring", section.ring)] {
+            if given.is_some() {
+                return Err(
+                    Diagnostic::new(format!("{path}.{key}"), "is given besides pier").help("keep one of the two")
+                );
+            }
+        }
+        let joints = self.piers.get(pier).copied().ok_or_else(|| missing(path, "pier", pier, self.piers.len()))?;
+        match section.side {
+            Some(Face::Right) => Ok((joints, true)),
+            Some(Face::Left) => Ok((joints, false)),
+            _ => Err(Diagnostic::new(format!("{path}.side"), "of a pier is \"left\" or \"right\"")),
+        }
     }
 
     /// Indices of voussoirs that are lost.
-    fn voussoirs(&self, [span, ring]: [usize; 2], numbers: &[usize], path: &str) -> Result<Vec<usize>, Diagnostic> {
-        let place = self.ring_place([span, ring], path)?;
-        if ring + 1 == self.rings[span].len() {
-            let message = "the outermost ring carries the fill: only voussoirs of rings below it can be lost";
-            return Err(Diagnostic::new(format!("{path}.ring"), message));
-        }
+    fn voussoirs(&self, ring: [Option<usize>; 2], numbers: &[usize], path: &str) -> Result<Vec<usize>, Diagnostic> {
+        let place = self.ring_place(ring, path)?;
         if let Some(i) = numbers.iter().position(|&number| number >= place.count) {
             let message = format!("there is no voussoir {}: they are 0 to {}", numbers[i], place.count - 1);
             return Err(Diagnostic::new(format!("{path}.voussoirs.{i}"), message));
         }
         Ok(numbers.iter().map(|number| place.body + number).collect())
+    }
+
+    /// The upper faces once these voussoirs are gone: under each the faces of the ring below, and beside it the sides of its
+    /// neighbours as far as they look upwards.
+    fn uncovered(&self, gone: &BTreeMap<usize, String>) -> Result<Vec<Chord>, Diagnostic> {
+        let mut extrados = Vec::new();
+        for chord in &self.extrados {
+            let Some(path) = gone.get(&chord.body) else {
+                extrados.push(*chord);
+                continue;
+            };
+            let below: Vec<&Joint> =
+                self.other.iter().filter(|joint| joint.plus == chord.body && !self.bodies[joint.minus].fixed).collect();
+            if below.is_empty() || below.iter().any(|joint| gone.contains_key(&joint.minus)) {
+                let message = "nothing is left under it that would carry the fill: a ring below must go on there";
+                return Err(Diagnostic::new(format!("{path}.voussoirs"), message));
+            }
+            let side = |body: usize, ends: [Vec2; 2]| {
+                let carries = !gone.contains_key(&body) && !self.bodies[body].fixed && ends[0].x < ends[1].x;
+                carries.then_some(Chord { body, ends, from_middle: Chord::NO_RING })
+            };
+            let radial = |here: &dyn Fn(&Joint) -> bool| self.radial.iter().find(|joint| here(joint));
+            let left = radial(&|joint| joint.plus == chord.body);
+            let right = radial(&|joint| joint.minus == chord.body);
+            extrados.extend(left.and_then(|joint| side(joint.minus, [joint.ends[1], joint.ends[0]])));
+            extrados.extend(below.iter().map(|joint| Chord {
+                body: joint.minus,
+                ends: [joint.ends[1], joint.ends[0]],
+                from_middle: chord.from_middle,
+            }));
+            extrados.extend(right.and_then(|joint| side(joint.plus, joint.ends)));
+        }
+        Ok(extrados)
     }
 
     /// Takes a depth off the joints of a section, for good or for a joint of its own.
@@ -232,28 +287,30 @@ impl Builder {
         remains: &mut Remains,
         path: &str,
     ) -> Result<(), Diagnostic> {
-        let place = self.ring_place([section.span, section.ring], path)?;
+        let (place, from_first) = self.numbered(section, path)?;
         let named = |i: usize| if section.joints.is_some() { format!("{path}.joints.{i}") } else { path.to_string() };
-        let numbers: Vec<usize> = section.joints.map_or_else(|| (0..=place.count).collect(), <[usize]>::to_vec);
+        let numbers: Vec<usize> = section.joints.map_or_else(|| (0..place.count).collect(), <[usize]>::to_vec);
         for (i, number) in numbers.into_iter().enumerate() {
-            if number > place.count {
-                let message = format!("there is no joint {number}: they are 0 to {}", place.count);
+            if number >= place.count {
+                let message = format!("there is no joint {number}: they are 0 to {}", place.count - 1);
                 return Err(Diagnostic::new(named(i), message));
             }
-            let index = place.joint + number;
-            let joint = &self.radial[index];
+            let index = (place.of_pier, place.first + number);
+            let joint = if place.of_pier { &self.other[index.1] } else { &self.radial[index.1] };
             if joint.bond == Bond::Bonded {
                 if section.joints.is_none() {
                     continue;
                 }
                 let message = format!("joint {number} is bonded: it has no mortar to lose");
-                return Err(Diagnostic::new(named(i), message).help("give this span ends = \"jointed\""));
+                let help = if place.of_pier { "footing = \"fixed\"" } else { "ends = \"jointed\"" };
+                return Err(Diagnostic::new(named(i), message).help(format!("give it {help}")));
             }
             let height = joint.height();
             let [from, to] = *remains.left.get(&index).unwrap_or(&[0.0, height]);
-            let (taken, kept) = match section.side {
-                Face::Intrados => ([from, section.depth], [from.max(section.depth), to]),
-                Face::Extrados => ([height - section.depth, to], [from, to.min(height - section.depth)]),
+            let (taken, kept) = if from_first {
+                ([from, section.depth], [from.max(section.depth), to])
+            } else {
+                ([height - section.depth, to], [from, to.min(height - section.depth)])
             };
             if kept[1] - kept[0] <= 1e-6 * height {
                 let message =
@@ -271,14 +328,14 @@ impl Builder {
     }
 
     /// Takes bodies away, with their joints.
-    fn remove(&mut self, gone: &BTreeSet<usize>) {
+    fn remove(&mut self, gone: &BTreeMap<usize, String>) {
         if gone.is_empty() {
             return;
         }
         let mut next = 0;
         let new: Vec<Option<usize>> = (0..self.bodies.len())
             .map(|body| {
-                (!gone.contains(&body)).then(|| {
+                (!gone.contains_key(&body)).then(|| {
                     next += 1;
                     next - 1
                 })
@@ -302,6 +359,15 @@ impl Builder {
             new[index - 1].is_some()
         });
     }
+}
+
+/// What a number finds nothing for.
+fn missing(path: &str, what: &str, number: usize, count: usize) -> Diagnostic {
+    let message = match count {
+        0 => format!("there is no {what} {number}: there is none"),
+        count => format!("there is no {what} {number}: they are 0 to {}", count - 1),
+    };
+    Diagnostic::new(format!("{path}.{what}"), message)
 }
 
 /// The part of a segment between two distances from its first end.

@@ -233,7 +233,7 @@ fn a_failure_writes_a_study_that_shows_it() {
     let study = finding.study.as_ref().expect("a study");
     let other =
         study.replace(CARD.tag, "coulomb").replace("fault = \"refuses_to_open\"\n", "").replace("cohesion = 4e5\n", "");
-    let loaded = read_study(&other, "found.toml", &[]).unwrap_or_else(|wrong| panic!("{}\n{study}", wrong[0]));
+    let loaded = read_study(&other, "found.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}\n{study}"));
     let output = loaded.run(&RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() }, &Unobserved);
     assert!(output.certified, "{}", output.table);
 }

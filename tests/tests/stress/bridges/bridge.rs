@@ -1,6 +1,7 @@
 //! A bridge as numbers, and as the text of a study.
 
 use std::fmt::Write;
+use voussoir_tests::sequence::Sequence;
 
 /// A segmental span.
 #[derive(Debug, Clone)]
@@ -62,6 +63,10 @@ pub struct Bridge {
     pub axles: Vec<Axle>,
     pub at: f64,
     pub lost: Vec<Lost>,
+    /// Voussoirs of outermost rings that are gone: span, number.
+    pub gone: Vec<(usize, usize)>,
+    /// Bed joints of piers that have lost mortar: pier, joint, from the left, depth.
+    pub bed: Vec<(usize, usize, bool, f64)>,
     /// Loads spread as the stress of a half-plane, cut off under the angles of spread.
     pub half_plane: bool,
     pub factors: Factors,
@@ -95,33 +100,12 @@ impl Factors {
 
 /// Seeds from here on have partial factors and loads that spread as in a half-plane besides.
 pub const MORE: u64 = 10_000;
-
-/// A linear congruential generator (Knuth's constants).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.next()
-    }
-
-    fn whole(&mut self, from: usize, to: usize) -> usize {
-        from + (self.next() * (to - from + 1) as f64) as usize
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        self.next() < share
-    }
-}
+/// Seeds from here on have damage of outermost rings and of piers besides.
+pub const DAMAGED: u64 = 1_000_000;
 
 impl Bridge {
     pub fn random(seed: u64) -> Bridge {
-        let mut r = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d);
-        (0..4).for_each(|_| _ = r.next());
+        let mut r = Sequence::new(seed);
         let count = [1, 1, 2, 3][r.whole(0, 3)];
         let spans: Vec<Span> = (0..count)
             .map(|_| {
@@ -139,7 +123,7 @@ impl Bridge {
             })
             .collect();
         let top = spans.iter().map(|span| span.rise + span.thickness[0]).fold(0.0, f64::max);
-        let soil = |r: &mut Random, to_level: f64| Soil {
+        let soil = |r: &mut Sequence, to_level: f64| Soil {
             to_level,
             density: r.between(1500.0, 2200.0),
             friction_angle: r.between(0.0, 45.0),
@@ -204,6 +188,8 @@ impl Bridge {
             at: total * r.between(0.05, 0.9),
             spans,
             lost,
+            gone: Vec::new(),
+            bed: Vec::new(),
             half_plane: false,
             factors: Factors::NONE,
         };
@@ -223,7 +209,30 @@ impl Bridge {
                 };
             }
         }
+        if seed >= DAMAGED {
+            bridge.damage(&mut r);
+        }
         bridge
+    }
+
+    /// Voussoirs lost from outermost rings of two, none at a springing, and mortar from bed joints.
+    fn damage(&mut self, r: &mut Sequence) {
+        for span in 0..self.spans.len() {
+            self.spans[span].rings = if r.chance(0.8) { 2 } else { 1 };
+            self.lost.retain(|lost| lost.1 < self.spans[lost.0].rings);
+            let count = self.spans[span].voussoirs;
+            if self.spans[span].rings == 2 && r.chance(0.8) {
+                let first = r.whole(1, count - 3);
+                self.gone.extend((first..first + r.whole(1, 2)).map(|k| (span, k)));
+            }
+        }
+        for (pier, (_, width, foot, courses)) in self.piers.iter().enumerate() {
+            if r.chance(0.8) {
+                let joint = r.whole(0, *courses);
+                let across = width + (foot - width) * joint as f64 / *courses as f64;
+                self.bed.push((pier, joint, r.chance(0.5), across * r.between(0.02, 0.3)));
+            }
+        }
     }
 
     /// The bridge whose characteristic values are the design values of this one.
@@ -276,6 +285,17 @@ impl Bridge {
             let _ = writeln!(
                 text,
                 "  {{ kind = \"lost_mortar\", span = {span}, ring = {ring}, joints = [{joint}], side = \"{side}\", depth = {depth:?} }},"
+            );
+        }
+        for (span, voussoir) in &self.gone {
+            let _ =
+                writeln!(text, "  {{ kind = \"lost_voussoir\", span = {span}, ring = 1, voussoirs = [{voussoir}] }},");
+        }
+        for (pier, joint, left, depth) in &self.bed {
+            let side = if *left { "left" } else { "right" };
+            let _ = writeln!(
+                text,
+                "  {{ kind = \"lost_mortar\", pier = {pier}, joints = [{joint}], side = \"{side}\", depth = {depth:?} }},"
             );
         }
         text += "]\n";

@@ -6,7 +6,7 @@ mod bridge;
 mod fill;
 mod program;
 
-use self::bridge::{Bridge, MORE};
+use self::bridge::{Bridge, DAMAGED, MORE};
 use voussoir::core::limit::Status;
 use voussoir_tests::answered;
 
@@ -22,6 +22,12 @@ fn random_bridges_carry_what_an_independent_program_says() {
 #[test]
 fn random_bridges_with_partial_factors_carry_what_an_independent_program_says() {
     compare(MORE, 10);
+}
+
+/// The same with voussoirs lost from outermost rings, and bed joints of piers that have lost mortar.
+#[test]
+fn random_bridges_with_damage_carry_what_an_independent_program_says() {
+    compare(DAMAGED, 10);
 }
 
 fn compare(first: u64, count: u64) {

@@ -3,9 +3,7 @@
 
 use super::bridge::{Axle, Bridge};
 use super::fill::{Point, area_moment};
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::SupportedConeT::{NonnegativeConeT, SecondOrderConeT, ZeroConeT};
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
+use crate::conic::{Extreme, Rows};
 
 /// A block that can move.
 struct Block {
@@ -19,17 +17,38 @@ struct Contact {
     friction: f64,
 }
 
+/// A face on a block, and whether fill presses sideways on it.
+type Face = (usize, [Point; 2], bool);
+
 /// All of it.
 #[derive(Default)]
 struct Parts {
     blocks: Vec<Block>,
     contacts: Vec<Contact>,
     /// Upper faces of outermost rings and tops of piers, from left to right; whether fill presses sideways there.
-    faces: Vec<(usize, [Point; 2], bool)>,
+    faces: Vec<Face>,
+    /// Blocks that are not there.
+    gone: Vec<usize>,
     springings: [f64; 2],
 }
 
 impl Parts {
+    /// The part of a face that no other one stands above.
+    fn visible(&self, face: &[Point; 2]) -> [f64; 2] {
+        let y = |face: &[Point; 2], x: f64| {
+            face[0][1] + (face[1][1] - face[0][1]) * (x - face[0][0]) / (face[1][0] - face[0][0])
+        };
+        let mut range = [face[0][0], face[1][0]];
+        for (_, other, _) in &self.faces {
+            let (low, high) = (other[0][0].max(range[0]), other[1][0].min(range[1]));
+            let middle = (low + high) / 2.0;
+            if high - low > 1e-9 && y(other, middle) > y(face, middle) + 1e-9 {
+                if low <= range[0] { range[0] = high } else { range[1] = low }
+            }
+        }
+        range
+    }
+
     fn block(&mut self, polygon: Vec<Point>) -> usize {
         self.blocks.push(Block { polygon });
         self.blocks.len() - 1
@@ -69,7 +88,10 @@ impl Bridge {
                         let on = [Some(first + k - n), Some(first + k)];
                         parts.contacts.push(Contact { on, ends, friction: self.ring_friction });
                     }
-                    if r + 1 == span.rings {
+                    if r + 1 == span.rings && self.gone.contains(&(index, k)) {
+                        parts.gone.push(first + k);
+                        parts.faces.extend(self.uncovered(index, k, first, &at));
+                    } else if r + 1 == span.rings {
                         parts.faces.push((first + k, [at(k, r + 1), at(k + 1, r + 1)], true));
                     }
                 }
@@ -84,7 +106,28 @@ impl Bridge {
             parts.springings[1] = end[0][0];
             x = next_x;
         }
+        let gone = std::mem::take(&mut parts.gone);
+        parts.contacts.retain(|contact| !contact.on.iter().flatten().any(|block| gone.contains(block)));
+        gone.iter().for_each(|block| parts.blocks[*block].polygon.clear());
         parts
+    }
+
+    /// The faces open to the sky where voussoir k of the outermost ring is gone, `first` its first block: the side of the
+    /// left neighbour, the ring below, the side of the right neighbour, as far as they look upwards.
+    fn uncovered(&self, span: usize, k: usize, first: usize, at: &dyn Fn(usize, usize) -> Point) -> Vec<Face> {
+        let (n, outer) = (self.spans[span].voussoirs, self.spans[span].rings);
+        let stays = |k: usize| !self.gone.contains(&(span, k));
+        let mut faces = Vec::new();
+        let left = [at(k, outer), at(k, outer - 1)];
+        if stays(k - 1) && left[0][0] < left[1][0] {
+            faces.push((first + k - 1, left, false));
+        }
+        faces.push((first + k - n, [at(k, outer - 1), at(k + 1, outer - 1)], true));
+        let right = [at(k + 1, outer - 1), at(k + 1, outer)];
+        if stays(k + 1) && right[0][0] < right[1][0] {
+            faces.push((first + k + 1, right, false));
+        }
+        faces
     }
 
     /// What lost mortar leaves of a joint.
@@ -113,12 +156,22 @@ impl Bridge {
         for i in 0..courses {
             let ([tl, tr], [bl, br]) = (level(i), level(i + 1));
             let course = parts.block(vec![bl, br, tr, tl]);
-            parts.contacts.push(Contact { on: [Some(course), Some(above)], ends: [tr, tl], friction: self.friction });
+            let ends = self.bed_left(index, i, [tr, tl]);
+            parts.contacts.push(Contact { on: [Some(course), Some(above)], ends, friction: self.friction });
             above = course;
         }
         let [left, right] = level(courses);
-        parts.contacts.push(Contact { on: [None, Some(above)], ends: [right, left], friction: self.friction });
+        let ends = self.bed_left(index, courses, [right, left]);
+        parts.contacts.push(Contact { on: [None, Some(above)], ends, friction: self.friction });
         cap
+    }
+
+    /// What lost mortar leaves of a bed joint between its right and its left end.
+    fn bed_left(&self, pier: usize, joint: usize, [mut right, mut left]: [Point; 2]) -> [Point; 2] {
+        for (_, _, from_left, depth) in self.bed.iter().filter(|bed| (bed.0, bed.1) == (pier, joint)) {
+            if *from_left { left[0] += depth } else { right[0] -= depth }
+        }
+        [right, left]
     }
 
     /// Live forces downwards: block, x, force.
@@ -129,7 +182,7 @@ impl Bridge {
         let mut out = Vec::new();
         for Axle { at: distance, force, length, wheel } in &self.axles {
             let x = self.at + distance;
-            let covers = |face: &&(usize, [Point; 2], bool)| face.1[0][0] <= x && x <= face.1[1][0];
+            let covers = |face: &&Face| (parts.visible(&face.1)[0]..=parts.visible(&face.1)[1]).contains(&x);
             let Some(under) = parts.faces.iter().find(covers) else { continue };
             let reach = self.reach([x, at(&under.1, x)]);
             let carrying = if self.effective { self.width.min(wheel + 2.0 * reach) } else { self.width };
@@ -142,7 +195,8 @@ impl Bridge {
             let depth = self.road_at(x) - at(&under.1, x);
             for (from, to, share) in self.patches([x, length / 2.0, reach, depth]) {
                 for (block, face, _) in &parts.faces {
-                    let (low, high) = (face[0][0].max(from), face[1][0].min(to));
+                    let [left, right] = parts.visible(face);
+                    let (low, high) = (left.max(from), right.min(to));
                     if high > low {
                         out.push((*block, (low + high) / 2.0, force * share * (high - low) / (to - from)));
                     }
@@ -194,11 +248,12 @@ impl Bridge {
             right[block][1] += weight;
             right[block][2] += weight * x;
         };
-        for (block, [area, mx, my]) in centres.iter().enumerate() {
+        for (block, [area, mx, my]) in centres.iter().enumerate().filter(|(_, [area, ..])| *area > 0.0) {
             dead(block, [mx / area, my / area], 9.81 * self.density * area * self.width);
         }
         for (block, face, _) in &parts.faces {
-            let [mass, moment] = self.column(*face, [face[0][0].max(lowest), face[1][0].min(highest)]);
+            let [low, high] = parts.visible(face);
+            let [mass, moment] = self.column(*face, [low.max(lowest), high.min(highest)]);
             if mass > 0.0 {
                 dead(*block, [moment / mass, 0.0], 9.81 * mass);
             }
@@ -240,7 +295,10 @@ impl Bridge {
         if let Some(strength) = self.crushing {
             self.crushing(&parts, strength, &mut rows);
         }
-        rows.maximise()
+        match rows.extreme(variables - 1, 1.0) {
+            Extreme::Value(factor) => Some(factor),
+            _ => None,
+        }
     }
 
     /// |T| ≤ μ N and |M| ≤ N h/2.
@@ -258,90 +316,11 @@ impl Bridge {
     /// N² ≤ f_c A (N − 2 |M|/h) as cones.
     fn crushing(&self, parts: &Parts, strength: f64, rows: &mut Rows) {
         rows.cones_from = rows.right.len();
+        let typical = rows.typical();
         for (j, contact) in parts.contacts.iter().enumerate() {
             let [a, b] = contact.ends;
             let h = (b[0] - a[0]).hypot(b[1] - a[1]);
-            let force = strength * h * self.width;
-            // (F + y, F − y, 2 N √…): in units in which F counts as the weights do.
-            let scale = (rows.typical() / force).sqrt().min(1.0);
-            for sign in [-1.0, 1.0] {
-                let y = [(3 * j, -1.0 / scale), (3 * j + 2, -sign * 2.0 / h / scale)];
-                rows.row(&y, force * scale);
-                rows.row(&y.map(|(v, c)| (v, -c)), force * scale);
-                rows.row(&[(3 * j, -2.0)], 0.0);
-                rows.cones += 1;
-            }
+            rows.stress_block([3 * j, 3 * j + 2], h, [strength * h * self.width, 0.0], typical);
         }
-    }
-}
-
-/// A x + s = right: equations first, then rows, then cones of three.
-struct Rows {
-    variables: usize,
-    entries: Vec<(usize, usize, f64)>,
-    right: Vec<f64>,
-    linear_from: usize,
-    cones_from: usize,
-    cones: usize,
-}
-
-impl Rows {
-    fn new(variables: usize) -> Rows {
-        Rows { variables, entries: Vec::new(), right: Vec::new(), linear_from: 0, cones_from: 0, cones: 0 }
-    }
-
-    fn entry(&mut self, row: usize, variable: usize, value: f64) {
-        self.entries.push((row, variable, value));
-    }
-
-    fn row(&mut self, entries: &[(usize, f64)], right: f64) {
-        let row = self.right.len();
-        entries.iter().for_each(|&(variable, value)| self.entry(row, variable, value));
-        self.right.push(right);
-    }
-
-    /// The greatest dead load of a block.
-    fn typical(&self) -> f64 {
-        self.right[..self.linear_from].iter().fold(0.0, |most, value| value.abs().max(most))
-    }
-
-    /// Forces in units of the typical load, so that tolerances mean something.
-    fn maximise(&self) -> Option<f64> {
-        let unit = self.typical();
-        let (mut i, mut j, mut v) = (Vec::new(), Vec::new(), Vec::new());
-        let live = self.variables - 1;
-        let most = self
-            .entries
-            .iter()
-            .filter(|e| e.1 == live && e.0 < self.linear_from)
-            .fold(0.0, |m: f64, e| m.max(e.2.abs()));
-        for &(row, variable, value) in &self.entries {
-            i.push(row);
-            j.push(variable);
-            v.push(if variable == live && row < self.linear_from { value / most } else { value });
-        }
-        let b: Vec<f64> = self.right.iter().map(|value| value / unit).collect();
-        let a = CscMatrix::new_from_triplets(b.len(), self.variables, i, j, v);
-        let linear_to = if self.cones > 0 { self.cones_from } else { b.len() };
-        let mut cones = vec![ZeroConeT(self.linear_from), NonnegativeConeT(linear_to - self.linear_from)];
-        cones.extend((0..self.cones).map(|_| SecondOrderConeT(3)));
-        let mut q = vec![0.0; self.variables];
-        q[live] = -1.0;
-        let settings = DefaultSettings::<f64> {
-            verbose: false,
-            max_iter: 300,
-            tol_gap_abs: 1e-10,
-            tol_gap_rel: 1e-10,
-            tol_feas: 1e-10,
-            ..DefaultSettings::default()
-        };
-        let p = CscMatrix::<f64>::zeros((self.variables, self.variables));
-        let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).expect("a program");
-        solver.solve();
-        let solved = matches!(
-            solver.solution.status,
-            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
-        );
-        solved.then(|| solver.solution.x[live] * unit / most)
     }
 }

@@ -1,0 +1,43 @@
+//! Groups of blocks that no chain of joints holds to the ground: a rigid motion of theirs costs nothing, so that loads with
+//! a resultant on them are not carried.
+
+use voussoir_core::limit::{LimitProblem, Velocity};
+use voussoir_core::model::{Wrenches, root};
+
+/// Share of the loads of such a group below which their resultant is rounding.
+const BALANCED: f64 = 1e-12;
+
+/// A rigid motion of a floating group on which the fixed loads do work and the varying ones, whatever their factor,
+/// none. The two sums are those of every group that floats; moments count over the scene's length.
+pub fn loose_motion(problem: &LimitProblem, fixed: &Wrenches, varying: &Wrenches) -> Option<Vec<Velocity>> {
+    let ground = problem.groups;
+    let mut parent: Vec<usize> = (0..=ground).collect();
+    for joint in &problem.joints {
+        let ends = [joint.minus, joint.plus].map(|group| root(&mut parent, group.unwrap_or(ground)));
+        parent[ends[0]] = ends[1];
+    }
+    let roots: Vec<usize> = (0..=ground).map(|group| root(&mut parent, group)).collect();
+    let floats: Vec<usize> = (0..ground).filter(|&group| roots[group] != roots[ground]).collect();
+    let scaled = |w: &[f64; 3]| [w[0], w[1], w[2] / problem.length];
+    let sum = |wrenches: &Wrenches, of: usize| {
+        let own = floats.iter().filter(|&&group| roots[group] == of).map(|&group| scaled(&wrenches[group]));
+        own.fold(([0.0; 3], 0.0), |(mut sum, mut size), w| {
+            (0..3).for_each(|i| sum[i] += w[i]);
+            size += dot(w, w).sqrt();
+            (sum, size)
+        })
+    };
+    floats.iter().filter(|&&group| roots[group] == group).find_map(|&of| {
+        let ((w, most), (p, live)) = (sum(fixed, of), sum(varying, of));
+        let along = if dot(p, p).sqrt() > BALANCED * live { dot(w, p) / dot(p, p) } else { 0.0 };
+        let left: [f64; 3] = std::array::from_fn(|i| w[i] - along * p[i]);
+        (dot(left, left).sqrt() > BALANCED * most).then(|| {
+            let velocity = [left[0], left[1], left[2] / problem.length];
+            (0..ground).map(|group| if roots[group] == of { velocity } else { [0.0; 3] }).collect()
+        })
+    })
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(&b).map(|(a, b)| a * b).sum()
+}

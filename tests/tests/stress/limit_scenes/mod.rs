@@ -1,0 +1,133 @@
+//! Random limit scenes against a program of their own: arches of every profile, walls, blocks of any shape, degenerate ones;
+//! laws of every kind, loads in all directions. The program reads the vertices of blocks and writes everything else down
+//! again: joints as overlaps of edges, weights, loads, strengths, equilibrium. It shares no code with the
+//! model and the solvers of Voussoir.
+
+mod assemblies;
+mod families;
+mod model;
+
+use self::families::{FAMILIES, Scene, scene};
+use self::model::Carried;
+use std::collections::BTreeMap;
+use voussoir::core::limit::Status;
+use voussoir::results::CaseResult;
+use voussoir::solve_case;
+use voussoir_tests::first_case;
+use voussoir_tests::gates::above_gates;
+
+/// Relative difference of factors that is none.
+const SAME: f64 = 2e-6;
+
+/// What a comparison came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Verdict {
+    Collapse,
+    Unbounded,
+    NoEquilibrium,
+    Stalled,
+    /// The independent program did not decide.
+    Undecided,
+    /// A certificate passed above a gate.
+    AboveGate,
+    Wrong,
+}
+
+/// Answers of some scenes against what they carry; a share may be refused as no scenes.
+fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usize> {
+    let (mut counts, mut bad) = (BTreeMap::new(), Vec::new());
+    for seed in seeds {
+        let Some(Scene { family, text, model }) = scene(seed) else { continue };
+        if let Err(why) = voussoir::study::load(&text, "random.toml", &[]) {
+            if std::env::var_os("REFUSED").is_some() {
+                println!("{seed}, {family}: {why}");
+            }
+            continue;
+        }
+        let case = first_case(&text);
+        assert_eq!(case.assembly.joints.len(), joints_of(&model, &text), "{seed}\n{text}");
+        let result = solve_case(&case);
+        let (carried, unit) = (model.carried(), model.typical_factor());
+        // Bounds may differ by the rounding of enormous strengths, as the certificate says.
+        let enormous = model.laws.iter().any(|law| law.is_enormous());
+        let above = above_gates(&result, 1e-9, if enormous { f64::INFINITY } else { 1e-8 });
+        let verdict = if above.is_empty() { verdict(&result, carried, unit) } else { Verdict::AboveGate };
+        *counts.entry((family, verdict)).or_default() += 1;
+        if !matches!(verdict, Verdict::Collapse | Verdict::Unbounded | Verdict::NoEquilibrium) {
+            let said = format!("{:?} {:?} {:?}", result.status, result.load_factor, result.feasible_interval);
+            let said = format!("{said}, {:?}, {:?}, {above:?}", result.bounds, result.notes);
+            bad.push((verdict, format!("{seed}, {family}: {said}, but {carried:?}")));
+            if let Some(folder) = std::env::var_os("KEEP") {
+                let file = std::path::Path::new(&folder).join(format!("{seed}.toml"));
+                std::fs::write(file, &text).expect("a folder to keep studies in");
+            }
+        }
+    }
+    bad.sort();
+    bad.iter().for_each(|(verdict, said)| println!("{verdict:?}: {said}"));
+    assert!(bad.iter().all(|(verdict, _)| !matches!(verdict, Verdict::Wrong | Verdict::AboveGate)));
+    counts
+}
+
+/// Joints that the text's scene must have: as many as the model found, with those that bonds take from it.
+fn joints_of(model: &model::Model, text: &str) -> usize {
+    model.contacts.len() + if text.contains("ends = \"bonded\"") { 2 } else { 0 }
+}
+
+fn verdict(result: &CaseResult, carried: Carried, unit: f64) -> Verdict {
+    // Of loads far beyond the dead ones the independent program finds fewer digits.
+    let same = |a: f64, b: f64| {
+        let digits = if b.abs() > 100.0 * unit { 5.0 } else { 1.0 };
+        a == b || (a - b).abs() <= digits * SAME * (b.abs() + 1e-3 * unit)
+    };
+    // Where the dead load is only just carried, both answers are right.
+    let at_zero = |end: f64| end.abs() <= 1e-6 * unit;
+    if result.status == Status::Stalled || !result.certificate.passed {
+        return Verdict::Stalled;
+    }
+    let (low, high) = match carried {
+        Carried::Unknown => return Verdict::Undecided,
+        Carried::No => {
+            return if result.status == Status::NoEquilibrium { Verdict::NoEquilibrium } else { Verdict::Wrong };
+        }
+        Carried::Between([low, high]) => (low, high),
+    };
+    let zero = (low < 0.0 || at_zero(low)) && (high > 0.0 || at_zero(high));
+    match (result.status, result.load_factor) {
+        // As great as strengths that are great beyond all loads: no digit means anything.
+        (Status::Collapse, Some(factor)) if zero && factor.min(high) > 1e6 * unit => Verdict::Unbounded,
+        (Status::Collapse, Some(factor)) if zero && same(factor, high) => Verdict::Collapse,
+        (Status::Unbounded, _) if zero && high.is_infinite() => Verdict::Unbounded,
+        (Status::NoEquilibrium, _) if !zero || at_zero(low) || at_zero(high) => {
+            let said = result
+                .feasible_interval
+                .map(|ends| [ends[0].unwrap_or(f64::NEG_INFINITY), ends[1].unwrap_or(f64::INFINITY)]);
+            match said {
+                Some([from, to]) if !same(from, low) || !same(to, high) => Verdict::Wrong,
+                _ => Verdict::NoEquilibrium,
+            }
+        }
+        _ => Verdict::Wrong,
+    }
+}
+
+fn count(counts: &BTreeMap<(&'static str, Verdict), usize>, verdict: Verdict) -> usize {
+    counts.iter().filter(|((_, own), _)| *own == verdict).map(|(_, count)| count).sum()
+}
+
+/// 60 scenes; `LIMIT_SCENES` for more, from `LIMIT_FIRST` on, `KEEP=FOLDER` writes those that are not right.
+#[test]
+fn random_scenes_carry_what_an_independent_program_says() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let (first, scenes) = (number("LIMIT_FIRST").unwrap_or(0), number("LIMIT_SCENES").unwrap_or(60));
+    let counts = compare(first..first + scenes);
+    for family in FAMILIES {
+        let own: Vec<_> = counts.iter().filter(|((own, _), _)| *own == family).map(|((_, v), n)| (v, n)).collect();
+        println!("{family}: {own:?}");
+    }
+    let all: usize = counts.values().sum();
+    let [stalled, undecided] = [Verdict::Stalled, Verdict::Undecided].map(|verdict| count(&counts, verdict));
+    assert!(all as u64 * 10 >= scenes * 8, "{all} scenes");
+    assert!(stalled * 100 <= all && undecided * 50 <= all, "{stalled} stalled, {undecided} undecided");
+    assert!(count(&counts, Verdict::Collapse) * 3 > all, "{counts:?}");
+}
