@@ -41,9 +41,9 @@ fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f
         let next: [Option<(&[f64], (&f64, &f64))>; 4] = std::array::from_fn(|_| columns.next());
         if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
             let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-            for i in 0..height {
-                first[i] += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
-                second[i] += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
+            for (i, (first, second)) in first.iter_mut().zip(second.iter_mut()).enumerate() {
+                *first += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
+                *second += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
             }
             continue;
         }
