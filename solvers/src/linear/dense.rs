@@ -41,9 +41,9 @@ fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f
         let next: [Option<(&[f64], (&f64, &f64))>; 4] = std::array::from_fn(|_| columns.next());
         if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
             let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-            for i in 0..height {
-                first[i] += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
-                second[i] += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
+            for (i, (first, second)) in first.iter_mut().zip(second.iter_mut()).enumerate() {
+                *first += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
+                *second += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
             }
             continue;
         }
@@ -119,4 +119,22 @@ pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) 
             }
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Products by pairs of columns, with a column over and zeros, and by rows are those of the definition.
+    #[test]
+    fn products_are_those_of_the_definition() {
+        let a = DMatrix::from_fn(7, 9, |i, j| ((3 * i + 5 * j * j + 1) as f64).sin());
+        let b = DMatrix::from_fn(9, 3, |i, j| if (i + j) % 3 == 0 { 0.0 } else { ((i * j + 2) as f64).cos() });
+        let close = |x: &DMatrix<f64>, y: DMatrix<f64>| (x - y).amax() < 1e-14;
+        assert!(close(&product(&a, &b), &a * &b));
+        assert!(close(&row_product(&a.columns(0, 3).clone_owned(), &a), a.transpose() * a.columns(0, 3)));
+        let mut sum = a.clone();
+        add_outer(&mut sum, &a.columns(0, 2).clone_owned(), &b.columns(0, 2).clone_owned());
+        assert!(close(&sum, &a + a.columns(0, 2) * b.columns(0, 2).transpose()));
+    }
 }
