@@ -38,7 +38,7 @@ fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f
     let second = &mut second[..height];
     let mut columns = a.chunks_exact(height).zip(x.iter().zip(y)).filter(|(_, (x, y))| **x != 0.0 || **y != 0.0);
     loop {
-        let next: [Option<(&[f64], (&f64, &f64))>; 4] = std::array::from_fn(|_| columns.next());
+        let next: [_; 4] = std::array::from_fn(|_| columns.next());
         if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
             let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
             for (i, (first, second)) in first.iter_mut().zip(second.iter_mut()).enumerate() {

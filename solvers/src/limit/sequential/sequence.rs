@@ -121,13 +121,13 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         {
             return Sequence::Converged(FlowState { factor, field, motion });
         }
-        // Half way where full steps have not settled, then a quarter.
-        let share = if step < 12 {
-            1.0
-        } else if step < 40 {
-            0.5
-        } else {
-            0.25
+        // Half way where full steps have not settled, then a quarter and ever less: vertices between which the programs
+        // jump then pull on one place.
+        let share = match step {
+            0..12 => 1.0,
+            12..40 => 0.5,
+            40..60 => 0.25,
+            _ => 0.25 * 0.95f64.powf((step - 60) as f64),
         };
         for (old, new) in reference.iter_mut().zip(&field) {
             (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
