@@ -58,8 +58,7 @@ fn least_of_wall_4() {
 }
 
 /// Gilbert, Casapulla & Ahmed (2006) print .640, .356, .264: walls 3 and 4 agree to their digits. On
-/// wall 1 the sequence settles at another limit state, .64094 (with smaller steps the factor wanders
-/// about .6400 without settling): shown, and asserted to lie between the least and the associated load.
+/// wall 1 the sequence settles at one of several limit states, .64009, by the field it starts from: shown, and asserted to lie between the least and the associated load.
 #[test]
 fn sequential_programs_give_the_published_factors() {
     for PublishedWall { number, wall: bricks, least, published: printed, .. } in [1, 3, 4].map(published_wall) {
