@@ -143,6 +143,17 @@ pub(crate) fn check_rest<const N: usize>(step: Result<Step<N>, UpdateFailure>) -
     }
 }
 
+/// What a step is given: finite numbers, and states of the behaviour's `size`.
+pub(crate) fn check_step(gradients: &[f64], old: &[f64], new: &[f64], size: usize) -> Result<(), UpdateFailure> {
+    if !gradients.iter().chain(old).all(|x| x.is_finite()) {
+        return Err(UpdateFailure::NotFinite);
+    }
+    if old.len() != size || new.len() != size {
+        return Err(UpdateFailure::WrongSize);
+    }
+    Ok(())
+}
+
 impl Behaviour {
     /// Opens and checks.
     pub fn load<const N: usize>(request: &Request, family: &Family) -> Result<Self, Wrong> {
@@ -200,10 +211,8 @@ impl Behaviour {
         new: &mut [f64],
     ) -> Result<Step<N>, UpdateFailure> {
         const LARGEST: usize = 6;
-        if !gradients.iter().chain(old).all(|x| x.is_finite()) {
-            return Err(UpdateFailure::NotFinite);
-        }
-        if N > LARGEST || old.len() != self.names.len() || new.len() != old.len() {
+        check_step(&gradients, old, new, self.names.len())?;
+        if N > LARGEST {
             return Err(UpdateFailure::WrongSize);
         }
         new.copy_from_slice(old);

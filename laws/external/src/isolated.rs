@@ -4,7 +4,7 @@
 //! a socket that is the other's standard input: what a library prints goes nowhere. First a line of JSON each way says which
 //! behaviour is meant and what its state is; then each step is a row of numbers each way.
 
-use crate::behaviour::{Behaviour, Family, INELASTIC, Request, Step, Wrong, message, names, wrong};
+use crate::behaviour::{Behaviour, Family, INELASTIC, Request, Step, Wrong, check_step, message, names, wrong};
 use crate::library::{allow, allowed};
 use crate::{joint, material};
 use serde::{Deserialize, Serialize};
@@ -172,12 +172,7 @@ impl Isolated {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<Step<N>, UpdateFailure> {
-        if !gradients.iter().chain(old).all(|x| x.is_finite()) {
-            return Err(UpdateFailure::NotFinite);
-        }
-        if old.len() != self.names.len() || new.len() != old.len() {
-            return Err(UpdateFailure::WrongSize);
-        }
+        check_step(&gradients, old, new, self.names.len())?;
         let mut process = self.process.lock().unwrap_or_else(PoisonError::into_inner);
         let running = process.as_mut().ok_or(UpdateFailure::Law("the process of the external behaviour has ended"))?;
         let row = bytes_of(gradients.iter().chain([&time_step]).chain(old));

@@ -1,6 +1,7 @@
 //! Groups of blocks that no chain of joints holds to the ground: a rigid motion of theirs costs nothing, so that loads with
 //! a resultant on them are not carried.
 
+use crate::linear::inner;
 use voussoir_core::limit::{LimitProblem, Velocity};
 use voussoir_core::model::{Wrenches, root};
 
@@ -23,21 +24,17 @@ pub fn loose_motion(problem: &LimitProblem, fixed: &Wrenches, varying: &Wrenches
         let own = floats.iter().filter(|&&group| roots[group] == of).map(|&group| scaled(&wrenches[group]));
         own.fold(([0.0; 3], 0.0), |(mut sum, mut size), w| {
             (0..3).for_each(|i| sum[i] += w[i]);
-            size += dot(w, w).sqrt();
+            size += inner(&w, &w).sqrt();
             (sum, size)
         })
     };
     floats.iter().filter(|&&group| roots[group] == group).find_map(|&of| {
         let ((w, most), (p, live)) = (sum(fixed, of), sum(varying, of));
-        let along = if dot(p, p).sqrt() > BALANCED * live { dot(w, p) / dot(p, p) } else { 0.0 };
+        let along = if inner(&p, &p).sqrt() > BALANCED * live { inner(&w, &p) / inner(&p, &p) } else { 0.0 };
         let left: [f64; 3] = std::array::from_fn(|i| w[i] - along * p[i]);
-        (dot(left, left).sqrt() > BALANCED * most).then(|| {
+        (inner(&left, &left).sqrt() > BALANCED * most).then(|| {
             let velocity = [left[0], left[1], left[2] / problem.length];
             (0..ground).map(|group| if roots[group] == of { velocity } else { [0.0; 3] }).collect()
         })
     })
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(&b).map(|(a, b)| a * b).sum()
 }

@@ -4,10 +4,9 @@ use super::by_case::no_access;
 use super::folder::{Aside, ResultFolder};
 use crate::results::CaseResult;
 use crate::study::Sweep;
+use crate::writers::results_parquet::{FILE, ParquetRows, TAG};
 use crate::writers::stream::CsvStream;
 use std::io;
-
-use crate::writers::results_parquet::{FILE, ParquetRows, TAG};
 
 const CSV: &str = "results.csv";
 

@@ -136,7 +136,7 @@ impl Method<'_> {
             }
             idle = if gap < 0.5 * least { 0 } else { idle + 1 };
             least = if idle == 0 { gap } else { least };
-            let error = self.error(&residuals);
+            let error = self.error(statics, &residuals);
             // Below the gap that is asked for, rounding of the motion is all that is left.
             let last = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);
             let done = error < SETTLED[0] || (gap < ROUNDING && error < SETTLED[1] && error > 0.5 * last);
@@ -171,8 +171,7 @@ impl Method<'_> {
     }
 
     /// How far the state itself is from an optimum: the gap in units of θ, what equilibrium misses and what joints resist.
-    fn error(&self, residuals: &Residuals) -> f64 {
-        let [statics, _] = residuals.greatest();
+    fn error(&self, statics: f64, residuals: &Residuals) -> f64 {
         let moved = residuals.flow.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
         let largest = self.state.multipliers.iter().flatten().fold(f64::MIN_POSITIVE, |m, z| m.max(*z));
         let gap = self.state.gap() / self.state.theta.abs().max(LEAST);

@@ -3,6 +3,7 @@
 
 use super::layout::{Forms, Trees};
 use super::small_lu::SmallLu;
+use crate::linear::inner;
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use std::cmp::Ordering;
 use voussoir_core::law::{ForceRow, StressBlock};
@@ -355,7 +356,7 @@ impl<'a> Program<'a> {
             basis.lu.solve_transposed(&mut point);
             // One step of refinement: λ is read off this point.
             for ((step, cost), column) in step.iter_mut().zip(&costs).zip(basis.matrix.chunks_exact(m)) {
-                *step = cost - column.iter().zip(&point).map(|(a, x)| a * x).sum::<f64>();
+                *step = cost - inner(column, &point);
             }
             basis.lu.solve_transposed(&mut step);
             point.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
@@ -396,7 +397,7 @@ impl<'a> Program<'a> {
             let origin = vec![0.0; m];
             self.scan(&origin, 0.0, |column, _| {
                 self.write(column, &mut gradient);
-                let size = row.iter().zip(&gradient).map(|(r, g)| r * g).sum::<f64>().abs();
+                let size = inner(&row, &gradient).abs();
                 if size > best.0 && !basis.columns.contains(&column) {
                     best = (size, Some(column));
                 }

@@ -1,5 +1,7 @@
 //! L U of small dense matrices, with partial pivoting: one factorisation for A x = b and for Aᵀ x = b, without allocation.
 
+use crate::linear::inner;
+
 /// Factors of one matrix at a time, all of the same size.
 #[derive(Debug, Clone)]
 pub struct SmallLu {
@@ -53,12 +55,12 @@ impl SmallLu {
         self.copy.copy_from_slice(b);
         for i in 0..n {
             let row = &self.values[i * n..(i + 1) * n];
-            let known: f64 = row[..i].iter().zip(b.iter()).map(|(l, x)| l * x).sum();
+            let known = inner(&row[..i], b);
             b[i] = self.copy[self.order[i]] - known;
         }
         for i in (0..n).rev() {
             let row = &self.values[i * n..(i + 1) * n];
-            let known: f64 = row[i + 1..].iter().zip(&b[i + 1..]).map(|(u, x)| u * x).sum();
+            let known = inner(&row[i + 1..], &b[i + 1..]);
             b[i] = (b[i] - known) / row[i];
         }
     }

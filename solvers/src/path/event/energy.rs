@@ -5,6 +5,7 @@
 //! the work of gravity on the elastic displacements vanishes, since their mean does.
 
 use crate::linear::dense::add_product;
+use crate::linear::inner;
 use crate::path::energy::WorkState;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Contact, PathProblem, PathState};
@@ -27,7 +28,7 @@ pub fn energies(problem: &PathProblem, state: &PathState) -> (WorkState, f64) {
             let flat: Vec<f64> = f.iter().flat_map(|f| [f.x, f.y]).collect();
             let mut u = vec![0.0; flat.len()];
             add_product(&mut u, flexibility, &flat);
-            stored += 0.5 * flat.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>();
+            stored += 0.5 * inner(&flat, &u);
             u
         }));
     }

@@ -176,15 +176,13 @@ impl ElasticChain {
                 (0..2).for_each(|i| gap[i] += load.gap[c][i]);
             }
             let force = [self.responses[e][(2 * p, j)], self.responses[e][(2 * p + 1, j)]];
-            for (i, row) in rows.iter().enumerate() {
-                left[(i, j)] = -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]);
-            }
+            left.column_mut(j).copy_from_slice(&left_of(&rows, force, gap));
         }
         let kept = self.rates.as_ref().map(|rates| {
             let gap = self.factors.all[e].joint.gap(e, p, &|e: usize| &rates.own[e]);
             let gap = [gap[0] + load.gap[c][0], gap[1] + load.gap[c][1]];
             let force = [rates.own[e][2 * p], rates.own[e][2 * p + 1]];
-            rows.map(|row| -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]))
+            left_of(&rows, force, gap)
         });
         self.respond(e, 2 * p, &left, kept.as_ref().map_or(&[], |kept| kept));
         if matches!(mode, ContactMode::Open | ContactMode::Corner(..)) {
@@ -385,6 +383,11 @@ impl ElasticChain {
         }
         x
     }
+}
+
+/// What a force and a gap leave of the two equations of a point.
+fn left_of(rows: &[[f64; 4]; 2], force: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
+    rows.map(|row| -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]))
 }
 
 /// A component of the resultant that redundants and load give.

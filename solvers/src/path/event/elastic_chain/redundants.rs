@@ -54,20 +54,13 @@ pub fn closing(
             }
         };
         if section.shares.iter().any(|s| *s != 0.0) {
-            for j in 0..=size {
-                let v = match j < size {
-                    true => to_origin * twist(factor, &responses[e], column(j)),
-                    false => to_origin * (constant + before),
-                };
-                for (k, share) in section.shares.iter().enumerate().filter(|s| *s.1 != 0.0) {
-                    for i in 0..3 {
-                        match j < size {
-                            true => matrix[(3 * k + i, j)] += share * v[i],
-                            false => right[3 * k + i] -= share * v[i],
-                        }
-                    }
-                }
+            let shares = || section.shares.iter().enumerate().filter(|s| *s.1 != 0.0);
+            for j in 0..size {
+                let v = to_origin * twist(factor, &responses[e], column(j));
+                shares().for_each(|(k, share)| (0..3).for_each(|i| matrix[(3 * k + i, j)] += share * v[i]));
             }
+            let constant = to_origin * (constant + before);
+            shares().for_each(|(k, share)| (0..3).for_each(|i| right[3 * k + i] -= share * constant[i]));
         }
         if let Some(w) = w {
             let at = n + 3 * w;
