@@ -21,7 +21,6 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("keys.md", "Every key"),
             ("verifying.md", "What a result is worth"),
             ("reports.md", "Reports"),
-            ("sensitivities.md", "Sensitivities"),
             ("glossary.md", "Glossary"),
         ],
     ),
