@@ -19,7 +19,7 @@ pub(super) fn of_variants<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<Cont
 }
 
 /// Every solver that takes the case; with those that follow a path, meshes half and twice as fine, elements of lower and
-/// higher order, steps of a half and of a quarter, and a looser tolerance. The finest mesh stands last.
+/// higher order, and steps of a half and of a quarter. The finest mesh stands last.
 pub(super) fn contestants(case: &Case) -> Vec<Contestant> {
     let mut found = Vec::new();
     for card in candidates(PluginKind::LimitSolver) {
@@ -42,7 +42,6 @@ pub(super) fn contestants(case: &Case) -> Vec<Contestant> {
 
 fn knobs(case: &Case, card: &Card) -> Vec<(&'static str, Sets)> {
     vec![
-        ("tolerance × 1000", vec![("solver.tolerance".into(), json!(1e3 * case.solver.settings.tolerance))]),
         ("half the step", smaller_steps(case, card, 0.5)),
         ("a quarter of the step", smaller_steps(case, card, 0.25)),
         ("order 1", other_order(case, 1)),

@@ -125,7 +125,7 @@ fn refer(bench: &mut Bench, problem: usize, (asked, named): (Option<&Reference>,
         (Some(Reference::Named(name)), _) => by_name(name),
         (None, Some(name)) => by_name(name),
         (None, None) => {
-            of(own().filter(|_| same).find(limit)).or_else(|| of(own().filter(|own| own.factor().is_some()).last()))
+            of(own().filter(|_| same).find(limit)).or_else(|| of(own().rfind(|own| own.factor().is_some())))
         }
     };
     let Some((factor, from)) = found else { return };

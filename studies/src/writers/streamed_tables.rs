@@ -11,7 +11,7 @@ const CSV: &str = "results.csv";
 /// A table while it is written.
 pub enum StreamedTable<W: Write> {
     /// results.csv.
-    Csv(CsvStream<W>),
+    Csv(Box<CsvStream<W>>),
     /// results.parquet.
     Parquet(Box<ParquetRows<W>>),
 }
@@ -36,7 +36,7 @@ impl<W: Write> StreamedTable<W> {
                 let rows = ParquetRows::new(out, sweep.expansion.number_keys(), false)?;
                 StreamedTable::Parquet(Box::new(rows))
             }
-            _ => StreamedTable::Csv(CsvStream::new(out, sweep.keys())?),
+            _ => StreamedTable::Csv(Box::new(CsvStream::new(out, sweep.keys())?)),
         })
     }
 
