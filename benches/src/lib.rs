@@ -3,6 +3,7 @@
 pub mod boundary;
 pub mod point;
 
+use voussoir::cli::processor_time;
 use voussoir::study::Case;
 use voussoir_tests::known::{PEERS_RING, peers_ring};
 use voussoir_tests::{Arch, Wall, assert_close, collapse_factor, compliant, elastic, first_case, friction};
@@ -35,21 +36,10 @@ pub fn wall(courses: usize, bricks: usize) -> Case {
 
 /// The least processor time of this thread \[s\] that a piece of work takes in so many runs; elapsed time where the system does not tell.
 pub fn least_processor_time<T>(runs: usize, work: impl Fn() -> T) -> f64 {
-    let mut least = f64::INFINITY;
-    for _ in 0..runs.max(1) {
-        let (start, clock) = (processor_time(), std::time::Instant::now());
+    let timed = |_| {
+        let start = processor_time();
         std::hint::black_box(work());
-        let spent = match (start, processor_time()) {
-            (Some(start), Some(end)) => end - start,
-            _ => clock.elapsed().as_secs_f64(),
-        };
-        least = least.min(spent);
-    }
-    least
-}
-
-/// Processor time of this thread so far \[s\], where Linux counts it.
-fn processor_time() -> Option<f64> {
-    let counted = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(counted.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
+        processor_time() - start
+    };
+    (0..runs.max(1)).map(timed).fold(f64::INFINITY, f64::min)
 }

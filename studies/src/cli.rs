@@ -1,6 +1,7 @@
 //! The command line: what can be asked for, and which command answers.
 
 use crate::commands;
+pub use crate::commands::clock::processor_time;
 use crate::commands::new::Template;
 use crate::commands::options::{Options, Shard};
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -68,6 +69,29 @@ enum Command {
         /// Cases checked side by side
         #[arg(long, default_value_t = 1)]
         jobs: usize,
+        /// Print nothing but errors
+        #[arg(long)]
+        quiet: bool,
+    },
+    /// Measure a study's variants side by side, or all solvers that can answer it: processor time and error
+    Bench {
+        /// Study file (TOML)
+        study: PathBuf,
+        /// Where bench.csv and figures go \[default: results/NAME/bench\]
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Override a key of the study
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Runs of each, of which the fastest counts
+        #[arg(long, default_value_t = 3)]
+        runs: usize,
+        /// What errors are measured from: a variant, a contestant, or a load factor that is known
+        #[arg(long, value_name = "NAME|NUMBER")]
+        reference: Option<String>,
+        /// Relative error within which a problem counts as answered in the performance profile
+        #[arg(long, default_value_t = 1e-3)]
+        within: f64,
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
@@ -169,6 +193,10 @@ impl Command {
             }
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
+            }
+            Command::Bench { study, out, set, runs, reference, within, quiet } => {
+                let arguments = commands::bench::BenchArguments { out, set, runs, reference, within, quiet };
+                commands::bench::measure(&study, &arguments)
             }
             Command::Serve { study, set, open } => commands::serve::serve(&study, &set, open),
             Command::New { what } => what.answer(),

@@ -37,6 +37,7 @@
 //! The crate names every crate that holds plug-ins, because one that no source names registers nothing.
 #![forbid(unsafe_code)]
 
+pub mod bench;
 pub mod cli;
 mod commands;
 pub mod config;

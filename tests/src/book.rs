@@ -20,8 +20,8 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("study_files.md", "Study files"),
             ("keys.md", "Every key"),
             ("verifying.md", "What a result is worth"),
+            ("accuracy.md", "Errors and run time"),
             ("reports.md", "Reports"),
-            ("sensitivities.md", "Sensitivities"),
             ("glossary.md", "Glossary"),
         ],
     ),
@@ -54,7 +54,12 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
     ),
     (
         "Changing it",
-        &[("architecture.md", "Architecture"), ("adding_a_law.md", "Adding a law"), ("conformance.md", "Conformance")],
+        &[
+            ("architecture.md", "Architecture"),
+            ("adding_a_law.md", "Adding a law"),
+            ("adding_plug_ins.md", "Adding anything else"),
+            ("conformance.md", "Conformance"),
+        ],
     ),
     (
         "Proof",

@@ -12,7 +12,7 @@ use super::products::proved;
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::limit::{LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, FillReaction, StageLoads, add_force};
+use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, add_force};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -79,6 +79,9 @@ pub struct NonAssociatedClaim<'a> {
 
 /// Tolerance of residuals that should be rounding.
 pub const ROUNDING: f64 = 1e-10;
+
+/// Share of the terms of a sum that its rounding may be: a few units in the last place.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// A lower bound by products may lose so much of the factor to rounding.
 const PRODUCTS: f64 = 1e-6;
@@ -330,13 +333,21 @@ impl Check<'_> {
     }
 
     fn powers(&self, motion: &[CentroidVelocity]) -> Powers {
-        let (mut fixed, mut varying) = (0.0, 0.0);
+        let (mut fixed, mut varying, mut turnover) = (0.0, 0.0, [0.0; 2]);
+        let lie = self.assembly.joints.iter().map(lie).fold(1.0, f64::max);
+        let centroids: Vec<Vec2> = (0..motion.len()).map(|body| self.assembly.inertia(body).centroid).collect();
         for body in self.free_bodies() {
-            let c = self.assembly.inertia(body).centroid;
+            let c = centroids[body];
             let [vx, vy, omega] = motion[body];
             let power = |w: &[f64; 3]| w[0] * vx + w[1] * vy + (w[2] - (c.x * w[1] - c.y * w[0])) * omega;
             fixed += power(&self.loads.fixed[body]);
             varying += power(&self.loads.varying[body]);
+            let terms = |w: &[f64; 3]| {
+                let turning = w[2].abs() + (c.x * w[1]).abs() + (c.y * w[0]).abs();
+                lie * ((w[0] * vx).abs() + (w[1] * vy).abs()) + turning * omega.abs()
+            };
+            turnover[0] += terms(&self.loads.fixed[body]);
+            turnover[1] += terms(&self.loads.varying[body]);
         }
         let jumps = jumps(self.assembly, motion);
         let largest = motion_size(&jumps, motion).max(f64::MIN_POSITIVE);
@@ -355,13 +366,15 @@ impl Check<'_> {
             let area = joint.height() * self.assembly.width;
             dissipated += support_integral(&polygon.vertices, jump) * area;
             let strongest = polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
-            uncertain += 8.0 * f64::EPSILON * strongest * area * jump.size();
+            uncertain += strongest * area * jump_rounding(joint, motion, &centroids);
         }
         for (reaction, bounds) in self.assembly.fill_reactions().iter().zip(&self.loads.fill_bounds) {
             let speed = self.fill_speed(reaction, motion);
             dissipated += fill_dissipation(*bounds, speed);
-            uncertain += 8.0 * f64::EPSILON * bounds[1] * speed.abs();
+            uncertain += ROUNDED * bounds[1] * speed.abs();
         }
+        let factor = if varying == 0.0 { 0.0 } else { ((dissipated - fixed) / varying).abs() };
+        uncertain += ROUNDED * (turnover[0] + factor * turnover[1]);
         Powers { fixed, varying, dissipated, uncertain, impossible: impossible / largest }
     }
 
@@ -554,10 +567,33 @@ struct Powers {
     varying: f64,
     /// Dissipated in the joints.
     dissipated: f64,
-    /// Rounding of the jumps times the strengths: what of `dissipated` means nothing.
+    /// What of the difference of these powers means nothing: rounding of the jumps times the strengths, and of the loads'
+    /// own powers.
     uncertain: f64,
     /// The greatest motion that no force of a law could do, relative to the greatest jump.
     impossible: f64,
+}
+
+/// The greatest coordinate of a joint's ends.
+fn reach(joint: &Joint) -> f64 {
+    joint.ends.iter().map(|end| end.amax()).fold(0.0, f64::max)
+}
+
+/// By how much rounding of coordinates turns a joint, in units of the rounding of one: along it blocks slide, and loads do
+/// work on that.
+fn lie(joint: &Joint) -> f64 {
+    1.0 + reach(joint) / joint.height()
+}
+
+/// By how much rounding may change the jump at a joint: that of the velocities of which it is the difference, and of the
+/// coordinates that say where the joint is and how it lies.
+fn jump_rounding(joint: &Joint, motion: &[CentroidVelocity], centroids: &[Vec2]) -> f64 {
+    let of = |body: usize| {
+        let [vx, vy, omega] = motion[body];
+        let arm = (joint.middle() - centroids[body]).norm() + joint.height() / 2.0;
+        (vx.hypot(vy) + omega.abs() * arm) * lie(joint) + omega.abs() * reach(joint)
+    };
+    ROUNDED * (of(joint.plus) + of(joint.minus))
 }
 
 /// Power that goes into fill whose point of action moves towards the ring at a speed: its greatest force resists motion

@@ -154,20 +154,28 @@ pub fn mechanism(
     unique: Option<bool>,
     flow: FlowRule,
 ) -> Option<Mechanism> {
-    mechanism_above(TOLERANCE, assembly, motion, unique, flow)
+    mechanism_of_deforming(Deforming { share: TOLERANCE, pressed: &[] }, assembly, motion, unique, flow)
 }
 
-/// Reads a mechanism off rates of bodies that also deform: jumps below `share` of the greatest are
-/// deformation.
-pub fn mechanism_above(
-    share: f64,
+/// Bodies that also deform while they move.
+#[derive(Debug, Clone, Copy)]
+pub struct Deforming<'a> {
+    /// Jumps below this share of the greatest are deformation.
+    pub share: f64,
+    /// By joint, whether its blocks press on each other: its toe yields where an end of it comes nearer.
+    pub pressed: &'a [bool],
+}
+
+/// Reads a mechanism off rates of bodies that also deform.
+pub fn mechanism_of_deforming(
+    deforming: Deforming,
     assembly: &Assembly,
     motion: &[CentroidVelocity],
     unique: Option<bool>,
     flow: FlowRule,
 ) -> Option<Mechanism> {
     let jumps = jumps(assembly, motion);
-    let tolerance = share * jumps.iter().map(Jump::size).fold(0.0, f64::max);
+    let tolerance = deforming.share * jumps.iter().map(Jump::size).fold(0.0, f64::max);
     if tolerance == 0.0 {
         return None;
     }
@@ -192,9 +200,11 @@ pub fn mechanism_above(
         if jump.slip.abs() > tolerance {
             found.sliding.push(Sliding { joint: index, between: between(), slip: jump.slip });
         }
-        // Where nothing can crush, an end that comes nearer was apart and closes again.
+        // Where nothing can crush, an end that comes nearer was apart and closes again, unless blocks press there
+        // and their toe gives way by less than the other end opens.
         let crushable = can_crush[law];
-        if !crushable && clear.iter().all(|c| c.abs() > tolerance) {
+        let gives_way = turns_about(clear).filter(|_| deforming.pressed.get(index) == Some(&true));
+        if !crushable && gives_way.is_none() && clear.iter().all(|c| c.abs() > tolerance) {
             continue;
         }
         let crushed = if crushable { crushed_share(clear, tolerance) } else { 0.0 };
@@ -204,7 +214,7 @@ pub fn mechanism_above(
         let rotation = jump.rotation(height);
         if (rotation * height).abs() > tolerance && crushed < 1.0 {
             let nearer = if crushable { clear[1] < clear[0] } else { clear[1].abs() < clear[0].abs() };
-            let touching = usize::from(nearer);
+            let touching = gives_way.filter(|_| !crushable).unwrap_or(usize::from(nearer));
             let toward = joint.ends[1 - touching] - joint.ends[touching];
             let point = joint.ends[touching] + toward * crushed;
             let side = assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]);
@@ -226,6 +236,8 @@ impl Mechanism {
             }
         }
         self.crushing.sort_by_key(|c| c.joint);
+        let crushes = |joint: usize| self.crushing.iter().any(|c| c.joint == joint && c.share > CRUSHES);
+        self.hinges.retain(|hinge| !crushes(hinge.joint));
         self.name_kind(assembly);
         self
     }
@@ -268,6 +280,16 @@ fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {
     rays
 }
 
+/// Where pressed blocks that deform turn: the end that comes nearer while the other opens, else the one that
+/// stays, if by far; `None` where the joint hardly turns for how much it closes or opens.
+fn turns_about(clear: [f64; 2]) -> Option<usize> {
+    let stays = usize::from(clear[1].abs() < clear[0].abs());
+    if clear[0] * clear[1] < 0.0 {
+        return Some(usize::from(clear[1] < clear[0]));
+    }
+    (clear[stays].abs() < CRUSHES * clear[1 - stays].abs()).then_some(stays)
+}
+
 /// Share of the height over which the clearance, linear along the joint, is negative.
 fn crushed_share(clear: [f64; 2], tolerance: f64) -> f64 {
     let [low, high] = if clear[0] < clear[1] { clear } else { [clear[1], clear[0]] };
@@ -300,4 +322,25 @@ fn count_merged(assembly: &Assembly, hinges: &[&Hinge]) -> usize {
         }
     }
     count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::turns_about;
+
+    #[test]
+    fn a_pressed_joint_turns_about_the_end_that_is_pressed() {
+        let cases = [
+            ([-0.1, 1.0], Some(0)), // the toe yields by a tenth of what the other end opens
+            ([-1.5, 1.0], Some(0)), // and by more
+            ([1.0, -0.2], Some(1)),
+            ([0.05, 1.0], Some(0)),  // it grows longer
+            ([-0.2, -1.0], Some(0)), // an open joint closes
+            ([-0.8, -1.0], None),    // the joint is pressed together all along
+            ([0.8, 1.0], None),
+        ];
+        for (clear, end) in cases {
+            assert_eq!(turns_about(clear), end, "{clear:?}");
+        }
+    }
 }

@@ -10,8 +10,8 @@ pub use self::limit::{
     Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump, motion_size,
 };
 pub use self::mechanism::{
-    CRUSHES, CentroidVelocity, Crushing, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps, mechanism,
-    mechanism_above, velocity_at,
+    CRUSHES, CentroidVelocity, Crushing, Deforming, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps,
+    mechanism, mechanism_of_deforming, velocity_at,
 };
 pub use self::path::{
     Displaced, PathChecker, TOLERANCES, Tolerance, flow_residual, leaves_forces, path_structure, power_residual,

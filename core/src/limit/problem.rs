@@ -11,6 +11,10 @@ use crate::model::geometry::{Vec2, bounding_box, cross, turned};
 use crate::model::{Assembly, Bond, StageLoads, Wrenches, add_force};
 use std::collections::BTreeMap;
 
+/// Shear over the loads that no equilibrium needs to exceed; divided by friction from which on nothing slides it is no more
+/// than the rounding of a normal force.
+const BOUNDED_SHEAR: f64 = 10.0;
+
 /// Forces carried by a joint: normal forces at its two ends, shear along it \[N\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointForce {
@@ -161,6 +165,22 @@ impl LimitProblem {
                 joint.strength = strength;
                 any = true;
             }
+        }
+        any.then_some(changed)
+    }
+
+    /// The same with shear bounded by ten times the loads where nothing bounds it: forces that hold each other in balance then
+    /// cannot be as great as they like, which matters where a law does bound them by friction too great to slide. `None`
+    /// where every joint has bounds.
+    pub fn with_bounded_shear(&self) -> Option<Self> {
+        let most = BOUNDED_SHEAR * (self.magnitude(&self.fixed) + self.magnitude(&self.varying));
+        let stuck = |joint: &&mut LimitJoint| joint.fill.is_none() && joint.strength.tangential() == Tangential::Stuck;
+        let mut changed = self.clone();
+        let mut any = false;
+        for joint in changed.joints.iter_mut().filter(stuck) {
+            let bound = |sense| ForceRow::associated(FacetMode::Sliding, [0.0, 0.0, sense], most);
+            joint.strength.rows.extend([1.0, -1.0].map(bound));
+            any = true;
         }
         any.then_some(changed)
     }

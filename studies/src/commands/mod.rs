@@ -1,8 +1,10 @@
 //! What each command prints, reads and writes, and its exit code. Nothing else in this crate prints.
 
+pub mod bench;
 mod by_case;
 mod case_lines;
 pub mod check;
+pub mod clock;
 mod codes;
 pub mod conform;
 pub mod explain;

@@ -119,7 +119,7 @@ impl Frame {
         for tick in self.x.ticks(10) {
             let x = self.x.at(tick);
             canvas.line([x, self.top], [x, self.bottom], GRID, 1.0);
-            let words = Canvas::number(tick);
+            let words = self.x.label(tick);
             let half = text_width(&words, 14.0) / 2.0;
             if x - half > last + 4.0 {
                 canvas.text([x, self.bottom + 19.0], &words, 14.0, "middle");
@@ -129,7 +129,7 @@ impl Frame {
         for tick in self.y.ticks(8) {
             let y = self.y.at(tick);
             canvas.line([self.left, y], [self.right, y], GRID, 1.0);
-            canvas.text([self.left - 8.0, y + 5.0], &Canvas::number(tick), 14.0, "end");
+            canvas.text([self.left - 8.0, y + 5.0], &self.y.label(tick), 14.0, "end");
         }
         canvas.line([self.left, self.top], [self.left, self.bottom], INK, 1.2);
         canvas.line([self.left, self.bottom], [self.right, self.bottom], INK, 1.2);

@@ -9,7 +9,8 @@ use super::svg_canvas::SvgCanvas;
 use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use crate::results::inelastic_state::CRUSHED;
 use crate::results::{CaseResult, DisplacementEntry, MotionEntry};
-use voussoir_core::certificate::{Mechanism, MechanismKind, jumps, largest_jump};
+use std::collections::BTreeSet;
+use voussoir_core::certificate::{Hinge, Mechanism, MechanismKind, jumps, largest_jump};
 use voussoir_core::elastic::Mesh;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
@@ -20,7 +21,10 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     let shown = Shown::of(assembly, result)?;
     let mechanism = &shown.mechanism;
     let (placements, scale) = displaced(assembly, &shown.motion)?;
-    let placements = if shown.stands { placements } else { close_hinges(assembly, mechanism, placements) };
+    let placements = match shown.stands {
+        true => placements,
+        false => close_hinges(assembly, &shown.held_together(assembly, result), placements),
+    };
     let moved: Vec<Vec<Vec2>> = assembly
         .bodies
         .iter()
@@ -74,6 +78,9 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     Some(canvas.finish(&legend, &caption))
 }
 
+/// A joint crushed over less than this share of its height still touches at its end, in a drawing.
+const TOE: f64 = 0.25;
+
 /// What is drawn: a mechanism as it begins to move, or a scene that stands with the hinges that are open.
 struct Shown {
     mechanism: Mechanism,
@@ -92,6 +99,30 @@ impl Shown {
         let further = moved_on(assembly, result, motion);
         let moved_on = further.is_some();
         Some(Shown { mechanism, motion: further.unwrap_or_else(|| motion.clone()), moved_on, stands: false })
+    }
+
+    /// The mechanism with a hinge at every joint of a path's end that is pressed, at the end that parts less: blocks
+    /// deform, and exaggerated that would show as gaps. Where more than toes crush all is deformation.
+    fn held_together(&self, assembly: &Assembly, result: &CaseResult) -> Mechanism {
+        let mut all = self.mechanism.clone();
+        if result.path.displacements.is_none() || all.crushing.iter().any(|crushing| crushing.share > TOE) {
+            return all;
+        }
+        let velocities: Vec<_> = self.motion.iter().map(|entry| entry.velocity).collect();
+        let parts = jumps(assembly, &velocities);
+        let known = |index: usize| {
+            let hinge = self.mechanism.hinges.iter().any(|hinge| hinge.joint == index);
+            hinge || self.mechanism.sliding.iter().any(|slide| slide.joint == index)
+        };
+        let pressed = result.proof.field.iter().flatten().filter(|at| at.force[0] > 0.0).map(|at| at.joint);
+        for index in pressed.filter(|index| !known(*index)).collect::<BTreeSet<_>>() {
+            let Some((joint, part)) = assembly.joints.get(index).zip(parts.get(index)) else { continue };
+            let nearer = usize::from(part.open[1].abs() < part.open[0].abs());
+            let between = [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
+            let (point, rotation) = (joint.ends[nearer].into(), part.rotation(joint.height()));
+            all.hinges.push(Hinge { joint: index, between, side: None, point, rotation });
+        }
+        all
     }
 
     /// The end of a path that stands with open hinges, such as after a settlement.

@@ -9,7 +9,7 @@ use super::svg_canvas::SvgCanvas;
 use super::symbols::{LOAD, OUTLINE, STONE, Symbol};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
-use std::fmt::Write;
+use svg::node::element::{Animate, Group};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Stage};
 
@@ -29,9 +29,9 @@ struct Place<'a> {
 }
 
 /// The places of an envelope one after another, of the vehicle and way it lists first; `None` where the results are no
-/// envelope's. What does not play shows the worst place.
+/// envelope's, or no animation is wanted. What does not play shows the worst place.
 pub fn moving_load_svg(study: &StudyOutput) -> Option<String> {
-    let places = places(study)?;
+    let places = (study.output.animation && study.output.figures.anything()).then(|| places(study))??;
     let further: Vec<Vec2> = places
         .iter()
         .flat_map(|place| {
@@ -39,31 +39,32 @@ pub fn moving_load_svg(study: &StudyOutput) -> Option<String> {
             place.moved.iter().flatten().copied().chain(road).collect::<Vec<_>>()
         })
         .collect();
-    let (low, high) = extent(places.first()?.assembly, &further);
+    let first = places.first()?;
+    let (low, high) = extent(first.assembly, &further);
     let worst = (0..places.len()).min_by(|a, b| rank(&places[*a]).total_cmp(&rank(&places[*b])))?;
-    let frames: Vec<String> = places.iter().map(|place| frame(study.name, place, [low, high])).collect();
-    let size = frames.first()?.split("viewBox=\"0 0 ").nth(1)?.split('"').next()?.to_string();
-    let (width, height) = size.split_once(' ')?;
-    let count = frames.len() as f64;
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {size}\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
-    for (index, frame) in frames.iter().enumerate() {
+    // The second line is each place's own.
+    let titles = [format!("{}: the load on its way", study.name), " ".into()];
+    let mut canvas = SvgCanvas::new(low, high, [46.0, 60.0, 46.0, 30.0], &titles);
+    surroundings(&mut canvas, first.assembly);
+    let count = places.len() as f64;
+    for (index, place) in places.iter().enumerate() {
         let (from, to) = (index as f64 / count, (index + 1) as f64 / count);
-        let shown = if index == worst { "visible" } else { "hidden" };
         let (values, times) = match index {
-            0 => ("visible;hidden", format!("0;{to:.6}")),
-            _ => ("hidden;visible;hidden", format!("0;{from:.6};{to:.6}")),
+            0 => ("visible;hidden", format!("0;{to:.4}")),
+            _ => ("hidden;visible;hidden", format!("0;{from:.4};{to:.4}")),
         };
-        let _ = write!(
-            text,
-            "<g visibility=\"{shown}\"><animate attributeName=\"visibility\" calcMode=\"discrete\" dur=\"{:.1}s\" \
-             repeatCount=\"indefinite\" values=\"{values}\" keyTimes=\"{times}\"/>\n{frame}\n</g>\n",
-            EACH * count
-        );
+        let playing = Animate::new()
+            .set("attributeName", "visibility")
+            .set("calcMode", "discrete")
+            .set("dur", format!("{:.1}s", EACH * count))
+            .set("repeatCount", "indefinite")
+            .set("values", values)
+            .set("keyTimes", times);
+        let shown = Group::new().set("visibility", if index == worst { "visible" } else { "hidden" }).add(playing);
+        canvas.group(shown, |canvas| frame(canvas, place));
     }
-    Some(text + "</svg>\n")
+    let caption = ["Displacements are exaggerated; at each place the mechanism has a scale of its own.".to_string()];
+    Some(canvas.finish::<Symbol>(&[], &caption))
 }
 
 /// The load factor at a place; infinite where there is none.
@@ -104,23 +105,23 @@ fn places<'a>(study: &StudyOutput<'a>) -> Option<Vec<Place<'a>>> {
     (!places.is_empty()).then_some(places)
 }
 
-/// The drawing of one place.
-fn frame(study: &str, place: &Place, [low, high]: [Vec2; 2]) -> String {
-    let factor = place.case.load_factor.map_or("none".into(), |factor| format_number(factor, 4));
-    let titles = [
-        format!("{study}: the load on its way"),
-        format!("x = {:.3} m, load factor at collapse: {factor}", place.value),
-    ];
-    let mut canvas = SvgCanvas::new(low, high, [46.0, 60.0, 46.0, 30.0], &titles);
-    let width = outline_width(&canvas, place.assembly);
-    let ground = place.assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
+/// What does not move: ground, supports, road.
+fn surroundings(canvas: &mut SvgCanvas, assembly: &Assembly) {
+    let ground = assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
     canvas.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
-    canvas.outlines(place.moved.iter().map(Vec::as_slice), STONE, OUTLINE, width, "");
-    supports(&mut canvas, place.assembly);
-    if let Some(bridge) = &place.assembly.bridge {
+    supports(canvas, assembly);
+    if let Some(bridge) = &assembly.bridge {
         let road: Vec<_> = bridge.road.iter().map(|point| canvas.at(*point)).collect();
         canvas.line(&road, "#555555", 1.2, "");
     }
+}
+
+/// The load at one place, and how the blocks move there.
+fn frame(canvas: &mut SvgCanvas, place: &Place) {
+    let factor = place.case.load_factor.map_or("none".into(), |factor| format_number(factor, 4));
+    canvas.last_title(&format!("x = {:.3} m, load factor at collapse: {factor}", place.value));
+    let width = outline_width(canvas, place.assembly);
+    canvas.outlines(place.moved.iter().map(Vec::as_slice), STONE, OUTLINE, width, "");
     for spread in &place.stage.spreads {
         for (from, to) in spread.on_road.iter().zip(&spread.below) {
             let ends = [canvas.at(*from), canvas.at(*to)];
@@ -131,6 +132,4 @@ fn frame(study: &str, place: &Place, [low, high]: [Vec2; 2]) -> String {
         let tip = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
         canvas.arrow([tip[0], tip[1] - 46.0], tip, LOAD, 2.0, 8.0);
     }
-    let caption = ["Displacements are exaggerated; at each place the mechanism has a scale of its own.".to_string()];
-    canvas.finish::<Symbol>(&[], &caption)
 }

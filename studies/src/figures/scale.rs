@@ -1,6 +1,6 @@
 //! The axis of a chart, straight or logarithmic: its range, its ticks, and places of values.
 
-use super::axes::{Axis, round_values};
+use super::axes::{Axis, Canvas, round_values};
 
 /// An axis of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,10 +31,18 @@ impl Scale {
         let [low, high] = self.axis.values;
         let (first, last) = (low.floor() as i32, high.ceil() as i32);
         let steps: &[f64] = if high - low > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-        let all = (first..=last).flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
+        // No more than a dozen decades have a line.
+        let every = 1 + (last - first) / 13;
+        let decades = (first..=last).filter(|power| power.rem_euclid(every) == 0);
+        let all = decades.flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
         let within: Vec<f64> = all.filter(|tick| (low - 1e-9..=high + 1e-9).contains(&tick.log10())).collect();
         // Less than a decade has hardly any of these.
         if within.len() < 3 { round_values(10f64.powf(low), 10f64.powf(high), count) } else { within }
+    }
+
+    /// A tick in figures; powers of ten far from 1 are written as such.
+    pub fn label(&self, tick: f64) -> String {
+        if self.log && !(1e-4..1e7).contains(&tick) { format!("{tick:e}") } else { Canvas::number(tick) }
     }
 
     /// `low high from to log` for scripts that read values off the drawing.
@@ -70,6 +78,9 @@ mod tests {
         assert_eq!(scale.ticks(5), [1.0, 10.0, 100.0, 1000.0]);
         assert!((Scale::new([1.0, 100.0], [0.0, 100.0], true).at(10.0) - 50.0).abs() < 1e-12);
         assert_eq!(Scale::new([1.0, 20.0], [0.0, 100.0], true).ticks(5), [1.0, 2.0, 5.0, 10.0, 20.0]);
+        let wide = Scale::new([1e-16, 1.0], [0.0, 100.0], true);
+        assert_eq!(wide.ticks(5).into_iter().map(|tick| wide.label(tick)).collect::<Vec<_>>()[..2], ["1e-16", "1e-14"]);
+        assert_eq!((wide.label(1e-2), scale.label(1000.0)), ("0.01".into(), "1000".into()));
         assert_eq!(range([0.0, 1.0, 10.0].into_iter(), true).map(|[low, _]| low > 0.8), Some(true));
     }
 }

@@ -3,7 +3,7 @@
 
 use super::text_layout::{Area, Spot, text_width, wrapped};
 use svg::Document;
-use svg::node::element::{Circle, Definitions, Line, Path, Pattern, Polygon, Rectangle, Text};
+use svg::node::element::{Circle, Definitions, Group, Line, Path, Pattern, Polygon, Rectangle, Text};
 use voussoir_core::model::geometry::Vec2;
 
 /// Size of ordinary text \[px\].
@@ -75,6 +75,20 @@ impl SvgCanvas {
             canvas.text([SIDE, 30.0 + 21.0 * i as f64], "start", TEXT + 2.0, line, INK, *bold);
         }
         canvas
+    }
+
+    /// The last line of the title, which was left empty.
+    pub fn last_title(&mut self, text: &str) {
+        self.text([SIDE, self.drawing.low[1] - 15.0], "start", TEXT + 2.0, text, INK, false);
+    }
+
+    /// Puts what is drawn meanwhile into a group.
+    pub fn group(&mut self, group: Group, draw: impl FnOnce(&mut SvgCanvas)) {
+        let outside = std::mem::replace(&mut self.document, Document::new());
+        draw(self);
+        let inside = std::mem::replace(&mut self.document, outside);
+        let children = inside.get_children().iter().cloned();
+        self.add(children.fold(group, Group::add));
     }
 
     /// Where a point \[m\] lies on the canvas.

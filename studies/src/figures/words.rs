@@ -3,27 +3,44 @@
 use super::format::unit_of_key;
 use voussoir_core::plugin::{Parameter, Shape, cards};
 
-/// What a card says of a key, by the key's last name; `None` where no card knows it.
+/// What a card says of a key, by its last name in the table that the name before it stands for, else by its last name
+/// alone; `None` where no card knows it.
 pub fn summary_of_key(key: &str) -> Option<&'static str> {
-    let names = key.rsplit('.').filter(|name| name.parse::<usize>().is_err());
-    let name = names.into_iter().next()?;
-    let known = cards().into_iter().find_map(|card| in_table(card.parameters, name));
-    known.or_else(|| in_table(crate::study::study_keys(), name))
+    let mut names = key.rsplit('.').filter(|name| name.parse::<usize>().is_err());
+    let name = names.next()?;
+    let tables = || cards().into_iter().map(|card| card.parameters).chain([crate::study::study_keys()]);
+    let own = names.next().and_then(|parent| tables().find_map(|table| below(table, parent, name)));
+    own.or_else(|| tables().find_map(|table| in_table(table, name)))
 }
 
-fn in_shape(shape: &Shape, name: &str) -> Option<&'static str> {
+/// What the first table in a shape gives.
+fn in_shape(shape: &Shape, of: &dyn Fn(&'static [Parameter]) -> Option<&'static str>) -> Option<&'static str> {
     match shape {
-        Shape::List { of, .. } | Shape::Map(of) => in_shape(of, name),
-        Shape::Table(parameters) => in_table(parameters, name),
-        Shape::Tagged { variants, .. } => variants.iter().find_map(|variant| in_table(variant.parameters, name)),
-        Shape::Either(shapes) => shapes.iter().find_map(|shape| in_shape(shape, name)),
+        Shape::List { of: inner, .. } | Shape::Map(inner) => in_shape(inner, of),
+        Shape::Table(parameters) => of(parameters),
+        Shape::Tagged { variants, .. } => variants.iter().find_map(|variant| of(variant.parameters)),
+        Shape::Either(shapes) => shapes.iter().find_map(|shape| in_shape(shape, of)),
         _ => None,
     }
 }
 
-fn in_table(parameters: &[Parameter], name: &str) -> Option<&'static str> {
-    let here = parameters.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.doc);
-    here.or_else(|| parameters.iter().find_map(|parameter| in_shape(&parameter.shape, name)))
+/// A key of this table.
+fn direct(table: &'static [Parameter], name: &str) -> Option<&'static str> {
+    table.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.doc)
+}
+
+/// A key of this table, or of one inside it.
+fn in_table(table: &'static [Parameter], name: &str) -> Option<&'static str> {
+    let inside = || table.iter().find_map(|parameter| in_shape(&parameter.shape, &|inner| in_table(inner, name)));
+    direct(table, name).or_else(inside)
+}
+
+/// A key of a table that stands under the key `parent`.
+fn below(table: &'static [Parameter], parent: &str, name: &str) -> Option<&'static str> {
+    table.iter().find_map(|parameter| {
+        let here = (parameter.name == parent).then(|| in_shape(&parameter.shape, &|inner| direct(inner, name)));
+        here.flatten().or_else(|| in_shape(&parameter.shape, &|inner| below(inner, parent, name)))
+    })
 }
 
 /// A key in words: `rise of the intrados`; its last name where no card knows more.
@@ -64,6 +81,9 @@ mod tests {
         assert_eq!(title_of_key("scene.profile.rise"), "rise of the intrados [m]");
         assert_eq!(title_of_key("scene.brick.1"), "length and height of a brick, number 2");
         assert_eq!(words_of_key("no.such.strange_key"), "strange key");
+        // Words of the table that a key stands in, not of another key of that name.
+        assert_eq!(words_of_key("vehicles.bogie.axles.0.length"), "length of the loaded area");
+        assert_eq!(words_of_key("scene.piers.0.width"), "width");
         assert!(!title_of_key("stages.1.loads.0.force.0").is_empty());
     }
 }

@@ -7,7 +7,8 @@ use crate::results::CaseResult;
 use crate::solve::Observer;
 use crate::solve::explain::explain_first;
 use crate::study::{Sweep, as_blocks};
-use crate::writers::stream::{CsvStream, StreamedResults, write_json};
+use crate::writers::stream::{StreamedResults, write_json};
+use crate::writers::streamed_tables::{StreamedTable, wanted};
 
 impl LoadedStudy for Sweep {
     fn name(&self) -> &str {
@@ -50,9 +51,10 @@ impl LoadedStudy for Sweep {
             only_cases: only,
         };
         let mut json = Vec::new();
-        let written = write_json(&mut json, &head, &mut cases.iter().cloned().map(Ok)).and_then(|()| csv(self, &cases));
+        let written =
+            write_json(&mut json, &head, &mut cases.iter().cloned().map(Ok)).and_then(|()| tables(self, &cases));
         let (files, remarks) = match written {
-            Ok(csv) => (vec![("results.json".into(), json), ("results.csv".into(), csv)], Vec::new()),
+            Ok(tables) => ([("results.json".into(), json)].into_iter().chain(tables).collect(), Vec::new()),
             Err(error) => (Vec::new(), vec![error.to_string()]),
         };
         RunOutput { files, table: String::new(), remarks, certified }
@@ -63,11 +65,12 @@ impl LoadedStudy for Sweep {
     }
 }
 
-/// The bytes of results.csv.
-fn csv(sweep: &Sweep, cases: &[CaseResult]) -> std::io::Result<Vec<u8>> {
-    let mut csv = CsvStream::new(Vec::new(), sweep.keys())?;
-    for case in cases {
-        csv.add(case)?;
-    }
-    csv.finish()
+/// The tables that are wanted, by name.
+fn tables(sweep: &Sweep, cases: &[CaseResult]) -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    let whole = |name: &'static str| {
+        let mut table = StreamedTable::new(name, Vec::new(), sweep)?;
+        cases.iter().try_for_each(|case| table.add(case))?;
+        Ok((name.to_string(), table.finish()?))
+    };
+    wanted(sweep).into_iter().map(whole).collect()
 }

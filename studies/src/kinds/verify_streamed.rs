@@ -10,7 +10,7 @@ use crate::solve::{Observer, side_by_side, solve_followed};
 use crate::study::Sweep;
 use crate::verify::case::verify_case;
 use crate::verify::repeat::differences;
-use crate::writers::stream::CsvStream;
+use crate::writers::streamed_tables::{StreamedTable, wanted};
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Map, Value as Json};
@@ -19,8 +19,8 @@ use voussoir_core::limit::Status;
 
 /// Cases that are checked at once, for each of those side by side.
 const AT_ONCE: usize = 16;
-/// The table beside results.json.
-const TABLE: &str = "results.csv";
+/// A table as it should be, against the one that is there.
+type Compared = StreamedTable<SameBytes<Box<dyn Read>>>;
 
 /// What a check has come to so far.
 struct Check<'a> {
@@ -31,28 +31,30 @@ struct Check<'a> {
     found: Verification,
     ids: Vec<usize>,
     missing: Vec<usize>,
-    /// results.csv as it should be, against the one that is there; `None` where there is none, or it is another one.
-    table: Option<CsvStream<SameBytes<Box<dyn Read>>>>,
+    /// Those that are wanted and there, until one turns out to be another.
+    tables: Vec<(&'static str, Compared)>,
 }
 
 /// Checks results case by case.
 pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
     observer.begins(sweep.count());
-    let table = (stored.file)(TABLE).map(|file| CsvStream::new(SameBytes::new(file), sweep.keys()));
+    let made = wanted(sweep).into_iter().map(String::from).collect();
     let mut check = Check {
         sweep,
         observer,
         jobs: stored.jobs,
         waiting: Vec::new(),
-        found: Verification { of: sweep.count(), how: HOW, made: vec![TABLE.into()], ..Verification::default() },
+        found: Verification { of: sweep.count(), how: HOW, made, ..Verification::default() },
         ids: Vec::new(),
         missing: Vec::new(),
-        table: None,
+        tables: Vec::new(),
     };
-    match table {
-        Some(Ok(table)) => check.table = Some(table),
-        Some(Err(_)) => check.found.files.push(not_made(TABLE)),
-        None => {}
+    for name in wanted(sweep) {
+        match (stored.file)(name).map(|file| StreamedTable::new(name, SameBytes::new(file), sweep)) {
+            Some(Ok(table)) => check.tables.push((name, table)),
+            Some(Err(_)) => check.found.files.push(not_made(name)),
+            None => {}
+        }
     }
     let mut unread = None;
     let beside = read_cases(stored.results()?, &mut |entry| {
@@ -84,9 +86,8 @@ impl Check<'_> {
             self.place(case.label.id);
             self.found.cases += 1;
             self.found.stalled += usize::from(case.status == Status::Stalled);
-            if self.table.as_mut().is_some_and(|table| table.add(case).is_err()) {
-                self.other_table();
-            }
+            let others = self.tables.extract_if(.., |(_, table)| table.add(case).is_err());
+            self.found.files.extend(others.map(|(name, _)| not_made(name)));
         }
         Ok(())
     }
@@ -102,12 +103,7 @@ impl Check<'_> {
         }
     }
 
-    fn other_table(&mut self) {
-        self.table = None;
-        self.found.files.push(not_made(TABLE));
-    }
-
-    /// What stands beside the cases, the cases that are missing, and the end of the table.
+    /// What stands beside the cases, the cases that are missing, and the ends of the tables.
     fn end(mut self, beside: &Map<String, Json>) -> Verification {
         let next = self.ids.last().map_or(0, |last| last + 1);
         self.missing.extend(next..self.sweep.count());
@@ -126,11 +122,11 @@ impl Check<'_> {
         let known = ["study", "version", "date", "only_cases"];
         let foreign = beside.keys().filter(|key| !known.contains(&key.as_str()));
         self.found.findings.extend(foreign.map(|key| (0, format!("{key} is not in what solving again gives"))));
-        if let Some(table) = self.table.take()
-            && !table.finish().is_ok_and(SameBytes::ended)
-        {
-            self.other_table();
-        }
+        let others = self.tables.into_iter().filter_map(|(name, table)| {
+            let same = table.finish().is_ok_and(SameBytes::ended);
+            (!same).then(|| not_made(name))
+        });
+        self.found.files.extend(others);
         self.found
     }
 }

@@ -4,6 +4,7 @@ use super::entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry,
 };
 use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
+use super::load_factor_error::LoadFactorError;
 use super::sensitivity::SensitivityEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
@@ -128,6 +129,9 @@ pub struct CaseResult {
     pub status: Status,
     /// The collapse factor.
     pub load_factor: Option<f64>,
+    /// On request: how far the factor may be off.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_factor_error: Option<LoadFactorError>,
     /// \[lower, upper\], from the field and from the mechanism.
     pub bounds: Option<[f64; 2]>,
     /// What a non-associated answer says besides.
@@ -183,6 +187,7 @@ impl CaseResult {
             label: CaseLabel::default(),
             status: Status::Stalled,
             load_factor: None,
+            load_factor_error: None,
             bounds: None,
             non_associated: NonAssociatedAnswer::default(),
             feasible_interval: None,

@@ -7,6 +7,7 @@ mod entries;
 pub mod inelastic_state;
 mod limit_points;
 pub mod load_entries;
+mod load_factor_error;
 pub mod path_state;
 mod rank;
 mod sensitivity;
@@ -20,6 +21,7 @@ pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, StateEntry, YieldedEntry,
 };
 pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
+pub use load_factor_error::LoadFactorError;
 pub use rank::load_rank;
 pub use sensitivity::SensitivityEntry;
 pub use study_results::StudyResults;

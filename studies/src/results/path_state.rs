@@ -2,7 +2,9 @@
 //! mechanism of a motion, and the bounds of residuals.
 
 use super::inelastic_state::with_crushing;
-use voussoir_core::certificate::{CentroidVelocity, Hinge, Mechanism, Side, mechanism, mechanism_above, tolerance};
+use voussoir_core::certificate::{
+    CentroidVelocity, Deforming, Hinge, Mechanism, Side, mechanism, mechanism_of_deforming, tolerance,
+};
 use voussoir_core::law::FlowRule;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -28,11 +30,26 @@ pub fn mechanism_of(
 ) -> Option<Mechanism> {
     let deforming = finite || !state.yielded.iter().all(Option::is_none);
     let found = if deforming {
-        mechanism_above(DEFORMATION, assembly, motion, unique, FlowRule::NonAssociated)
+        let pressed = pressed_joints(assembly, problem, state);
+        let deforming = Deforming { share: DEFORMATION, pressed: &pressed };
+        mechanism_of_deforming(deforming, assembly, motion, unique, FlowRule::NonAssociated)
     } else {
         mechanism(assembly, motion, unique, FlowRule::NonAssociated)
     };
     found.map(|found| with_crushing(found, assembly, problem, &state.yielded))
+}
+
+/// By joint, whether its blocks press on each other.
+fn pressed_joints(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<bool> {
+    let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0].abs()));
+    let mut pressed = vec![false; assembly.joints.len()];
+    // Contact points of the fill come after those of all joints.
+    for (contact, force) in problem.contacts.iter().zip(&state.force) {
+        if let Some(own) = pressed.get_mut(contact.joint) {
+            *own |= force[0] > 1e-9 * largest;
+        }
+    }
+    pressed
 }
 
 /// Displacement of a point that moves rigidly with a body: \[u_x, u_y, θ\] at `from`, u + R(θ) a − a

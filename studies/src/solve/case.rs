@@ -1,5 +1,6 @@
 //! Solving cases: one, or several side by side.
 
+use super::accuracy::{estimate, words};
 use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
@@ -70,6 +71,17 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
         match found.unwrap_or_else(|_| Err("a panic ended their search".into())) {
             Ok(found) => result.sensitivities = found,
             Err(why) => result.notes.push(format!("no sensitivities: {why}")),
+        }
+    }
+    if case.output_accuracy {
+        let found =
+            catch_unwind(AssertUnwindSafe(|| estimate(case, &result, &|input| solve_input(input, &mut Unobserved))));
+        match found.unwrap_or_else(|_| Err("a panic ended it".into())) {
+            Ok(found) => {
+                result.notes.push(words(&found));
+                result.load_factor_error = Some(found);
+            }
+            Err(why) => result.notes.push(format!("no estimate of the load factor's error: {why}")),
         }
     }
     if !case.output_curve {

@@ -3,18 +3,21 @@
 //! [`solve_case`] solves one case, [`solve_cases`] several side by side, [`explain`](explain::explain) says what
 //! would be solved. Checking a result without a solver is [`mod@crate::verify`].
 
+pub mod accuracy;
 pub mod auto;
 mod case;
 mod case_input;
 mod coarse_joints;
 pub mod explain;
 mod explain_bridge;
+pub mod knobs;
 mod limit;
 mod limit_result;
 mod observer;
 mod path;
 mod path_result;
 mod recorded;
+pub(crate) mod restated;
 mod safe_theorem;
 pub mod sensitivity;
 mod settlement;

@@ -4,8 +4,9 @@
 //! differences of the data the derivative follows by the optimal face, which is that of the answer: nothing is solved
 //! again.
 
+use super::restated::restated;
 use crate::results::{CaseResult, SensitivityEntry};
-use crate::study::{Case, NumberKind, NumericKey, Study, StudySource};
+use crate::study::{Case, NumberKind, NumericKey};
 use serde_json::json;
 use voussoir_core::limit::{JointForce, LimitProblem, Status, Velocity};
 use voussoir_core::model::geometry::turned;
@@ -43,13 +44,7 @@ fn problem_of(case: &Case) -> Result<LimitProblem, String> {
 
 /// The problem of the case with some numbers changed.
 fn assembled(case: &Case, changed: Option<(&str, f64)>) -> Result<LimitProblem, String> {
-    // Whatever its study does with many cases, this is one.
-    let run = ("kind".to_string(), json!("run"));
-    let sets: Vec<_> = [run].into_iter().chain(changed.map(|(key, value)| (key.to_string(), json!(value)))).collect();
-    let study = StudySource::of_value(&case.resolved, &sets).and_then(Study::from_source);
-    let study = study
-        .map_err(|wrong| wrong.mistakes().first().map_or_else(|| wrong.to_string(), |first| first.message.clone()))?;
-    problem_of(study.cases.first().ok_or("the study has no case")?)
+    problem_of(&restated(case, changed.map(|(key, value)| (key.to_string(), json!(value))))?)
 }
 
 /// Forces in the joints of the problem, from those of a result.

@@ -45,6 +45,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
             let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
             let states = resolved.get("output").and_then(|output| output["states"].as_u64());
             let differentiated = resolved.get("output").is_some_and(|output| output["sensitivities"] == true);
+            let output_accuracy = resolved.get("output").is_some_and(|output| output["accuracy"] == "estimate");
             let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
@@ -63,6 +64,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
                 output_curve,
                 output_states,
                 output_sensitivities,
+                output_accuracy,
                 notes,
                 brief,
                 resolved,

@@ -109,6 +109,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         "derivatives of the load factor of limit analysis with respect to every number, on both sides",
     ),
     key(
+        "accuracy",
+        Shape::Choice(&["estimate"]),
+        Need::Optional("errors are not estimated"),
+        "\"estimate\": how far the load factor may be off, by solving again on a mesh twice as fine and with half the step",
+    ),
+    key(
         "animation",
         Shape::Boolean,
         Need::Default("false"),

@@ -55,6 +55,8 @@ pub struct Case {
     pub output_states: usize,
     /// Numbers with respect to which the load factor is differentiated; none unless that is asked for.
     pub output_sensitivities: Vec<NumericKey>,
+    /// Whether the error of the load factor is estimated.
+    pub output_accuracy: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
     /// One of many made from another case, which has the weights that both have: its results leave them out.

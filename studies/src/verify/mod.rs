@@ -14,4 +14,4 @@ mod path;
 pub mod repeat;
 mod study;
 
-pub use study::{solve_again, verify, verify_against, verify_read};
+pub use study::{StoredCheck, solve_again, verify, verify_against};

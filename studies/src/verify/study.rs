@@ -33,34 +33,55 @@ pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer:
 /// no results.
 pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Result<Vec<(usize, String)>, String> {
     let results = StudyResults::deserialize(stored).map_err(|error| error.to_string())?;
-    verify_read(study, &results, stored, again)
+    let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
+    let mut check = StoredCheck::new(study, &results, again);
+    entries.iter().for_each(|entry| check.entry(entry));
+    check.findings()
 }
 
-/// The same where the results have been read from what is stored.
-pub fn verify_read(
-    study: &Study,
-    results: &StudyResults,
-    stored: &Json,
-    again: &[CaseResult],
-) -> Result<Vec<(usize, String)>, String> {
-    let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
-    let mut wrong = study_findings(study, results);
-    wrong.extend(id_findings(study, results, again));
-    let by_id: BTreeMap<usize, &CaseResult> = again.iter().map(|case| (case.label.id, case)).collect();
-    for (result, entry) in results.cases.iter().zip(entries) {
+/// A check of results that have been read, to which their entries are given one after another as they are stored: an
+/// entry may hold more than what is read of it.
+pub struct StoredCheck<'a> {
+    study: &'a Study,
+    results: &'a StudyResults,
+    again: BTreeMap<usize, &'a CaseResult>,
+    wrong: Vec<(usize, String)>,
+    seen: usize,
+}
+
+impl<'a> StoredCheck<'a> {
+    /// Of these results, against the same cases solved `again`.
+    pub fn new(study: &'a Study, results: &'a StudyResults, again: &'a [CaseResult]) -> Self {
+        let mut wrong = study_findings(study, results);
+        wrong.extend(id_findings(study, results, again));
+        let again = again.iter().map(|case| (case.label.id, case)).collect();
+        StoredCheck { study, results, again, wrong, seen: 0 }
+    }
+
+    /// The next entry of the list of cases.
+    pub fn entry(&mut self, entry: &Json) {
+        let Some(result) = self.results.cases.get(self.seen) else { return self.seen += 1 };
+        self.seen += 1;
         let id = result.label.id;
-        let Some(case) = study.case_of(&result.label) else {
-            wrong.push((id, "the study has no such case".into()));
-            continue;
+        let Some(case) = self.study.case_of(&result.label) else {
+            return self.wrong.push((id, "the study has no such case".into()));
         };
         let mut found = verify_case(&case, result);
-        if let Some(again) = by_id.get(&id) {
-            let again = serde_json::to_value(again).map_err(|error| error.to_string())?;
-            found.extend(differences(entry, &again));
+        match self.again.get(&id).map(serde_json::to_value) {
+            Some(Ok(again)) => found.extend(differences(entry, &again)),
+            Some(Err(why)) => found.push(why.to_string()),
+            None => {}
         }
-        wrong.extend(found.into_iter().map(|why| (id, why)));
+        self.wrong.extend(found.into_iter().map(|why| (id, why)));
     }
-    Ok(wrong)
+
+    /// What is wrong; an error where other entries were given than the results have.
+    pub fn findings(self) -> Result<Vec<(usize, String)>, String> {
+        match self.seen == self.results.cases.len() {
+            true => Ok(self.wrong),
+            false => Err("the list of cases has changed while it was read".into()),
+        }
+    }
 }
 
 /// What stands beside the cases.

@@ -23,9 +23,7 @@ impl Writer for Figures {
         let mut files: Vec<(String, String)> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
         files.extend(envelope_chart(study.name, study.results).map(|svg| ("figures/envelope.svg".to_string(), svg)));
-        if study.output.animation {
-            files.extend(moving_load_svg(study).map(|svg| ("figures/moving-load.svg".to_string(), svg)));
-        }
+        files.extend(moving_load_svg(study).map(|svg| ("figures/moving-load.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         let drawn: Vec<_> =
             study.results.cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id)).collect();
@@ -50,5 +48,5 @@ register!(
      number is swept, `figures/sweep.svg`. Displacements of mechanisms are exaggerated. Where `[output] curve = true`, the \
      load over its displacement is in `figures/case-NNNN-curve.svg`, and two to seven cases together in `figures/curve.svg` \
      (more cases: `figures/curve-N.svg` for the N-th variant), with the joints that become hinges or slide. With `[output] \
-     animation = true` an envelope has `figures/moving-load.svg`, which a browser plays.\n"
+     animation = true` an envelope has `figures/moving-load.svg`, which a browser plays; the report shows it too.\n"
 );

@@ -22,6 +22,7 @@ pub mod results_json;
 pub mod results_parquet;
 pub mod sensitivities_csv;
 pub mod stream;
+pub mod streamed_tables;
 mod study_output;
 pub mod table;
 pub mod vtu;

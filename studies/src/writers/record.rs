@@ -69,14 +69,18 @@ fn gather(rows: &mut Vec<(String, String)>, key: &str, before: &str, value: &Jso
                 let path = format!("{key}.{name}");
                 // Names of materials and joints are the user's.
                 let named = ["materials", "joints", "vehicles"].contains(&key);
-                let before = if named { format!("{name}: ") } else { before.to_string() };
+                // Fill, haunching and mesh have keys of the same names as the scene.
+                let part = key == "scene" && inner.is_object() && name != "profile";
+                let before = if named || part { format!("{name}: ") } else { before.to_string() };
                 gather(rows, &path, &before, inner);
             }
         }
         Json::Array(items) if items.iter().any(Json::is_object) => {
             for (index, item) in items.iter().enumerate() {
                 let name = item["name"].as_str().or(item["kind"].as_str()).map(str::to_string);
-                let before = format!("{before}{}: ", name.unwrap_or_else(|| (index + 1).to_string()));
+                let list = key.rsplit('.').next().unwrap_or_default();
+                let one = list.strip_suffix('s').unwrap_or(list);
+                let before = format!("{before}{}: ", name.unwrap_or_else(|| format!("{one} {}", index + 1)));
                 gather(rows, &format!("{key}.{index}"), &before, item);
             }
         }
@@ -94,7 +98,9 @@ fn gather(rows: &mut Vec<(String, String)>, key: &str, before: &str, value: &Jso
 
 /// A key in words; the word that chooses a plug-in says of what.
 fn words(key: &str) -> String {
-    match key.rsplit('.').next().unwrap_or_default() {
+    let mut names = key.rsplit('.');
+    match names.next().unwrap_or_default() {
+        "law" if key.starts_with("scene.") => names.next().unwrap_or("law").into(),
         "law" => "law".into(),
         "scene" => "scene".into(),
         "solver" => "solver".into(),

@@ -13,6 +13,7 @@ use crate::figures::format::{
     case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, kind_words,
     open_bounds, parameters_text, status_meaning, status_word, unit_load,
 };
+use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
 use crate::figures::words::title_of_key;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
@@ -59,6 +60,13 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += &format!(
             "<h2>Envelope</h2>\n<figure>{chart}<figcaption>The load factor at every place that was tried; only the worst \
              is drawn below.</figcaption></figure>\n"
+        );
+    }
+    if let Some(svg) = moving_load_svg(study) {
+        body += &format!(
+            "<h2>The load on its way</h2>\n<figure>{}<figcaption>Place by place, with the mechanism there; printed, the worst \
+             place.</figcaption></figure>\n",
+            page::own_ids(&svg, "moving-load")
         );
     }
     body += &comparison(study);

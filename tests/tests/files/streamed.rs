@@ -13,16 +13,23 @@ type Forgery<'f> = &'f dyn Fn(&mut Value);
 /// Five cases as if they were too many to be held.
 fn sweep() -> Sweep {
     let arch = Arch { voussoirs: 7, ends: "jointed", ..Arch::default() };
-    let text = arch.study() + "[sweep]\n\"scene.width\" = { list = [1.0, 2.0, 3.0, 4.0, 5.0] }\n";
+    let text = arch.study()
+        + "[output]\nwriters = [\"results_json\", \"results_csv\", \"results_parquet\"]\n[sweep]\n\"scene.width\" = { list = [1.0, 2.0, 3.0, 4.0, 5.0] }\n";
     let source = StudySource::parse(&text, "test.toml", &[]).expect("a study");
     StudyFile::read(source).and_then(StudyFile::sweep).expect("a sweep")
 }
 
 /// What `verify` says of results.json and results.csv.
 fn findings(sweep: &Sweep, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
+    findings_of(sweep, results, table, None)
+}
+
+/// What `verify` says of results.json and both tables.
+fn findings_of(sweep: &Sweep, results: &[u8], table: Option<&[u8]>, parquet: Option<&[u8]>) -> Vec<String> {
     let bytes = |name: &str| match name {
         "results.json" => Some(results.to_vec()),
         "results.csv" => table.map(<[u8]>::to_vec),
+        "results.parquet" => parquet.map(<[u8]>::to_vec),
         _ => None,
     };
     let file = |name: &str| Some(Box::new(Cursor::new(bytes(name)?)) as Box<dyn Read>);
@@ -79,6 +86,16 @@ fn what_is_forged_is_found() {
         [text.replacen("four_hinge", "five_hinge", 1), text.clone() + "5\n", text[..=last].into(), String::new()]
     {
         assert_eq!(findings(&sweep, results, Some(forged.as_bytes())), ["results.csv is not what results.json gives"]);
+    }
+    // The table with types: as it is written, then with a byte of it changed here and there, longer and shorter.
+    let parquet = bytes("results.parquet");
+    assert_eq!(findings_of(&sweep, results, Some(table), Some(parquet)), Vec::<String>::new());
+    let cut = parquet.len() - 1;
+    let changed = |at: usize| parquet.iter().enumerate().map(|(i, byte)| byte ^ u8::from(i == at)).collect();
+    let places = (0..parquet.len()).step_by(parquet.len() / 12).chain([cut]).map(changed);
+    for forged in places.chain([parquet[..cut].to_vec(), [&parquet[..], b"P"].concat(), Vec::new()]) {
+        let found = findings_of(&sweep, results, Some(table), Some(&forged));
+        assert_eq!(found, ["results.parquet is not what results.json gives"]);
     }
     // Files that were cut short.
     assert!(!findings(&sweep, &results[..results.len() / 2], None).is_empty());

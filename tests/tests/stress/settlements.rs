@@ -149,6 +149,8 @@ fn family(range: std::ops::Range<usize>) -> [usize; 5] {
     let mut total = [0; 5];
     for k in range {
         let (stratum, class) = classify(k);
+        // Each as it comes: what a run that is ended has done is known.
+        println!("case {k}: {class:?}");
         let column = match &class {
             Class::Agrees => None,
             Class::Wrong(_) => Some(1),

@@ -58,6 +58,7 @@ fn runs(k: usize) -> Runs {
             let result = answered(&text);
             out.names_bifurcation |= named(&result);
             let run = format!("{name}{disguise}");
+            println!("scene {k} {run}: {:?} {:?}", result.status, result.load_factor);
             match result.load_factor {
                 Some(factor) if result.status != Status::Stalled => out.factors.push((run, factor)),
                 _ => out.stalled.push((run, format!("{:?} {:?}", result.status, result.notes))),

@@ -240,6 +240,19 @@ fn a_spread_conserves_force_and_moment() {
     assert!(off.notes.iter().any(|note| note.contains("off the bridge")), "{:?}", off.notes);
 }
 
+/// An even load along the road carries as a patch of that length and weight; what lies beyond the bridge counts nothing.
+#[test]
+fn a_lane_is_a_long_patch() {
+    let patch = changed(RESISTING, "length = 0.3", "length = 1.2");
+    let vehicle = "{ kind = \"vehicle\", vehicle = \"patch\", at = 0.75 }";
+    let lane = |from: f64, pressure: f64| {
+        let lane = format!("{{ kind = \"lane\", from = {from:?}, to = 1.35, pressure = {pressure:?} }}");
+        changed(RESISTING, vehicle, &lane)
+    };
+    assert_close(collapse_factor(&lane(0.15, 1000.0 / (1.2 * 3.0))), collapse_factor(&patch), 1e-10);
+    assert_close(collapse_factor(&lane(-50.0, 1000.0)), collapse_factor(&lane(-1.0, 1000.0)), 1e-10);
+}
+
 /// The width of the spread is that of the depth under the centre, and the pressure is even.
 #[test]
 fn the_spread_is_as_wide_as_the_depth_under_its_centre_says() {

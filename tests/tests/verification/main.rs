@@ -1,5 +1,6 @@
 //! Somebody else's answers: closed forms, published numbers, independent programs.
 
+mod accuracy;
 mod arch;
 mod bridge;
 mod bridge_envelope;

@@ -175,6 +175,10 @@ impl Method<'_> {
         let moved = residuals.flow.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
         let largest = self.state.multipliers.iter().flatten().fold(f64::MIN_POSITIVE, |m, z| m.max(*z));
         let gap = self.state.gap() / self.state.theta.abs().max(LEAST);
+        // Without a motion on which the load does work nothing is proved.
+        if residuals.power.abs() > OFF {
+            return f64::INFINITY;
+        }
         // NaN counts as greatest.
         [statics, moved / largest].into_iter().fold(gap, |m, v| if v <= m { m } else { v })
     }

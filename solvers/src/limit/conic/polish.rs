@@ -11,6 +11,7 @@
 use super::interior_point::Pair;
 use super::system::System;
 use crate::limit::equilibrium::Row;
+use crate::linear::inner;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Regularisation; the second is tried where the first leaves no pivot.
@@ -19,6 +20,13 @@ const DELTAS: [f64; 2] = [1e-8, 1e-6];
 const SETTLED: f64 = 1e-13;
 /// Error from which rows are exchanged one by one.
 const UNSETTLED: f64 = 1e-11;
+/// Factor in its unit below which a gap is not compared with it.
+const LEAST: f64 = 1e-3;
+/// Shares that residuals keep from step to step from which, and up to which, steps are summed up.
+const SLOW: f64 = 0.5;
+const STILL: f64 = 1.0 - 1e-6;
+/// Steps without gain after which nothing is hoped for: one of three may be such a sum that went too far.
+const IDLE: usize = 4;
 /// Rows exchanged one by one, at the most.
 const EXCHANGES: usize = 40;
 
@@ -127,7 +135,17 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
             best = exchanged;
         }
     }
-    Some(Polished { factorisations, iterations, ..best })
+    let error = best.error.max(gap(system, &best.pair) / best.pair.x[system.theta].abs().max(LEAST));
+    Some(Polished { factorisations, iterations, error, ..best })
+}
+
+/// What violations of equilibrium and of the rows that carry may change of θ: each times its multiplier.
+fn gap(system: &System, pair: &Pair) -> f64 {
+    let equations = system.equations.iter().zip(&system.right).zip(&pair.equations);
+    let left = equations.map(|((row, right), q)| (q * (dot(row, &pair.x) - right)).abs());
+    let rows = (0..system.rows.len()).map(|row| (pair.rows[row] * value(system, Item::Row(row), &pair.x)).abs());
+    let blocks = (0..system.blocks.len()).map(|k| (pair.blocks[k] * system.blocks[k].value(&pair.x)).abs());
+    left.chain(rows).chain(blocks).sum()
 }
 
 fn greatest_multiplier(pair: &Pair) -> f64 {
@@ -237,10 +255,12 @@ impl Newton<'_> {
         let (mut factorisations, mut iterations) = (0, 0);
         let mut best = (f64::INFINITY, self.pair.clone());
         let mut without_gain = 0;
+        let (mut last, mut further) = (f64::INFINITY, false);
         loop {
             let gradients = self.gradients();
             let residual = self.residual(&gradients);
             let error = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+            let size = inner(&residual, &residual).sqrt();
             if error < 0.5 * best.0 {
                 without_gain = 0;
             } else {
@@ -249,15 +269,23 @@ impl Newton<'_> {
             if error < best.0 {
                 best = (error, self.pair.clone());
             }
-            if error <= 1e-16 || iterations >= 40 || without_gain >= 3 {
+            if error <= 1e-16 || iterations >= 40 || without_gain >= IDLE {
                 break;
             }
             if factorised.is_none() || (curved && iterations < 12) {
                 factorised = Some(SparseLdlt::new(residual.len(), n, &self.matrix(&gradients))?);
                 factorisations += 1;
             }
-            let step = factorised.as_ref()?.solve(&residual)?;
+            let mut step = factorised.as_ref()?.solve(&residual)?;
             iterations += 1;
+            // Along a direction as soft as the regularisation residuals fall by the same share in every step: the sum of all
+            // such steps is known from two.
+            let share = size / last;
+            further = !further && (SLOW..STILL).contains(&share);
+            if further {
+                step.iter_mut().for_each(|s| *s /= 1.0 - share);
+            }
+            last = if further { f64::INFINITY } else { size };
             (0..n).for_each(|j| self.pair.x[j] -= step[j]);
             (0..e).for_each(|i| self.pair.equations[i] -= step[n + i]);
             for (k, item) in self.active.iter().enumerate() {

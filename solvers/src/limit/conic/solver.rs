@@ -11,13 +11,16 @@ use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{
-    Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer,
+    Counters, JointForce, LimitAnswer, LimitJoint, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer,
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
 /// Error of the polished optimality system, in scaled units, up to which an answer counts.
 const POLISHED: f64 = 1e-9;
+
+/// Error from which another unit of force may give a better answer.
+const EXACT: f64 = 1e-11;
 
 /// Error of a field by blocks, as a share of the loads, up to which it is taken.
 const FIELD: f64 = 1e-11;
@@ -82,11 +85,40 @@ enum Optimum {
     Found {
         pair: Pair,
         unique: bool,
+        /// Of the polished optimality system.
+        error: f64,
     },
     /// An interior point in equilibrium whose polish did not settle.
     Unsettled(Pair),
     Unbounded,
     Failed(String),
+}
+
+/// What the program of a greatest factor has come to in the units of force that were tried.
+#[derive(Default)]
+struct Tried {
+    /// The polished answer of least error.
+    best: Option<(f64, Greatest)>,
+    /// The first that the polish did not settle.
+    unsettled: Option<Greatest>,
+    /// Why there was none.
+    failed: String,
+}
+
+impl Tried {
+    /// Whether another unit may give more.
+    fn may_gain(&self) -> bool {
+        self.best.as_ref().map_or(self.unsettled.is_some(), |best| best.0 > EXACT)
+    }
+}
+
+/// The least strength of a joint that has one \[N\]; infinite where none has.
+fn weakest(problem: &LimitProblem) -> f64 {
+    let of = |joint: &LimitJoint| {
+        let rows = joint.strength.rows.iter().map(|row| row.bound).filter(|bound| *bound > 0.0);
+        rows.chain(joint.strength.block.map(|block| block.total)).fold(f64::INFINITY, f64::min)
+    };
+    problem.joints.iter().filter(|joint| joint.fill.is_none()).map(of).fold(f64::INFINITY, f64::min)
 }
 
 impl ConicEngine<'_> {
@@ -111,7 +143,7 @@ impl ConicEngine<'_> {
                         None => Optimum::Failed("equilibrium could not be restored".into()),
                     };
                 }
-                Optimum::Found { pair: polished.pair, unique: polished.unique }
+                Optimum::Found { pair: polished.pair, unique: polished.unique, error: polished.error }
             }
             Word::Unbounded(iterations) => {
                 self.count("interior_point_iterations", iterations);
@@ -172,6 +204,26 @@ impl ConicEngine<'_> {
             force,
         };
         (System::new(self.problem, &loads), unit)
+    }
+
+    /// Solves the program in a unit of force \[N\].
+    fn attempt(&mut self, (fixed, varying, cap): (&Wrenches, &Wrenches, f64), force: f64, tried: &mut Tried) {
+        let (system, unit) = self.program(fixed, varying, cap, force);
+        match self.optimum(&system) {
+            Optimum::Found { pair, unique, error } => {
+                if tried.best.as_ref().is_none_or(|best| error < best.0) {
+                    tried.best = Some((error, self.finite(&system, &pair, unique, varying, unit)));
+                }
+            }
+            Optimum::Unsettled(pair) => {
+                tried.unsettled.get_or_insert_with(|| self.finite(&system, &pair, false, varying, unit));
+            }
+            Optimum::Unbounded if tried.failed.is_empty() => {
+                tried.failed = "no ray confirms that the factor has no bound".into();
+            }
+            Optimum::Failed(why) if tried.failed.is_empty() => tried.failed = why,
+            Optimum::Unbounded | Optimum::Failed(_) => {}
+        }
     }
 
     /// A finite optimum, capped or a collapse.
@@ -240,45 +292,29 @@ impl Engine for ConicEngine<'_> {
         if let Some(solution) = solution.filter(|solution| self.holds(fixed, varying, solution)) {
             return greatest_of(solution, varying);
         }
+        let mut tried = Tried::default();
         let force = force_scale(self.problem, fixed, varying);
-        let (system, unit) = self.program(fixed, varying, cap, force);
-        let optimum = self.optimum(&system);
-        if let Optimum::Found { pair, unique } = optimum {
-            return self.finite(&system, &pair, unique, varying, unit);
-        }
+        let question = (fixed, varying, cap);
+        self.attempt(question, force, &mut tried);
         // Where strengths alone hold the load, as in flat arches of strong stone, it is as great as they are: in the unit of
         // the loads that stand it would be too great for the interior point.
-        let weakest = system.blocks.iter().map(|block| block.strength.total * force).fold(f64::INFINITY, f64::min);
-        if weakest.is_finite() && weakest > force * STRONG {
-            let (system, unit) = self.program(fixed, varying, cap, weakest);
-            if let Optimum::Found { pair, unique } = self.optimum(&system) {
-                return self.finite(&system, &pair, unique, varying, unit);
-            }
+        let weakest = weakest(self.problem);
+        if tried.best.is_none() && weakest.is_finite() && weakest > force * STRONG {
+            self.attempt(question, weakest, &mut tried);
         }
         // Another unit leads the interior point another way: to a point from which the polish may settle.
-        if let Optimum::Unsettled(_) = optimum {
-            for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
-                let (system, unit) = self.program(fixed, varying, cap, force * scale);
-                if let Optimum::Found { pair, unique } = self.optimum(&system) {
-                    return self.finite(&system, &pair, unique, varying, unit);
-                }
+        for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
+            if tried.may_gain() {
+                self.attempt(question, force * scale, &mut tried);
             }
         }
-        let failed = match optimum {
-            // A pair without a polish is believed only where no ray says otherwise.
-            Optimum::Unsettled(pair) => {
-                return match self.share(varying, None, false) {
-                    Equilibrium::Field(ray) => Greatest::Unbounded(ray),
-                    _ => self.finite(&system, &pair, false, varying, unit),
-                };
-            }
-            Optimum::Failed(why) => why,
-            Optimum::Found { .. } | Optimum::Unbounded => String::from("no ray confirms that the factor has no bound"),
-        };
-        // Not bounded, or not solved: a ray settles it.
+        if let Some((_, greatest)) = tried.best {
+            return greatest;
+        }
+        // Not bounded, or not solved: a ray settles it. A pair without a polish is believed only where none says otherwise.
         match self.share(varying, None, false) {
             Equilibrium::Field(ray) => Greatest::Unbounded(ray),
-            _ => Greatest::Failed(failed),
+            _ => tried.unsettled.unwrap_or(Greatest::Failed(tried.failed)),
         }
     }
 

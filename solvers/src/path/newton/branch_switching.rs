@@ -63,7 +63,7 @@ pub(super) fn branch_beyond_fold(
 ) -> Result<Option<(Tangent, Vec<ContactMode>)>, String> {
     let rate = &following.branch.tangent;
     let own = yielding_branch(tracer, rate, share);
-    if !tracer.system.finite() || !tracer.system.piecewise_linear() {
+    if !tracer.system.rules.oriented || !tracer.system.piecewise_linear() {
         return Ok(own);
     }
     if let Some((other, modes)) = &own

@@ -4,7 +4,7 @@
 //! its length, a point slips against its friction. A step so short that this is below the tolerance of the law
 //! would still pass for converged, and the next, as short, again: the path would creep along what is no solution
 //! of its rates. Such a step is refused: what it violates grows in proportion to it. Where a guess of the modes at
-//! a corner is followed by no step, the rates are searched to their end instead ([`limit_point_test`](super::limit_point_test)).
+//! a corner is followed by no step, or steps creep, the rates are searched to their end instead ([`limit_point_test`](super::limit_point_test)).
 
 use super::control::Control;
 use super::measure::{increment_along, increment_between};
@@ -12,6 +12,9 @@ use super::state::{State, Tangent};
 use super::system::{StepFailure, StepSystem};
 use super::tangent::{gap_rounding, tangent_at};
 use super::tracer::Tracer;
+
+/// Why a step that creeps is refused.
+pub(super) const CREEPS: &str = "a contact point slips against its friction, however short the step";
 
 /// Violations below this share of the greatest force are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -79,8 +82,7 @@ pub(super) fn refuse_creeping(
         None => Ok((next, iterations)),
         Some(c) => {
             tracer.system.count("creeping_steps", 1);
-            let why = "a contact point slips against its friction, however short the step";
-            Err(StepFailure { why: why.into(), cycling: vec![c] })
+            Err(StepFailure { why: CREEPS.into(), cycling: vec![c] })
         }
     }
 }

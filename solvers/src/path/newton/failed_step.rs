@@ -1,8 +1,9 @@
 //! What follows a step that did not converge: another branch, a shorter step, or the end of the path.
 
 use super::branch_switching::{branch_beyond_fold, yielding_blocks_branch};
+use super::creeping::CREEPS;
 use super::following::{Branch, Following};
-use super::limit_point::{not_followed, rising_branch};
+use super::limit_point::{above_all, falling_branch, not_followed, rising_branch};
 use super::peak::note_peak;
 use super::state::Tangent;
 use super::system::StepFailure;
@@ -19,6 +20,9 @@ pub(super) const CORNER: f64 = 1e-7;
 
 /// Length, relative to the first step, below which there is no step.
 pub(super) const SHORTEST: f64 = 1e-10;
+
+/// Steps after which the rates are searched again where steps are not followed.
+const AGAIN: u64 = 20;
 
 /// What follows.
 pub(super) enum AfterFailure {
@@ -56,7 +60,7 @@ pub(super) fn after_failure(
         return blocks_yield(tracer, following, failure, other);
     }
     // With finite displacements points that open together turn the path as sharply as slip does.
-    let at_corner = tracer.system.finite() && short;
+    let at_corner = tracer.system.rules.oriented && short;
     if (slip <= 1e-9 * plan.share.max(first / plan.per_tangent) || at_corner) && fresh {
         following.tried.branch = steps;
         if let Some(after) = corner(tracer, following, plan, failure) {
@@ -89,7 +93,8 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
             if following.slope > 0.0 {
                 note_peak(tracer, tangent, direction);
             }
-            return Some(AfterFailure::Ended(end_path(tracer, Status::Collapse, why)));
+            let status = if tracer.system.finite() { Status::Collapse } else { Status::LimitPoint };
+            return Some(AfterFailure::Ended(end_path(tracer, status, why)));
         }
     };
     let (mut tangent, mut modes) = found?;
@@ -106,7 +111,14 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
     if falls && !tracer.strategy.passes_limit_points() {
         return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
     }
-    if falls && arrives {
+    let grew = following.slope > 0.0;
+    if falls
+        && grew
+        && let Some(falling) = falling_branch(tracer, &state, direction)
+    {
+        (tangent, modes) = falling;
+    }
+    if falls && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
         note_peak(tracer, &tangent, direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))
@@ -116,9 +128,11 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
 /// growing λ by a search, or the end.
 fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failure: &StepFailure) -> AfterFailure {
     let steps = tracer.system.counters.get("steps").copied();
-    let (first, linear, no_peak) = (following.limits.first, following.limits.linear, tracer.limit.peak.is_none());
-    let guessed = linear && following.branch.modes.is_some() && no_peak && length < UNFOLLOWED * first;
-    let unsearched = guessed && following.tried.search != steps;
+    let (first, linear) = (following.limits.first, following.limits.linear);
+    let no_peak = above_all(tracer, following.direction);
+    let doubtful = following.branch.modes.is_some() || failure.why == CREEPS;
+    let guessed = linear && doubtful && no_peak && length < UNFOLLOWED * first;
+    let unsearched = guessed && following.tried.search.is_none_or(|last| steps.is_some_and(|now| now >= last + AGAIN));
     if length >= SHORTEST * first && !unsearched {
         return AfterFailure::CutBack(length);
     }
@@ -131,8 +145,18 @@ fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failur
         // Not decided: shorter steps may still find the way.
         return AfterFailure::CutBack(length);
     }
+    if no_peak
+        && following.slope > 0.0
+        && let Some((tangent, modes)) = falling_branch(tracer, &state, following.direction)
+    {
+        note_peak(tracer, &tangent, following.direction);
+        return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
+    }
     AfterFailure::Ended(if linear && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &failure.why);
+        if no_peak && tracer.limit.peak.is_some() {
+            note_peak(tracer, &following.branch.tangent, following.direction);
+        }
         end_path(tracer, Status::LimitPoint, why)
     } else {
         no_step(tracer, failure, &following.branch.tangent, following.direction)

@@ -4,7 +4,7 @@
 use super::control::Control;
 use super::failed_step::{AfterFailure, CORNER, SHORTEST, after_failure, searched_here};
 use super::following::{Branch, Following, per_tangent};
-use super::limit_point::{not_followed, rising_branch};
+use super::limit_point::{above_all, falling_branch, not_followed, rising_branch};
 use super::measure::{increment_between, motion_size};
 use super::orientation::Orientation;
 use super::peak::{Bracketed, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
@@ -58,7 +58,7 @@ struct Step {
 /// How a step ends.
 enum StepEnd {
     Accepted(Step),
-    /// The load passes a peak in it, with small displacements the first.
+    /// The load passes a peak in it, where the flow is associated and displacements are small the first.
     Peak(Step),
     /// It ends in an unstable equilibrium, from which other branches lead.
     Unstable(Step),
@@ -81,7 +81,7 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
             return outcome;
         }
     }
-    out_of_steps(tracer, following.limits.linear)
+    out_of_steps(tracer, following.direction, following.limits.linear)
 }
 
 /// Goes on from the end of a step; how the load step ends with it, if so.
@@ -183,7 +183,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let orientation = Orientation::along(&mut tracer.system, &trial.next, &tangent, direction);
     let first = tracer.limit.peak.is_none();
     let grew = following.slope > 0.0 && following.orientation.as_ref().is_none_or(|before| !before.still);
-    let peak = falls && !softens && !trial.reaches && (first || (finite && grew));
+    let peak = falls && !softens && !trial.reaches && (first || ((finite || tracer.system.may_dip()) && grew));
     let step = Step { trial, tangent, accuracy, falls, folded, orientation, plan: *plan };
     if let Some(other) = off_the_branch(tracer, following, plan, &step) {
         return other;
@@ -345,6 +345,16 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
         following.switch_to(&mut tracer.system, &here, Branch { tangent, modes: Some(modes) });
         return None;
     }
+    if let Some((tangent, modes)) = falling_branch(tracer, &state, following.direction) {
+        let peak = peak_at(tracer, state.clone(), &tangent);
+        note_proven_peak(tracer, peak, following.direction);
+        if !commit(tracer, state) {
+            return Some(LoadStepEnding::Ended);
+        }
+        let here = tracer.state.clone();
+        following.switch_to(&mut tracer.system, &here, Branch { tangent, modes: Some(modes) });
+        return None;
+    }
     if snaps(tracer, following) && step.orientation.is_some() {
         return snap(tracer, following, state, &beyond);
     }
@@ -438,8 +448,8 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
 }
 
 /// The end of a path that takes too many steps.
-fn out_of_steps(tracer: &mut Tracer, linear: bool) -> LoadStepEnding {
-    if linear && tracer.limit.peak.is_some() && tracer.limit.unproven.is_none() {
+fn out_of_steps(tracer: &mut Tracer, direction: f64, linear: bool) -> LoadStepEnding {
+    if linear && !above_all(tracer, direction) && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
         return end_path(tracer, Status::LimitPoint, why);
     }

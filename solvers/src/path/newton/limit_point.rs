@@ -1,15 +1,18 @@
 //! Whether a limit point is one: no rate with a growing factor leaves it.
 
 use super::control::Control;
-use super::limit_point_test::{LimitPointTest, limit_point_test};
+use super::limit_point_test::{LimitPointTest, falling_rate, limit_point_test};
 use super::measure::{increment_along, increment_between, motion_size};
 use super::state::{State, Tangent};
 use super::step::solve_step;
-use super::tracer::{Tracer, moved};
+use super::tracer::{Peak, Tracer, moved};
 use crate::contact::mode::ContactMode;
 
 /// Branches with growing λ that are taken at one factor.
 const MOST_BRANCHES: u32 = 3;
+
+/// Share of a factor by which one above it differs from it.
+const SAME: f64 = 1e-9;
 
 /// Motions, in units, of the steps that are tried along a rate.
 const SHARES: [f64; 3] = [1e-1, 1e-3, 1e-5];
@@ -63,6 +66,26 @@ pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) 
     tracer.limit.unproven = None;
     tracer.system.count("branches", 1);
     Some(other)
+}
+
+/// The branch with falling λ from a limit point at which none rises, where friction is not associated: Newton's method
+/// may find elastic unloading, which is always a solution and never the way on. `None` where a first step shows the way.
+pub(super) fn falling_branch(
+    tracer: &mut Tracer,
+    state: &State,
+    direction: f64,
+) -> Option<(Tangent, Vec<ContactMode>)> {
+    let proven = tracer.limit.unproven.is_none() && tracer.limit.proven == Some(state.factor);
+    if !tracer.system.may_dip() || !proven || !tracer.strategy.passes_limit_points() {
+        return None;
+    }
+    falling_rate(&mut tracer.system, state, direction)
+}
+
+/// Whether the load is above all limit points of the path so far, or there is none.
+pub(super) fn above_all(tracer: &Tracer, direction: f64) -> bool {
+    let above = |peak: &Peak| (tracer.state.factor - peak.factor) * direction > SAME * peak.factor.abs();
+    tracer.limit.peak.as_ref().is_none_or(|peak| tracer.system.may_dip() && above(peak))
 }
 
 /// Whether some step, however short, follows a rate with growing λ from a state.

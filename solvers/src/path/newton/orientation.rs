@@ -39,8 +39,9 @@ pub(super) struct Orientation {
 impl Orientation {
     /// Of a state at which the factor goes on in its sense, or not. `None` where its second-order work is not known.
     pub fn of(system: &mut StepSystem, state: &State, rises: bool) -> Option<Self> {
-        let work = system.finite().then(|| second_order_work(system, state)).flatten()?;
-        let unstable = rises && work.turned > 0 && work.nearest > SINGULAR && is_unstable_at_rest(system, state);
+        let work = system.rules.oriented.then(|| second_order_work(system, state)).flatten()?;
+        let negative = rises && work.turned > 0 && work.nearest > SINGULAR;
+        let unstable = negative && system.finite() && is_unstable_at_rest(system, state);
         Some(Orientation { work, rises, still: false, unstable })
     }
 

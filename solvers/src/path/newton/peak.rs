@@ -113,7 +113,8 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
 pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     let (factor, displacement) = (peak.factor, peak.state.displacement);
     let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
-    if tracer.system.finite() {
+    tracer.system.rules.oriented |= tracer.system.may_dip();
+    if tracer.system.rules.oriented {
         let load_step = tracer.load_step;
         let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by * b.abs();
         let same = |known: &&ProvenPeak| {
@@ -146,7 +147,7 @@ pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -
 
 /// Keeps the present state as a peak, with the rate just beyond it: with small displacements only the first.
 pub(super) fn note_peak(tracer: &mut Tracer, beyond: &Tangent, direction: f64) {
-    if tracer.system.finite() || tracer.limit.peak.is_none() {
+    if tracer.system.rules.oriented || tracer.limit.peak.is_none() {
         let motion = scaled_motion(tracer, &tracer.state, beyond);
         let peak = Peak { factor: tracer.state.factor, state: tracer.record.state.clone(), motion };
         note_proven_peak(tracer, peak, direction);

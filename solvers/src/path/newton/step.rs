@@ -24,7 +24,7 @@ pub(super) fn solve_step(
         return found;
     }
     if system.finite() || !system.piecewise_linear() {
-        if system.line_search
+        if system.rules.line_search
             && let Ok(found) = line_searched(system, start, guess.clone(), control)
         {
             return Ok(found);
@@ -36,7 +36,7 @@ pub(super) fn solve_step(
         Control::Factor(factor) if system.monotone() || start.force.iter().flatten().all(|r| *r == 0.0) => {
             by_homotopy(system, start, &State { factor: *factor, ..guess }, control)
         }
-        _ if system.line_search && !system.monotone() => line_searched(system, start, guess, control).or(found),
+        _ if system.rules.line_search && !system.monotone() => line_searched(system, start, guess, control).or(found),
         _ => found,
     }
 }

@@ -55,10 +55,18 @@ pub(super) struct StepSystem<'a> {
     pub counters: Counters,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
-    /// Whether Newton's method may resort to a line search.
-    pub line_search: bool,
+    pub rules: Rules,
     /// Viscous wrenches of a descent to a stable equilibrium.
     pub damping: Option<Damping>,
+}
+
+/// How steps are found and judged.
+pub(super) struct Rules {
+    /// Whether Newton's method may resort to a line search.
+    pub line_search: bool,
+    /// Whether the branch on which a state lies is told by its second-order work: with finite displacements, and where
+    /// friction is not associated beyond a limit point.
+    pub oriented: bool,
 }
 
 /// Viscous wrenches on the free bodies: rate × the motion since, both in units.
@@ -118,7 +126,7 @@ impl<'a> StepSystem<'a> {
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
-            line_search: true,
+            rules: Rules { line_search: true, oriented: finite },
             damping: None,
             blocks: undeformed(problem)?,
             cache,
@@ -162,6 +170,11 @@ impl<'a> StepSystem<'a> {
     /// Whether the flow of all facets of joints is associated.
     pub fn joints_flow_associated(&self) -> bool {
         self.laws.polygons.iter().all(|law| !law.is_non_associated())
+    }
+
+    /// Whether the load may have several limit points with small displacements: friction that is not associated.
+    pub fn may_dip(&self) -> bool {
+        !self.finite() && self.piecewise_linear() && !self.joints_flow_associated()
     }
 
     /// Whether with small displacements every law is one of facets.

@@ -9,6 +9,11 @@ use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use std::rc::Rc;
 
+/// Greatest force, in units, up to which the path begins from nothing: tolerances are then those of the forces themselves,
+/// and the least that they are.
+const FROM_NOTHING: f64 = 1e-3;
+const LEAST: f64 = 1e-12;
+
 pub(super) fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);
     if share == 1.0 {
@@ -51,7 +56,9 @@ pub(super) fn gap_rounding(system: &StepSystem, state: &State) -> f64 {
 /// associated the nearest mode need not be the return.
 pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (Vec<ContactMode>, bool) {
     system.count("law_evaluations", state.gap.len() as u64);
-    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let unit = system.units().force;
+    let largest = if largest > FROM_NOTHING * unit { largest.max(unit) } else { largest.max(LEAST * unit) };
     let rounding = gap_rounding(system, state);
     let mut holds = true;
     let modes = (0..state.gap.len())

@@ -1,7 +1,7 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
 use super::control::Control;
-use super::limit_point::test_limit_point;
+use super::limit_point::{above_all, test_limit_point};
 use super::measure::{increment_along, motion_size};
 use super::mechanism::find_mechanism;
 use super::peak::scaled_motion;
@@ -193,22 +193,33 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     }
 }
 
-/// With small displacements: after the first limit point.
+/// With small displacements: after the first limit point; where the load may dip, by default only where it has fallen to
+/// half, and not while it is above all limit points.
 fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let Some(peak) = &tracer.limit.peak else { return false };
-    let beyond = (displacement - peak.state.displacement).abs();
+    let (dips, above) = (tracer.system.may_dip(), above_all(tracer, direction));
+    let last = tracer.limit.proven_peaks.last().filter(|_| dips);
+    let beyond = (displacement - last.map_or(peak.state.displacement, |last| last.displacement)).abs();
     let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
     let done = match (stop_displacement, stop_factor) {
         (None, None) => {
-            let grown = (peak.factor - load_step.start).abs();
-            (peak.factor - factor) * direction >= 0.1 * grown || beyond >= peak.state.displacement.abs()
+            let (fallen, grown) = ((peak.factor - factor) * direction, (peak.factor - load_step.start).abs());
+            match dips {
+                true => fallen >= 0.5 * grown || (!above && beyond >= FURTHEST * tracer.system.units().length),
+                false => fallen >= 0.1 * grown || beyond >= peak.state.displacement.abs(),
+            }
         }
         (most, least) => {
             most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
-    if done {
+    if done && above {
+        let why = format!(
+            "still rising: {beyond} m after the last limit point the load is above all of them, at factor {factor}"
+        );
+        end_path(tracer, Status::Stalled, why);
+    } else if done {
         end_path(tracer, Status::LimitPoint, String::new());
     }
     done

@@ -93,7 +93,7 @@ pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPla
         Control::Strategy { strategy, previous: following.previous, length: following.length }
     };
     let (small, passes) = (!tracer.system.finite(), tracer.strategy.passes_limit_points());
-    tracer.system.line_search = small || following.length >= SEARCHED * following.limits.first;
+    tracer.system.rules.line_search = small || following.length >= SEARCHED * following.limits.first;
     let mut found = solve_step(&mut tracer.system, &tracer.state, guess.clone(), &control);
     // Where flow is not associated the homotopy may step over a limit point: the last resort.
     let last = passes && following.length < LAST * following.limits.first;

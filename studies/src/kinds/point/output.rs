@@ -160,15 +160,26 @@ pub fn csv(results: &[PointResult]) -> String {
 fn name(result: &PointResult) -> String {
     let mut parameters: Vec<(String, String)> = Vec::new();
     for (key, value) in &result.parameters {
-        let (short, value) = (key.rsplit('.').next().unwrap_or(key), format_value(value));
+        let (short, value) = parameter(key, value);
         match parameters.iter_mut().find(|(_, other)| *other == value) {
             Some((names, _)) => *names += &format!(", {short}"),
-            None => parameters.push((short.to_string(), value)),
+            None => parameters.push((short, value)),
         }
     }
     let parameters = parameters.into_iter().map(|(names, value)| format!("{names} = {value}"));
     let words: Vec<String> = result.variant.iter().cloned().chain(parameters).collect();
     if words.is_empty() { result.law.clone() } else { words.join(", ") }
+}
+
+/// A swept key and its value as the legend says them: components of stress in MPa.
+fn parameter(key: &str, value: &Json) -> (String, String) {
+    let mut names = key.rsplit('.');
+    let (short, of) = (names.next().unwrap_or(key), names.next());
+    match (of, value.as_f64()) {
+        (Some("stress"), Some(stress)) => (format!("σ_{short}"), format!("{} MPa", stress / 1e6)),
+        (Some("strain"), _) => (format!("ε_{short}"), format_value(value)),
+        _ => (short.into(), format_value(value)),
+    }
 }
 
 fn column(result: &PointResult, word: &str) -> Option<usize> {

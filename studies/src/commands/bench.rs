@@ -1,0 +1,106 @@
+//! `voussoir bench`.
+
+use super::clock::processor_time;
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::files;
+use super::folder::ResultFolder;
+use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
+use crate::config::diagnostic::suggest;
+use crate::figures::format::{format_short, status_word};
+use crate::kinds::CasesOf;
+use crate::study::Study;
+use std::path::{Path, PathBuf};
+
+/// What is asked of `bench`.
+pub struct BenchArguments {
+    /// Where results go.
+    pub out: Option<PathBuf>,
+    /// Overrides of the study's keys.
+    pub set: Vec<String>,
+    /// Runs of each contestant.
+    pub runs: usize,
+    /// A contestant's name, or a load factor.
+    pub reference: Option<String>,
+    /// Error within which a problem counts as answered in the performance profile.
+    pub within: f64,
+    /// Print nothing but errors.
+    pub quiet: bool,
+}
+
+/// Measures a study's variants, or all solvers that can answer it, side by side.
+pub fn measure(path: &Path, arguments: &BenchArguments) -> u8 {
+    measured(path, arguments).unwrap_or_else(|code| code)
+}
+
+fn measured(path: &Path, arguments: &BenchArguments) -> Result<u8, u8> {
+    let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
+    let Some(CasesOf::Held(study)) = loaded.cases() else {
+        eprintln!("{}: only studies with a scene and at most 5000 cases can be benched", path.display());
+        return Err(WRONG_INPUT);
+    };
+    let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;
+    let told = |own: &Measurement| {
+        if !arguments.quiet {
+            let status = status_word(own.result.status);
+            eprintln!("{}: {status}, {} s", own.contestant, format_short(own.seconds, 3));
+        }
+        true
+    };
+    let options = BenchOptions { runs: arguments.runs, reference, clock: &processor_time, told: &told };
+    let found = bench(study, &options);
+    let dir = arguments.out.clone().unwrap_or_else(|| Path::new("results").join(&study.name).join("bench"));
+    let folder = ResultFolder::open(&dir)?;
+    folder.write("bench.csv", csv(&found).as_bytes())?;
+    let charts = [
+        ("bench.svg", error_chart(&study.name, &found)),
+        ("profile.svg", profile_chart(&study.name, &found, arguments.within)),
+    ];
+    for (name, chart) in charts {
+        match chart {
+            Some(chart) => folder.write(name, chart.as_bytes())?,
+            None => folder.remove(name),
+        }
+    }
+    if !arguments.quiet {
+        say(table(&found).trim_end());
+        references(&found).into_iter().for_each(say);
+        say(format!("bench.csv and figures in {}", dir.display()));
+    }
+    let answered =
+        |problem: usize| found.measurements.iter().any(|own| own.problem == problem && own.factor().is_some());
+    Ok(if (0..found.problems.len()).all(answered) { FINE } else { NOT_PROVEN })
+}
+
+/// A load factor, or the name of somebody who takes part.
+fn reference(study: &Study, word: &str) -> Result<Reference, u8> {
+    if let Some(factor) = word.parse().ok().filter(|factor: &f64| factor.is_finite()) {
+        return Ok(Reference::Known(factor));
+    }
+    let names = names(study);
+    if names.iter().any(|name| name == word) {
+        return Ok(Reference::Named(word.into()));
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let what = if study.outline.variants.is_empty() { "contestants" } else { "variants" };
+    eprintln!(
+        "--reference {word}: neither a load factor nor one of those that take part; {}",
+        suggest(word, &names, what)
+    );
+    Err(WRONG_INPUT)
+}
+
+/// Where errors are measured from, once for all problems that share it.
+fn references(found: &Bench) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for problem in &found.problems {
+        let line = match &problem.reference {
+            Some((_, from)) if from == "given" => "errors from the load factor that was given".to_string(),
+            Some((_, from)) => format!("errors from {from}"),
+            None => "no errors: nothing to measure them from".into(),
+        };
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    lines
+}

@@ -1,0 +1,80 @@
+//! What makes an answer more or less accurate: keys of a case's mesh and of the steps of its path, as overrides.
+
+use crate::config::default_table::default_table;
+use crate::study::Case;
+use serde_json::{Map, Value as Json, json};
+use voussoir_core::elastic::MeshDensity;
+use voussoir_core::plugin::{Capability, Card, PluginKind, card};
+
+/// Dotted keys with the values they take.
+pub type Sets = Vec<(String, Json)>;
+
+/// The strategy of a path that names none.
+const STRATEGY: &str = "arc_length";
+/// `largest_step` with finite displacements where none is given, as its card says.
+const LARGEST_FINITE_STEP: f64 = 0.002;
+
+/// The mesh of the scene, where it can have one: its table, elements filled in.
+fn mesh_of(case: &Case) -> Option<Map<String, Json>> {
+    let scene = &case.resolved["scene"];
+    card(PluginKind::Scene, scene["scene"].as_str()?).filter(|card| has(card, "mesh"))?;
+    let mut mesh = scene["mesh"].as_object().cloned().unwrap_or_default();
+    let usual = MeshDensity::default();
+    mesh.entry("elements").or_insert(json!(usual.elements));
+    mesh.entry("order").or_insert(json!(usual.order));
+    Some(mesh)
+}
+
+/// So many times the elements along and across each block, one at least; nothing where the scene has no mesh.
+pub fn finer_mesh(case: &Case, times: f64) -> Sets {
+    let finer = mesh_of(case).map(|mut mesh| {
+        let own = |i: usize| mesh["elements"][i].as_f64().unwrap_or(1.0);
+        let elements = [0, 1].map(|i| (times * own(i)).round().max(1.0) as u64);
+        mesh.insert("elements".into(), json!(elements));
+        ("scene.mesh".to_string(), Json::Object(mesh))
+    });
+    finer.into_iter().collect()
+}
+
+/// Elements of another order; nothing where the scene has no mesh or has this order already.
+pub fn other_order(case: &Case, order: u64) -> Sets {
+    let other = mesh_of(case).filter(|mesh| mesh["order"] != json!(order)).map(|mut mesh| {
+        mesh.insert("order".into(), json!(order));
+        ("scene.mesh".to_string(), Json::Object(mesh))
+    });
+    other.into_iter().collect()
+}
+
+/// This share of the steps of every strategy that has any; nothing where the solver goes from event to event.
+pub fn smaller_steps(case: &Case, solver: &Card, share: f64) -> Sets {
+    if !solver.offers(Capability::FINITE_DISPLACEMENTS) {
+        return Vec::new();
+    }
+    let finite = case.solver.settings.finite;
+    let mut sets = Vec::new();
+    let own = case.resolved["solver"]["continuation"].as_object().cloned();
+    let usual = || Map::from_iter([("strategy".to_string(), json!(STRATEGY))]);
+    let table = shortened(own.unwrap_or_else(usual), finite, share);
+    sets.extend(table.map(|table| ("solver.continuation".to_string(), table)));
+    for (index, stage) in case.resolved["stages"].as_array().into_iter().flatten().enumerate() {
+        let own = stage["continuation"].as_object().cloned().and_then(|table| shortened(table, finite, share));
+        sets.extend(own.map(|table| (format!("stages.{index}.continuation"), table)));
+    }
+    sets
+}
+
+/// A strategy with shorter steps, where it has some.
+fn shortened(mut table: Map<String, Json>, finite: bool, share: f64) -> Option<Json> {
+    let card = card(PluginKind::Continuation, table.get("strategy")?.as_str()?)?;
+    let defaults = default_table(card);
+    let keys = [("first_step", None), ("largest_step", finite.then_some(LARGEST_FINITE_STEP))];
+    for (key, usual) in keys.into_iter().filter(|(key, _)| has(card, key)) {
+        let step = table.get(key).or(defaults.get(key)).and_then(Json::as_f64).or(usual);
+        step.into_iter().for_each(|step| drop(table.insert(key.into(), json!(share * step))));
+    }
+    has(card, "first_step").then_some(Json::Object(table))
+}
+
+fn has(card: &Card, key: &str) -> bool {
+    card.parameters.iter().any(|parameter| parameter.name == key)
+}

@@ -1,0 +1,58 @@
+//! The tables beside results.json of very many cases, row by row: those that a study asks for, by their file's name.
+
+use super::results_parquet::{FILE, ParquetRows, TAG};
+use super::stream::CsvStream;
+use crate::results::CaseResult;
+use crate::study::Sweep;
+use std::io::{self, Write};
+
+const CSV: &str = "results.csv";
+
+/// A table while it is written.
+pub enum StreamedTable<W: Write> {
+    /// results.csv.
+    Csv(Box<CsvStream<W>>),
+    /// results.parquet.
+    Parquet(Box<ParquetRows<W>>),
+}
+
+/// Names of the tables that a sweep asks for.
+pub fn wanted(sweep: &Sweep) -> Vec<&'static str> {
+    let wants = |tag: &str, by_default| {
+        sweep.output.writers.as_ref().map_or(by_default, |tags| tags.iter().any(|wanted| wanted == tag))
+    };
+    let tables = [(CSV, wants("results_csv", true)), (FILE, wants(TAG, false))];
+    tables.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| name).collect()
+}
+
+/// Names of all tables.
+pub const TABLES: [&str; 2] = [CSV, FILE];
+
+impl<W: Write> StreamedTable<W> {
+    /// Begins the table of this name.
+    pub fn new(name: &str, out: W, sweep: &Sweep) -> io::Result<Self> {
+        Ok(match name {
+            FILE => {
+                let rows = ParquetRows::new(out, sweep.expansion.number_keys(), false)?;
+                StreamedTable::Parquet(Box::new(rows))
+            }
+            _ => StreamedTable::Csv(Box::new(CsvStream::new(out, sweep.keys())?)),
+        })
+    }
+
+    /// Adds the row of a case.
+    pub fn add(&mut self, case: &CaseResult) -> io::Result<()> {
+        match self {
+            StreamedTable::Csv(rows) => rows.add(case),
+            StreamedTable::Parquet(rows) => rows.add(case),
+        }
+    }
+
+    /// Where it was written to, all of it.
+    pub fn finish(self) -> io::Result<W> {
+        match self {
+            StreamedTable::Csv(rows) => rows.finish(),
+            StreamedTable::Parquet(rows) => rows.finish(),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! `voussoir bench`: who takes part, what errors are measured from, what is written.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+/// Five bonded voussoirs that crush, elastic: limit analysis and paths ask for the same load.
+const STUDY: &str = r#"
+name = "small"
+[scene]
+scene = "arch"
+profile = { shape = "segmental", span = 6.0, rise = 2.0 }
+thickness = 0.5
+width = 1.0
+voussoirs = 5
+ends = "bonded"
+material = "stone"
+joint = "dry"
+mesh = { elements = [1, 1] }
+[materials.stone]
+law = "elastic"
+young_modulus = "5 GPa"
+poisson_ratio = 0.2
+density = 2000.0
+[joints.dry]
+law = "mohr_coulomb"
+friction = 0.6
+compressive_strength = "2 MPa"
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{ kind = "point", span_fraction = 0.3, force = [0.0, -1000.0] }]
+"#;
+
+const VARIANTS: &str = r#"
+[[variants]]
+name = "limit analysis"
+set = { "solver.solver" = "limit_chain" }
+[[variants]]
+name = "path"
+set = { "solver.solver" = "event_path" }
+[sweep]
+"scene.profile.rise" = { list = [2.0, 2.4] }
+"#;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("voussoir_bench_{name}_{}", std::process::id()));
+    drop(std::fs::remove_dir_all(&folder));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn bench(folder: &PathBuf, text: &str, more: &[&str]) -> Output {
+    std::fs::write(folder.join("small.toml"), text).expect("a study");
+    let voussoir = env!("CARGO_BIN_EXE_voussoir");
+    let arguments = ["bench", "small.toml", "--runs", "1", "--out", "out"];
+    Command::new(voussoir).current_dir(folder).args(arguments).args(more).output().expect("the program")
+}
+
+/// Columns of bench.csv of one contestant; no name of these studies holds a comma and a quote at once.
+fn rows(folder: &PathBuf) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(folder.join("out/bench.csv")).expect("bench.csv");
+    let cells = |line: &str| {
+        let mut quoted = false;
+        let split = line.split(move |c: char| {
+            quoted ^= c == '"';
+            c == ',' && !quoted
+        });
+        split.map(|cell| cell.trim_matches('"').to_string()).collect()
+    };
+    text.lines().skip(1).map(cells).collect()
+}
+
+#[test]
+fn solvers_that_take_a_study_are_measured_against_limit_analysis() {
+    let folder = folder("solvers");
+    let output = bench(&folder, STUDY, &[]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("errors from limit_chain") && said.contains("limit_chain "), "{said}");
+    let rows = rows(&folder);
+    let of = |name: &str| rows.iter().find(|row| row[1] == name).unwrap_or_else(|| panic!("no {name}: {rows:?}"));
+    let number = |name: &str, column: usize| of(name)[column].parse::<f64>().expect("a number");
+    // The reference has no error; another program of limit analysis has none to speak of; paths on one element do.
+    assert_eq!(of("limit_chain")[8], "");
+    assert!(number("limit_conic", 8) < 1e-9);
+    let error = (number("event_path", 5) / number("limit_chain", 5) - 1.0).abs();
+    assert!((number("event_path", 8) - error).abs() < 1e-12 && error > 1e-3, "{error}");
+    assert!(number("newton_path, twice the mesh", 9) > 0.0 && number("limit_chain", 9) > 0.0);
+    assert!(of("event_path")[10].contains("events "), "counters");
+    let chart = std::fs::read_to_string(folder.join("out/bench.svg")).expect("a chart");
+    assert!(chart.contains("event_path, order 1") && chart.contains("relative error"));
+    assert!(!folder.join("out/profile.svg").exists(), "one problem has no profile");
+    drop(std::fs::remove_dir_all(folder));
+}
+
+#[test]
+fn variants_are_measured_side_by_side_from_what_is_asked_for() {
+    let folder = folder("variants");
+    let text = format!("{STUDY}{VARIANTS}");
+    let output = bench(&folder, &text, &["--reference", "path", "--within", "0.5", "--quiet"]);
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
+    let found = rows(&folder);
+    assert_eq!(found.len(), 4);
+    assert!(found.iter().all(|row| row[7] == "path" && row[8].is_empty() == (row[1] == "path")), "{found:?}");
+    let profile = std::fs::read_to_string(folder.join("out/profile.svg")).expect("a profile");
+    assert!(profile.contains("share of problems answered"));
+    // A load factor that is known.
+    let output = bench(&folder, &text, &["--reference", "100.0", "--quiet"]);
+    assert!(output.status.success());
+    assert!(rows(&folder).iter().all(|row| row[6] == "100.0" && row[7] == "given" && !row[8].is_empty()));
+    // A name of nobody, and a kind of study without cases.
+    let output = bench(&folder, &text, &["--reference", "paht"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && said.contains("did you mean \"path\""), "{said}");
+    drop(std::fs::remove_dir_all(folder));
+}

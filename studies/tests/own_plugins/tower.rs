@@ -1,0 +1,156 @@
+//! A scene, a kind of load, a limit solver and a continuation strategy of one's own.
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
+use voussoir::core::model::geometry::Vec2;
+use voussoir::core::model::{Assembly, Catalogue, Scene};
+use voussoir::core::path::{Constraint, Continuation, Increment};
+use voussoir::core::plugin::{
+    Capability, Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, STANDARD_GRAVITY, Shape,
+};
+use voussoir::core::{inventory, typetag};
+use voussoir::loads::{LoadKind, LoadSite, Placed};
+use voussoir::solvers::limit::conic::LimitConic;
+
+/// `scene = "tower"`: equal blocks on each other, each `lean` further to the right than the one below.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tower {
+    blocks: usize,
+    block: [f64; 2],
+    lean: f64,
+}
+
+#[typetag::serde(name = "tower")]
+impl Scene for Tower {
+    fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
+        let [length, height] = self.block;
+        if self.lean.abs() >= length {
+            return Err(vec![Diagnostic::new("scene.lean", "blocks would not stand on each other")]);
+        }
+        let box_at = |x: f64, y: f64, l: f64, h: f64| json!([[x, y], [x + l, y], [x + l, y + h], [x, y + h]]);
+        let wide = length + self.lean.abs() * self.blocks as f64;
+        let mut blocks =
+            vec![json!({ "name": "ground", "fixed": true, "vertices": box_at(-wide, -height, 3.0 * wide, height) })];
+        blocks.extend((0..self.blocks).map(|i| {
+            let corner = [self.lean * i as f64, height * i as f64];
+            json!({ "name": format!("block {i}"), "vertices": box_at(corner[0], corner[1], length, height) })
+        }));
+        let scene = json!({ "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry", "blocks": blocks });
+        let scene: Box<dyn Scene> = serde_json::from_value(scene).expect("a scene of blocks");
+        scene.build(catalogue)
+    }
+}
+
+const SIDE: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
+
+inventory::submit! {
+    Card {
+        kind: PluginKind::Scene,
+        tag: "tower",
+        summary: "equal blocks on each other, each further to the right",
+        parameters: &[
+            Parameter { name: "blocks", doc: "how many", shape: Shape::Integer { min: 1, max: 1000 }, need: Need::Required },
+            Parameter { name: "block", doc: "length, height", shape: Shape::List { of: &SIDE, min: 2, max: 2 }, need: Need::Required },
+            Parameter::number("lean", Quantity::Length, Range::ANY, "step to the right from block to block").default("0.0"),
+        ],
+        file: file!(),
+        page: "# `tower`\n\nA stack that leans.\n",
+        ..Card::BLANK
+    }
+}
+
+/// `kind = "quake"`: this share of their weight pushes all blocks to the right.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Quake {
+    share: f64,
+}
+
+#[typetag::serde(name = "quake")]
+impl LoadKind for Quake {
+    fn place(&self, _: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
+        Ok(Placed { accelerations: vec![Vec2::new(self.share * STANDARD_GRAVITY, 0.0)], ..Placed::default() })
+    }
+}
+
+inventory::submit! {
+    Card {
+        kind: PluginKind::LoadKind,
+        tag: "quake",
+        summary: "a share of all weights, to the right",
+        parameters: &[Parameter::number("share", Quantity::Ratio, Range::ANY, "of the weight")],
+        file: file!(),
+        page: "# `quake`\n\nA share of all weights, to the right.\n",
+        ..Card::BLANK
+    }
+}
+
+/// `solver = "counted_conic"`: the conic program, which counts how often it is asked. `auto` takes the cheapest that does not
+/// refuse, which this is.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CountedConic {}
+
+#[typetag::serde(name = "counted_conic")]
+impl LimitSolver for CountedConic {
+    fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
+        let mut answer = LimitConic {}.solve(problem, question);
+        answer.counters.insert("asked".into(), 1);
+        answer
+    }
+
+    fn refuses(&self, problem: &LimitProblem) -> Option<String> {
+        LimitConic {}.refuses(problem)
+    }
+}
+
+inventory::submit! {
+    Card {
+        kind: PluginKind::LimitSolver,
+        tag: "counted_conic",
+        summary: "limit_conic, which counts how often it is asked",
+        requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        cost: Some(0),
+        file: file!(),
+        page: "# `counted_conic`\n\nAs `limit_conic`.\n",
+        ..Card::BLANK
+    }
+}
+
+/// `strategy = "taxicab"`: movement and load factor of a step add up to its length.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Taxicab {
+    first_step: f64,
+}
+
+#[typetag::serde(name = "taxicab")]
+impl Continuation for Taxicab {
+    fn constraint(&self, increment: &Increment, _: Option<&Increment>) -> Constraint {
+        let value = increment.motion + increment.factor.abs();
+        let derivative = Increment { motion: 1.0, factor: increment.factor.signum(), ..Increment::default() };
+        Constraint { value, derivative }
+    }
+
+    fn passes_limit_points(&self) -> bool {
+        true
+    }
+
+    fn first_step(&self) -> f64 {
+        self.first_step
+    }
+}
+
+inventory::submit! {
+    Card {
+        kind: PluginKind::Continuation,
+        tag: "taxicab",
+        summary: "movement plus load factor",
+        parameters: &[Parameter::number("first_step", Quantity::Ratio, Range::POSITIVE, "first step").default("0.1")],
+        file: file!(),
+        page: "# `taxicab`\n\nMovement plus load factor.\n",
+        ..Card::BLANK
+    }
+}
