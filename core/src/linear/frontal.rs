@@ -14,7 +14,7 @@ use faer::traits::pulp::Arch;
 struct Front {
     /// Rows that join, after those that the front before has left over.
     joining: Vec<usize>,
-    /// Unknowns of the front, first those that are eliminated.
+    /// Unknowns that are eliminated.
     columns: Vec<usize>,
     /// Rows with which those of the pivots were exchanged, one after the other.
     exchanged: Vec<usize>,
@@ -22,8 +22,8 @@ struct Front {
     height: usize,
     /// Columns of the unknowns that are eliminated: L below, U on and above the diagonal.
     eliminated: Vec<f64>,
-    /// Rows of the pivots in the other columns, column by column.
-    upper: Vec<f64>,
+    /// Other unknowns in rows of the pivots, and these columns of the rows.
+    upper: (Vec<usize>, Vec<f64>),
 }
 
 /// L U by fronts.
@@ -144,26 +144,75 @@ fn grouped(rank: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
     (unknowns, front)
 }
 
+/// The rows of a square matrix as fronts take them in.
+pub trait FrontRows {
+    /// Calls with unknowns of a row, among them all of those that have the least rank.
+    fn candidates(&self, row: usize, each: &mut dyn FnMut(usize));
+
+    /// Calls with every unknown of some rows, at least once.
+    fn unknowns(&self, rows: &[usize], each: &mut dyn FnMut(usize));
+
+    /// Adds rows to the columns of a front: a value of the k-th row of unknown j to number
+    /// `place[j] * height + first + k`.
+    fn add(&self, rows: &[usize], place: &[usize], values: &mut [f64], height: usize, first: usize);
+}
+
+/// Entries row by row.
+struct ByRows<'a> {
+    entries: &'a Entries,
+    starts: Vec<usize>,
+}
+
+impl<'a> ByRows<'a> {
+    fn new(size: usize, entries: &'a Entries) -> Self {
+        let mut starts = vec![0; size + 1];
+        entries.iter().for_each(|entry| starts[entry.0 + 1] += 1);
+        (0..size).for_each(|i| starts[i + 1] += starts[i]);
+        ByRows { entries, starts }
+    }
+
+    fn row(&self, i: usize) -> &[(usize, usize, f64)] {
+        &self.entries[self.starts[i]..self.starts[i + 1]]
+    }
+}
+
+impl FrontRows for ByRows<'_> {
+    fn candidates(&self, row: usize, each: &mut dyn FnMut(usize)) {
+        self.row(row).iter().for_each(|entry| each(entry.1));
+    }
+
+    fn unknowns(&self, rows: &[usize], each: &mut dyn FnMut(usize)) {
+        rows.iter().for_each(|i| self.candidates(*i, each));
+    }
+
+    fn add(&self, rows: &[usize], place: &[usize], values: &mut [f64], height: usize, first: usize) {
+        for (k, row) in rows.iter().enumerate() {
+            self.row(*row).iter().for_each(|&(_, j, value)| values[place[j] * height + first + k] += value);
+        }
+    }
+}
+
 impl FrontalLu {
     /// Factorises a matrix whose entries stand row by row; `rank` of every unknown says when it is eliminated. `None`
     /// where it is singular in its pattern.
     pub fn new(size: usize, entries: &Entries, rank: &[usize]) -> Option<Self> {
+        FrontalLu::of(size, &ByRows::new(size, entries), rank)
+    }
+
+    /// The same of rows that put themselves into fronts.
+    pub fn of(size: usize, rows: &impl FrontRows, rank: &[usize]) -> Option<Self> {
         let (unknowns, rank) = grouped(rank);
         let mut joining: Vec<Vec<usize>> = vec![Vec::new(); unknowns.len()];
-        let (mut starts, mut at) = (Vec::with_capacity(size + 1), 0);
-        starts.push(0);
         for i in 0..size {
-            let own = entries[at..].iter().take_while(|entry| entry.0 == i);
-            let (count, first) = own.fold((0, usize::MAX), |(n, first), entry| (n + 1, first.min(rank[entry.1])));
+            let mut first = usize::MAX;
+            rows.candidates(i, &mut |j| first = first.min(rank[j]));
             joining.get_mut(first)?.push(i);
-            at += count;
-            starts.push(at);
         }
         let mut place = vec![usize::MAX; size];
         let mut fronts = Vec::with_capacity(joining.len());
         let mut left = Left::default();
         for (unknowns, joining) in unknowns.into_iter().zip(joining) {
-            let (front, rest) = Front::new(unknowns, joining, (entries, &starts), &left, &mut place)?;
+            let (front, rest) = Front::new(unknowns, joining, rows, &left, &mut place)?;
             fronts.push(front);
             left = rest;
         }
@@ -172,39 +221,44 @@ impl FrontalLu {
 
     /// Solves for several right-hand sides. `None` where the matrix is singular to rounding.
     pub fn solve(&self, right: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-        let all: Vec<Vec<f64>> = right.iter().map(|right| Arch::new().dispatch(|| self.solve_one(right))).collect();
+        let all: Vec<Vec<f64>> = Arch::new().dispatch(|| self.solve_all(right));
         all.iter().flatten().all(|v| v.is_finite()).then_some(all)
     }
 
+    /// All right-hand sides through one front after the other.
     #[inline(always)]
-    fn solve_one(&self, right: &[f64]) -> Vec<f64> {
-        let mut pivotal: Vec<f64> = Vec::with_capacity(self.size);
-        let mut left: Vec<f64> = Vec::new();
+    fn solve_all(&self, right: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut pivotal: Vec<Vec<f64>> = right.iter().map(|_| Vec::with_capacity(self.size)).collect();
+        let mut left: Vec<Vec<f64>> = vec![Vec::new(); right.len()];
         for front in &self.fronts {
             let pivots = front.exchanged.len();
-            left.extend(front.joining.iter().map(|i| right[*i]));
-            exchange(&mut left, &front.exchanged);
-            substitute(&mut left, &front.eliminated, pivots);
-            pivotal.extend(left.drain(..pivots));
+            for ((left, pivotal), right) in left.iter_mut().zip(&mut pivotal).zip(right) {
+                left.extend(front.joining.iter().map(|i| right[*i]));
+                exchange(left, &front.exchanged);
+                substitute(left, &front.eliminated, pivots);
+                pivotal.extend(left.drain(..pivots));
+            }
         }
-        let mut x = vec![0.0; self.size];
+        let mut all = vec![vec![0.0; self.size]; right.len()];
         let mut known: Vec<f64> = Vec::new();
         for front in self.fronts.iter().rev() {
             let pivots = front.exchanged.len();
-            let before = pivotal.len() - pivots;
-            let own = &mut pivotal[before..];
-            known.clear();
-            known.extend(front.columns[pivots..].iter().map(|j| x[*j]));
-            subtract_product(own, &front.upper, &known);
-            for k in (0..pivots).rev() {
-                let column = &front.eliminated[k * front.height..k * front.height + k + 1];
-                let value = own[k] / column[k];
-                own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
-                x[front.columns[k]] = value;
+            for (x, pivotal) in all.iter_mut().zip(&mut pivotal) {
+                let before = pivotal.len() - pivots;
+                let own = &mut pivotal[before..];
+                known.clear();
+                known.extend(front.upper.0.iter().map(|j| x[*j]));
+                subtract_product(own, &front.upper.1, &known);
+                for k in (0..pivots).rev() {
+                    let column = &front.eliminated[k * front.height..k * front.height + k + 1];
+                    let value = own[k] / column[k];
+                    own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
+                    x[front.columns[k]] = value;
+                }
+                pivotal.truncate(before);
             }
-            pivotal.truncate(before);
         }
-        x
+        all
     }
 }
 
@@ -214,7 +268,7 @@ impl Front {
     fn new(
         unknowns: Vec<usize>,
         joining: Vec<usize>,
-        (entries, starts): (&Entries, &[usize]),
+        rows: &impl FrontRows,
         left: &Left,
         place: &mut [usize],
     ) -> Option<(Front, Left)> {
@@ -224,33 +278,36 @@ impl Front {
         }
         let mut columns = unknowns;
         columns.iter().enumerate().for_each(|(k, j)| place[*j] = k);
-        let rows = || joining.iter().map(|i| &entries[starts[*i]..starts[i + 1]]);
-        let met = rows().flatten().map(|entry| entry.1);
-        for j in left.columns.iter().copied().chain(met) {
+        let mut meet = |j: usize| {
             if place[j] == usize::MAX {
                 place[j] = columns.len();
                 columns.push(j);
             }
-        }
+        };
+        left.columns.iter().for_each(|j| meet(*j));
+        rows.unknowns(&joining, &mut meet);
         let mut values = vec![0.0; height * columns.len()];
         for (j, own) in left.columns.iter().zip(left.values.chunks_exact(left.rows.max(1))) {
             values[place[*j] * height..][..left.rows].copy_from_slice(own);
         }
-        for (k, row) in rows().enumerate() {
-            row.iter().for_each(|&(_, j, value)| values[place[j] * height + left.rows + k] += value);
-        }
+        rows.add(&joining, place, &mut values, height, left.rows);
         columns.iter().for_each(|j| place[*j] = usize::MAX);
         // With the vectors of the processor; the order of operations does not depend on them.
         let exchanged = Arch::new().dispatch(|| eliminate(&mut values, height, pivots));
         let rest = height - pivots;
-        let mut upper = Vec::with_capacity(pivots * (columns.len() - pivots));
-        let mut below = Vec::with_capacity(rest * (columns.len() - pivots));
-        for column in values[pivots * height..].chunks_exact(height.max(1)) {
-            upper.extend_from_slice(&column[..pivots]);
+        let others = columns.split_off(pivots);
+        let mut upper = (Vec::with_capacity(others.len()), Vec::with_capacity(pivots * others.len()));
+        let mut below = Vec::with_capacity(rest * others.len());
+        for (j, column) in others.iter().zip(values[pivots * height..].chunks_exact(height.max(1))) {
+            // Unknowns two joints away stand in rows that are no pivots yet.
+            if column[..pivots].iter().any(|v| *v != 0.0) {
+                upper.0.push(*j);
+                upper.1.extend_from_slice(&column[..pivots]);
+            }
             below.extend_from_slice(&column[pivots..]);
         }
         values.truncate(pivots * height);
-        let left = Left { rows: rest, columns: columns[pivots..].to_vec(), values: below };
+        let left = Left { rows: rest, columns: others, values: below };
         Some((Front { joining, columns, exchanged, height, eliminated: values, upper }, left))
     }
 }

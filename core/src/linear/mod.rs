@@ -8,6 +8,6 @@ mod lu;
 
 pub use self::cholesky::{SparseCholesky, elimination_order};
 pub use self::entries::Entries;
-pub use self::frontal::FrontalLu;
+pub use self::frontal::{FrontRows, FrontalLu};
 pub use self::ldlt::SparseLdlt;
 pub use self::lu::{Analysis, SparseLu};

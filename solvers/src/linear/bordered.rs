@@ -15,8 +15,8 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use super::condensed::{Condensed, Elimination, pair};
-use super::csr::CsrMatrix;
+use super::condensed::{Condensed, pair};
+use super::factorised::Factorised;
 use super::inner;
 use std::rc::Rc;
 
@@ -24,24 +24,26 @@ use std::rc::Rc;
 const SPARSE: usize = 4;
 /// Least rate of the unknown that is held, relative to the greatest.
 const MOVES: f64 = 1e-4;
+/// Least rate of a control as a border, relative to the greatest: what it amplifies of rounding is small beside it.
+const BORDERS: f64 = 1e-6;
 
 /// What stands in the last row of factorised equations.
 enum Last {
     /// The control.
     Control(Vec<(usize, f64)>),
-    /// An unknown that is held; w, and w without the unknowns that are condensed out.
-    Unknown(Vec<f64>, Vec<f64>),
+    /// An unknown that is held; w.
+    Unknown(Vec<f64>),
 }
 
 /// Factorised equations without a control of their own: they serve every control that is a border.
-pub struct BorderedFactors {
-    equations: Condensed,
+pub struct BorderedFactors<E> {
+    equations: E,
     last: Last,
 }
 
 /// Factorised equations with a control.
-pub struct BorderedSystem {
-    held: Rc<BorderedFactors>,
+pub struct BorderedSystem<E> {
+    held: Rc<BorderedFactors<E>>,
     /// The control's row with c·w, where it is not part of the matrix.
     border: Option<(Vec<f64>, f64)>,
 }
@@ -57,43 +59,33 @@ fn few(control: &[f64]) -> Option<Vec<(usize, f64)>> {
     (entries().nth(SPARSE).is_none()).then(|| entries().map(|(j, v)| (j, *v)).collect())
 }
 
-impl BorderedFactors {
-    /// Factorises the equations above the last row, which the rows do not hold, with what the `control`
-    /// asks for in its place. `None` where they are singular.
+impl<E: Factorised> BorderedFactors<E> {
+    /// Equations that `factorise` makes and factorises with a given last row, which is what the `control` of `contacts`
+    /// points asks for. `None` where they are singular.
     pub fn new(
-        mut rows: CsrMatrix,
-        mut shifts: CsrMatrix,
         contacts: usize,
         control: &[f64],
-        elimination: &mut Elimination,
+        mut factorise: impl FnMut(Vec<(usize, f64)>) -> Option<E>,
     ) -> Option<Self> {
         let size = control.len();
         let last = size - 1;
-        shifts.end_row();
         if let Some(few) = few(control) {
-            rows.open_row().extend(&few);
-            rows.end_row();
-            let equations = Condensed::of(rows, &shifts, contacts, elimination)?;
+            let equations = factorise(few.clone())?;
             return Some(BorderedFactors { equations, last: Last::Control(few) });
         }
         let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
         let mut held = 2 * contacts + greatest(&control[2 * contacts..]);
         for again in [true, false] {
-            rows.open_row().push((held, 1.0));
-            rows.end_row();
-            let equations = Condensed::of(rows, &shifts, contacts, elimination)?;
+            let equations = factorise(vec![(held, 1.0)])?;
             if let Some(w) = equations.apply(&end) {
                 let most = 2 * contacts + greatest(&w[2 * contacts..]);
                 if !again || w[held].abs() >= MOVES * w[most].abs() {
-                    let kept = equations.kept_of(&w);
-                    return Some(BorderedFactors { equations, last: Last::Unknown(w, kept) });
+                    return Some(BorderedFactors { equations, last: Last::Unknown(w) });
                 }
                 held = most;
             } else {
                 held = last;
             }
-            rows = equations.into_rows();
-            rows.pop();
         }
         None
     }
@@ -102,45 +94,46 @@ impl BorderedFactors {
     pub fn serves(&self, control: &[f64]) -> bool {
         match (&self.last, few(control)) {
             (Last::Control(own), Some(few)) => *own == few,
-            (Last::Unknown(..), None) => true,
+            (Last::Unknown(_), None) => true,
             _ => false,
         }
     }
+
+    /// Whether it serves a control of few unknowns, as it is or as a border along which w grows.
+    pub fn borders(&self, control: &[f64]) -> bool {
+        let Last::Unknown(w) = &self.last else { return self.serves(control) };
+        let size = control[greatest(control)].abs();
+        let along = inner(control, w).abs();
+        along >= BORDERS * size * w[greatest(w)].abs() && along != 0.0
+    }
 }
 
-impl BorderedSystem {
+impl<E: Factorised> BorderedSystem<E> {
     /// With a control that the factorised equations serve. `None` where it is orthogonal to w.
-    pub fn new(held: Rc<BorderedFactors>, control: &[f64]) -> Option<Self> {
+    pub fn new(held: Rc<BorderedFactors<E>>, control: &[f64]) -> Option<Self> {
         let border = match &held.last {
             Last::Control(_) => None,
-            Last::Unknown(w, _) => Some((control.to_vec(), Some(inner(control, w)).filter(|along| *along != 0.0)?)),
+            Last::Unknown(w) => Some((control.to_vec(), Some(inner(control, w)).filter(|along| *along != 0.0)?)),
         };
         Some(BorderedSystem { held, border })
     }
 
     /// The equations above the control, the control's row in them or an unknown held in its place.
-    pub fn equations(&self) -> &Condensed {
+    pub fn equations(&self) -> &E {
         &self.held.equations
     }
 
-    /// What unit right-hand sides of the two rows of a contact point give, without the unknowns that
-    /// are condensed out.
-    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
-        let equations = &self.held.equations;
-        let mut columns = equations.units(contact)?;
-        if let (Last::Unknown(_, w), Some((control, along))) = (&self.held.last, &self.border) {
-            for (k, y) in columns.iter_mut().enumerate() {
-                let right = |c: usize| if c == contact { pair(k, 1.0) } else { [0.0; 2] };
-                let t = -equations.dot(control, right, y) / along;
-                y.iter_mut().zip(w).for_each(|(y, w)| *y += t * w);
-            }
+    /// The control's row c, w and c·w, where an unknown is held in the control's place.
+    pub fn border(&self) -> Option<(&[f64], &[f64], f64)> {
+        match (&self.held.last, &self.border) {
+            (Last::Unknown(w), Some((control, along))) => Some((control, w, *along)),
+            _ => None,
         }
-        Some(columns)
     }
 
     /// Once, without refinement.
     pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
-        let (Last::Unknown(w, _), Some((control, along))) = (&self.held.last, &self.border) else {
+        let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) else {
             return self.held.equations.apply(right);
         };
         let last = right.len() - 1;
@@ -158,7 +151,7 @@ impl BorderedSystem {
         // The row in the control's place is the control's, not that of the unknown that is held.
         let last = right.len() - 1;
         let mut above = right.to_vec();
-        above[last] = self.held.equations.row_dot(last, x);
+        above[last] = self.held.equations.last_row_dot(x);
         let (mut left, error) = self.held.equations.errors(&above, x);
         let (mut own, mut size) = (right[last], right[last].abs());
         for (c, x) in control.iter().zip(x) {
@@ -167,5 +160,23 @@ impl BorderedSystem {
         }
         left[last] = own;
         (left, if own == 0.0 { error } else { error.max((own / size).abs()) })
+    }
+}
+
+impl BorderedSystem<Condensed> {
+    /// What unit right-hand sides of the two rows of a contact point give, without the unknowns that
+    /// are condensed out.
+    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
+        let equations = &self.held.equations;
+        let mut columns = equations.units(contact)?;
+        if let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) {
+            let w = equations.kept_of(w);
+            for (k, y) in columns.iter_mut().enumerate() {
+                let right = |c: usize| if c == contact { pair(k, 1.0) } else { [0.0; 2] };
+                let t = -equations.dot(control, right, y) / along;
+                y.iter_mut().zip(&w).for_each(|(y, w)| *y += t * w);
+            }
+        }
+        Some(columns)
     }
 }

@@ -16,6 +16,7 @@
 //! refinement leave the accuracy of the equations before condensation.
 
 use super::csr::CsrMatrix;
+use super::factorised::Factorised;
 use std::sync::Arc;
 use voussoir_core::linear::{Analysis, Entries, FrontalLu, SparseLu};
 
@@ -276,16 +277,6 @@ impl Condensed {
         kept + forces.sum::<f64>()
     }
 
-    /// The equations themselves.
-    pub fn into_rows(self) -> CsrMatrix {
-        self.rows
-    }
-
-    /// One row times a vector.
-    pub fn row_dot(&self, row: usize, x: &[f64]) -> f64 {
-        self.rows.row_dot(row, x)
-    }
-
     /// Number of contact points.
     pub fn contacts(&self) -> usize {
         self.of.len()
@@ -335,12 +326,6 @@ impl Condensed {
         (vec![0.0; self.rows.len()], vec![0.0; self.kept.len()])
     }
 
-    /// Once, without refinement.
-    pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
-        let y = self.condense(&[right.to_vec()])?.swap_remove(0);
-        Some(self.expand(right, &y))
-    }
-
     /// Refined as long as that halves what is left, at most so often.
     pub fn solve(&self, right: &[f64], refinements: usize) -> Option<Vec<f64>> {
         let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -359,9 +344,21 @@ impl Condensed {
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
-    /// The same, and the greatest backward error of a row: what is left of it, relative to the sizes of what it adds up
-    /// (Arioli, Demmel & Duff 1989, SIAM J. Matrix Anal. Appl. 10, 165-190).
-    pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+    /// What the equations without what was added leave of a right-hand side.
+    pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
+        right.iter().enumerate().map(|(i, right)| right - self.rows.row_dot(i, x)).collect()
+    }
+}
+
+impl Factorised for Condensed {
+    fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
+        let y = self.condense(&[right.to_vec()])?.swap_remove(0);
+        Some(self.expand(right, &y))
+    }
+
+    /// The backward error of a row is what is left of it, relative to the sizes of what it adds up (Arioli, Demmel & Duff
+    /// 1989, SIAM J. Matrix Anal. Appl. 10, 165-190).
+    fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let mut worst = 0.0f64;
         let by_row = |(i, right): (usize, &f64)| {
             let (left, size) = self.rows.left_of_row(i, *right, x);
@@ -373,8 +370,7 @@ impl Condensed {
         (right.iter().enumerate().map(by_row).collect(), worst)
     }
 
-    /// What the equations without what was added leave of a right-hand side.
-    pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
-        right.iter().enumerate().map(|(i, right)| right - self.rows.row_dot(i, x)).collect()
+    fn last_row_dot(&self, x: &[f64]) -> f64 {
+        self.rows.row_dot(self.rows.len() - 1, x)
     }
 }

@@ -72,14 +72,6 @@ impl CsrMatrix {
         self.start.push(self.entries.len());
     }
 
-    /// The last row, taken off.
-    pub fn pop(&mut self) {
-        if self.start.len() > 1 {
-            self.start.pop();
-            self.entries.truncate(self.start[self.start.len() - 1]);
-        }
-    }
-
     /// Number of entries.
     pub fn entries(&self) -> usize {
         self.entries.len()

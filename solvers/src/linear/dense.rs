@@ -10,7 +10,57 @@ pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
     }
 }
 
-/// The same with the vectors of the processor; the order of operations does not depend on them.
+/// out += A x, A column by column.
+pub fn add_block(out: &mut [f64], a: &[f64], x: &[f64]) {
+    if !out.is_empty() {
+        Arch::new().dispatch(|| add_columns(out, out.len(), a, x));
+    }
+}
+
+/// out += A x, A column by column, and the sizes of what adds up.
+pub fn add_block_and_sizes((out, sizes): (&mut [f64], &mut [f64]), a: &[f64], x: &[f64]) {
+    if !out.is_empty() {
+        Arch::new().dispatch(|| add_columns_and_sizes(out, sizes, a, x));
+    }
+}
+
+#[inline(always)]
+fn add_columns_and_sizes(out: &mut [f64], sizes: &mut [f64], a: &[f64], x: &[f64]) {
+    let height = out.len();
+    let sizes = &mut sizes[..height];
+    let (a2, x2) = (a.chunks_exact(2 * height), x.chunks_exact(2));
+    let (a1, x1) = (a2.remainder(), x2.remainder());
+    for (a, x) in a2.zip(x2) {
+        let ((a, b), (x, y)) = (a.split_at(height), (x[0], x[1]));
+        let b = &b[..height];
+        for i in 0..height {
+            let (p, q) = (a[i] * x, b[i] * y);
+            out[i] += p + q;
+            sizes[i] += p.abs() + q.abs();
+        }
+    }
+    for (i, a) in a1.iter().enumerate() {
+        let p = a * x1[0];
+        out[i] += p;
+        sizes[i] += p.abs();
+    }
+}
+
+/// out += wᵀ A, A column by column.
+pub fn add_row_block(out: &mut [f64], w: &[f64], a: &[f64]) {
+    if !w.is_empty() {
+        Arch::new().dispatch(|| add_row_columns(out, w, a));
+    }
+}
+
+#[inline(always)]
+fn add_row_columns(out: &mut [f64], w: &[f64], a: &[f64]) {
+    for (out, column) in out.iter_mut().zip(a.chunks_exact(w.len())) {
+        *out += dot(w, column);
+    }
+}
+
+/// out += A x for code with the vectors of the processor; the order of operations does not depend on them.
 #[inline(always)]
 fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
     let height = out.len();

@@ -30,7 +30,7 @@ impl Factors for Condensed {
     }
 }
 
-impl Factors for BorderedSystem {
+impl Factors for BorderedSystem<Condensed> {
     fn equations(&self) -> &Condensed {
         BorderedSystem::equations(self)
     }

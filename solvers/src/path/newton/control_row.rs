@@ -136,10 +136,8 @@ pub(super) fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[
     if by_gap.iter().all(|w| *w == 0.0) {
         return;
     }
-    for (i, weight) in by_gap.iter().enumerate().filter(|(_, w)| **w != 0.0) {
-        let by = weight * system.units().displacement;
-        equations.gaps.row(i).iter().for_each(|&(j, value)| row[j] += by * value);
-    }
+    let weights: Vec<f64> = by_gap.iter().map(|weight| weight * system.units().displacement).collect();
+    equations.gaps.add_weighted(&weights, row);
 }
 
 /// How far a control is from its aim, and its constraint.

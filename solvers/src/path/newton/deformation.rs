@@ -64,9 +64,8 @@ pub(super) fn add_elastic_gradient(geometry: &Geometry, body: usize, place: &Pla
         }
         _ => out.stored += 0.5 * f.iter().zip(&v).map(|(f, v)| f * v).sum::<f64>(),
     }
-    for side in &geometry.sides[body] {
+    for (side, r, turn) in geometry.all_carried(body, force, motion) {
         let c = &geometry.problem.contacts[side.contact];
-        let (r, turn) = geometry.carried(side, force, motion);
         let here = Vec2::new(v[2 * side.slot], v[2 * side.slot + 1]);
         let gap = turn.transpose() * here * side.sign;
         out.gap[side.contact][0] += c.normal.dot(&gap);
@@ -106,25 +105,18 @@ pub(super) fn add_elastic_hessian(
     out: &mut Hessian,
 ) {
     let Some(flexibility) = flexibility(geometry, body, place.blocks) else { return };
-    let moved: Vec<MovedSide> = geometry.sides[body]
-        .iter()
-        .map(|side| {
+    let moved: Vec<MovedSide> = geometry
+        .all_carried(body, place.force, place.motion)
+        .map(|(side, _, turn)| {
             let c = &geometry.problem.contacts[side.contact];
-            let (_, turn) = geometry.carried(side, place.force, place.motion);
             let frame = turn * Matrix2::from_columns(&[c.normal, c.tangent]);
             (*side, frame * side.sign, frame)
         })
         .collect();
-    for (one, m, _) in &moved {
-        for (other, n, _) in &moved {
-            let block = flexibility.fixed_view::<2, 2>(2 * one.slot, 2 * other.slot);
-            let product = m.transpose() * block * n;
-            for i in 0..2 {
-                for j in 0..2 {
-                    out.entries.push((2 * one.contact + i, 2 * other.contact + j, product[(i, j)]));
-                }
-            }
-        }
+    let turned: Vec<_> = moved.iter().map(|(side, m, _)| (side.contact, side.slot, *m)).collect();
+    let by_joints = || turned.chunk_by(|a, b| geometry.pattern.group(a.0) == geometry.pattern.group(b.0));
+    for columns in by_joints() {
+        by_joints().for_each(|rows| out.forces.add_turned(rows, columns, flexibility));
     }
     // By the factor.
     let back = geometry.turn(-place.motion[body][2]);
@@ -167,9 +159,8 @@ fn forces_by_rotations(
         columns[place].1[2 * slot] += value.x;
         columns[place].1[2 * slot + 1] += value.y;
     };
-    for side in &geometry.sides[body] {
+    for (side, r, turn) in geometry.all_carried(body, place.force, place.motion) {
         let c = &problem.contacts[side.contact];
-        let (r, turn) = geometry.carried(side, place.force, place.motion);
         let swing = turned(turn * r) * -0.5;
         add(c.plus.body, side.slot, swing);
         add(c.minus.body, side.slot, -swing);

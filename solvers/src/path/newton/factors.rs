@@ -1,27 +1,78 @@
-//! What one factorisation leaves to the next.
+//! The factorised equations of contact modes, and what one factorisation leaves to the next.
 
+use super::equations::Equations;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::BorderedFactors;
-use crate::linear::condensed::Elimination;
+use crate::linear::chain::ChainFactors;
+use crate::linear::condensed::{Condensed, Elimination};
+use crate::linear::factorised::Factorised;
 use std::rc::Rc;
+
+/// Factorised equations of contact modes.
+pub(super) enum ModeEquations {
+    /// Whatever bodies stand beside each other.
+    Sparse(Condensed),
+    /// Of elastic bodies in a chain.
+    Chain(ChainFactors),
+}
+
+impl ModeEquations {
+    /// Unknowns from the `first` that is no force, for right-hand sides that the rows of contact points have none of.
+    pub fn motions(&self, first: usize, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        match self {
+            ModeEquations::Chain(factors) => factors.motions(rights),
+            ModeEquations::Sparse(factors) => {
+                let size = rights.first().map_or(first, Vec::len);
+                let found = factors.condense(rights)?;
+                Some(found.iter().map(|y| (first..size).map(|j| factors.other(j, y)).collect()).collect())
+            }
+        }
+    }
+}
+
+impl Factorised for ModeEquations {
+    fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            ModeEquations::Sparse(factors) => factors.apply(right),
+            ModeEquations::Chain(factors) => factors.apply(right),
+        }
+    }
+
+    fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        match self {
+            ModeEquations::Sparse(factors) => factors.errors(right, x),
+            ModeEquations::Chain(factors) => factors.errors(right, x),
+        }
+    }
+
+    fn last_row_dot(&self, x: &[f64]) -> f64 {
+        match self {
+            ModeEquations::Sparse(factors) => factors.last_row_dot(x),
+            ModeEquations::Chain(factors) => factors.last_row_dot(x),
+        }
+    }
+}
 
 /// Factors with what they are of.
 pub(super) struct Kept {
+    pub equations: Rc<Equations>,
     pub modes: Vec<ContactMode>,
     /// Normals and flows of the laws' facets.
     pub directions: Vec<[f64; 4]>,
-    pub held: Rc<BorderedFactors>,
+    /// Rate of viscous wrenches.
+    pub damping: f64,
+    pub held: Rc<BorderedFactors<ModeEquations>>,
 }
 
 /// What the last factorisation leaves to the next.
 #[derive(Default)]
-pub(super) struct Factorised {
+pub(super) struct LastFactors {
     /// The last ones, where nothing but modes and laws makes the matrix.
     pub last: Option<Kept>,
     pub elimination: Elimination,
 }
 
-impl Factorised {
+impl LastFactors {
     /// Another load grows.
     pub fn forget(&mut self) {
         self.last = None;

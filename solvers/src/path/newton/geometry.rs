@@ -2,9 +2,11 @@
 
 use super::blocks::YieldingBlock;
 use super::loads::Loads;
+use crate::linear::blocks::Pattern;
 use nalgebra::Matrix2;
+use std::sync::Arc;
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::PathProblem;
+use voussoir_core::path::{Contact, PathProblem};
 
 /// A contact point on an elastic body.
 #[derive(Debug, Clone, Copy)]
@@ -29,11 +31,32 @@ pub(super) struct Geometry<'a> {
     pub finite: bool,
     /// Contact points of every body.
     pub sides: Vec<Vec<Side>>,
+    /// Contact points by joints, and which joints are on one elastic body.
+    pub pattern: Arc<Pattern>,
 }
 
 fn rotation(angle: f64) -> Matrix2<f64> {
     let (sine, cosine) = angle.sin_cos();
     Matrix2::new(cosine, -sine, sine, cosine)
+}
+
+/// Contact points by joints; those on one elastic body feel each other.
+fn by_joints(problem: &PathProblem, sides: &[Vec<Side>]) -> Pattern {
+    let mut groups = 0;
+    let mut group = Vec::with_capacity(problem.contacts.len());
+    let joint = |c: &Contact| (c.joint, c.minus.body, c.plus.body);
+    for joint in problem.contacts.chunk_by(|a, b| joint(a) == joint(b)) {
+        group.extend(joint.iter().map(|_| groups));
+        groups += 1;
+    }
+    let on_body = |sides: &Vec<Side>| {
+        let mut own: Vec<usize> = sides.iter().map(|side| group[side.contact]).collect();
+        own.dedup();
+        let pairs: Vec<_> = own.iter().flat_map(|a| own.iter().map(|b| (*a, *b))).collect();
+        pairs
+    };
+    let pairs: Vec<_> = sides.iter().flat_map(on_body).collect();
+    Pattern::new(group, pairs)
 }
 
 impl<'a> Geometry<'a> {
@@ -48,7 +71,8 @@ impl<'a> Geometry<'a> {
                 }
             }
         }
-        Geometry { problem, finite, sides }
+        let pattern = Arc::new(by_joints(problem, &sides));
+        Geometry { problem, finite, sides, pattern }
     }
 
     /// Rotation by an angle, none where displacements are small.
@@ -89,12 +113,32 @@ impl<'a> Geometry<'a> {
         (c.normal * normal + c.tangent * tangent, self.turn(-side.sign * phi / 2.0))
     }
 
+    /// The same of all points of a body: those of one joint have one rotation.
+    pub fn all_carried(
+        &self,
+        body: usize,
+        force: &[[f64; 2]],
+        motion: &[[f64; 3]],
+    ) -> impl Iterator<Item = (&Side, Vec2, Matrix2<f64>)> {
+        let mut last: Option<(usize, f64, Matrix2<f64>)> = None;
+        self.sides[body].iter().map(move |side| {
+            let c = &self.problem.contacts[side.contact];
+            let group = self.pattern.group(side.contact);
+            let turn = match last {
+                Some((own, sign, turn)) if own == group && sign == side.sign => turn,
+                _ => self.carried(side, force, motion).1,
+            };
+            last = Some((group, side.sign, turn));
+            let [normal, tangent] = force[side.contact];
+            (side, c.normal * normal + c.tangent * tangent, turn)
+        })
+    }
+
     /// Forces on the points of a body in its axes \[N\].
     pub fn body_forces(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Vec<f64> {
         let points = self.problem.bodies[body].flexibility.as_ref().map_or(0, |c| c.nrows());
         let mut f = vec![0.0; points];
-        for side in &self.sides[body] {
-            let (r, turn) = self.carried(side, force, motion);
+        for (side, r, turn) in self.all_carried(body, force, motion) {
             let on = turn * r * side.sign;
             f[2 * side.slot] += on.x;
             f[2 * side.slot + 1] += on.y;

@@ -78,8 +78,8 @@ pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -
     let problem = geometry.problem;
     let base = 2 * problem.contacts.len();
     let size = base + 3 * problem.bodies.len();
-    let coupled = |sides: &Vec<_>| 4 * sides.len() * sides.len() + 12 * sides.len();
-    let mut out = Hessian::zeros(size, 40 * problem.contacts.len() + geometry.sides.iter().map(coupled).sum::<usize>());
+    let by_rotations = 12 * geometry.sides.iter().map(Vec::len).sum::<usize>();
+    let mut out = Hessian::zeros(geometry.pattern.clone(), size, 40 * problem.contacts.len() + by_rotations);
     let both = |entries: &mut Vec<(usize, usize, f64)>, i: usize, j: usize, value: f64| {
         entries.push((i, j, value));
         entries.push((j, i, value));
@@ -96,8 +96,8 @@ pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -
                 both(&mut out.entries, row, at + 1, sign * e.y);
                 both(&mut out.entries, row, at + 2, sign * e.dot(&turned(arm)) + share * turning);
             }
-            out.entries.push((row, row, c.compliance[i]));
         }
+        out.forces.add(index, index, [[c.compliance[0], 0.0], [0.0, c.compliance[1]]]);
         if geometry.finite {
             let push = e[0] * force[index][0] + e[1] * force[index][1];
             let across = turned(push);

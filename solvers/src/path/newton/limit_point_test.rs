@@ -195,14 +195,14 @@ fn responses_of(
         entries.extend(row.iter().filter(|e| e.0 < size).map(|&(j, v)| (i, j, by * v)));
     };
     for (c, mode) in active.modes.iter().enumerate() {
-        let gap = [0, 1].map(|k| equations.gaps.row(2 * c + k));
+        let gap: [Vec<(usize, f64)>; 2] = [0, 1].map(|k| equations.gaps.row(2 * c + k).collect());
         let law = system.law(c).map_or(&[][..], |law| &law.facets);
         for (k, own) in mode.rows(law)?.into_iter().enumerate() {
             let i = 2 * c + k;
             entries.extend((0..2).filter(|t| own[*t] != 0.0).map(|t| (i, 2 * c + t, own[t])));
             for t in (0..2).filter(|t| own[2 + t] != 0.0) {
-                add(i, gap[t], own[2 + t], &mut entries);
-                right[i] += own[2 + t] * driven(gap[t]);
+                add(i, &gap[t], own[2 + t], &mut entries);
+                right[i] += own[2 + t] * driven(&gap[t]);
             }
             if *mode == ContactMode::Stick {
                 shift.push((i, i, REGULARISATION));

@@ -16,14 +16,16 @@
 //! [`condensed`](crate::linear::condensed).
 
 use super::derivatives::Gradient;
-use super::equations::Equations;
-use super::factors::Kept;
+use super::equations::{Equations, REGULARISATION};
+use super::factors::{Kept, ModeEquations};
 use super::response::{traction_residual, traction_row};
 use super::state::State;
 use super::system::StepSystem;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
+use crate::linear::chain::{BodyRows, ChainFactors};
+use crate::linear::condensed::Condensed;
 use crate::linear::csr::CsrMatrix;
 use std::rc::Rc;
 
@@ -72,33 +74,72 @@ pub(super) fn residual_of(system: &StepSystem, start: &State, state: &State, gra
     out
 }
 
-fn is_constant(system: &StepSystem, equations: &Equations) -> bool {
-    system.cache.equations.as_ref().is_some_and(|constant| std::ptr::eq(&**constant, equations))
+/// Normals and flows of the laws' facets.
+fn directions(system: &StepSystem) -> Vec<[f64; 4]> {
+    let facets = system.laws.polygons.iter().flat_map(|law| &law.facets);
+    facets.map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]).collect()
 }
 
-/// The modes' linear equations, factorised, and whether that is done before: where nothing else than modes makes them, those of
-/// the same modes are taken again.
+fn damping(system: &StepSystem) -> f64 {
+    system.damping.as_ref().map_or(0.0, |damping| damping.rate)
+}
+
+/// The last factors, where they are of these equations in the state's modes and modes alone make the rows.
+pub(super) fn kept<'s>(system: &'s StepSystem, state: &State, equations: &Rc<Equations>) -> Option<&'s Kept> {
+    let kept = system.cache.factors.last.as_ref().filter(|_| system.laws.responses.is_empty())?;
+    let same = Rc::ptr_eq(&kept.equations, equations) && kept.modes == state.mode && kept.damping == damping(system);
+    (same && kept.directions == directions(system)).then_some(kept)
+}
+
+/// The modes' linear equations, factorised, and whether that is done before: where modes alone make them, those of the
+/// same modes and equations are taken again.
 pub(super) fn factorised(
+    system: &mut StepSystem,
+    state: &State,
+    equations: &Rc<Equations>,
+    row: &[f64],
+) -> Option<(Rc<BorderedFactors<ModeEquations>>, bool)> {
+    if let Some(kept) = kept(system, state, equations).filter(|kept| kept.held.serves(row)) {
+        return Some((kept.held.clone(), true));
+    }
+    let (damping, directions) = (damping(system), directions(system));
+    system.count("factorisations", 1);
+    let chain = system.scaled.chain.clone().filter(|_| system.geometry.pattern.couples());
+    let held = match chain {
+        Some(chain) => BorderedFactors::new(state.mode.len(), row, |last| {
+            let points = (0..state.mode.len()).map(|c| match system.laws.responses.is(c) {
+                true => {
+                    let (own, stiffness) = traction_row(system, state, c);
+                    Equations::response_rows(own, stiffness)
+                }
+                false => Equations::point_rows(system.law(c), state.mode[c]),
+            });
+            let bodies = BodyRows { rows: equations.bodies.clone(), diagonal: -damping, shift: -REGULARISATION };
+            let factors = ChainFactors::new(equations.gaps.clone(), bodies, points.collect(), last, &chain);
+            factors.map(ModeEquations::Chain)
+        }),
+        None => by_rows(system, state, equations, row, damping),
+    };
+    let held = Rc::new(held?);
+    system.cache.factors.last = system.laws.responses.is_empty().then(|| Kept {
+        equations: equations.clone(),
+        modes: state.mode.clone(),
+        directions,
+        damping,
+        held: held.clone(),
+    });
+    Some((held, false))
+}
+
+/// The same row by row, whatever bodies stand beside each other.
+fn by_rows(
     system: &mut StepSystem,
     state: &State,
     equations: &Equations,
     row: &[f64],
-) -> Option<(Rc<BorderedFactors>, bool)> {
-    let again = system.laws.responses.is_empty() && is_constant(system, equations);
-    let directions: Vec<[f64; 4]> = system
-        .laws
-        .polygons
-        .iter()
-        .flat_map(|law| law.facets.iter().map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]))
-        .collect();
-    if let Some(kept) = system.cache.factors.last.as_ref().filter(|_| again)
-        && kept.modes == state.mode
-        && kept.directions == directions
-        && kept.held.serves(row)
-    {
-        return Some((kept.held.clone(), true));
-    }
-    let capacity = equations.gaps.entries() + equations.bodies.entries();
+    damping: f64,
+) -> Option<BorderedFactors<ModeEquations>> {
+    let capacity = equations.bodies.entries() + 8 * system.size();
     let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(8 * system.size()));
     for (c, mode) in state.mode.iter().enumerate() {
         let answer = system.laws.responses.is(c).then(|| traction_row(system, state, c));
@@ -112,12 +153,15 @@ pub(super) fn factorised(
             shifts.end_row();
         }
     }
-    equations.bodies(&mut rows, &mut shifts, system.damping.as_ref().map_or(0.0, |damping| damping.rate));
-    system.count("factorisations", 1);
-    let held = BorderedFactors::new(rows, shifts, state.mode.len(), row, &mut system.cache.factors.elimination)?;
-    let held = Rc::new(held);
-    system.cache.factors.last = again.then(|| Kept { modes: state.mode.clone(), directions, held: held.clone() });
-    Some((held, false))
+    equations.bodies(&mut rows, &mut shifts, damping);
+    shifts.end_row();
+    let elimination = &mut system.cache.factors.elimination;
+    BorderedFactors::new(state.mode.len(), row, |last| {
+        let mut rows = rows.clone();
+        rows.open_row().extend(last);
+        rows.end_row();
+        Condensed::of(rows, &shifts, state.mode.len(), elimination).map(ModeEquations::Sparse)
+    })
 }
 
 /// Solves the modes' linear equations for one right-hand side in units, and whether it is solved:
@@ -125,7 +169,7 @@ pub(super) fn factorised(
 pub(super) fn solve_linear(
     system: &mut StepSystem,
     state: &State,
-    equations: &Equations,
+    equations: &Rc<Equations>,
     row: &[f64],
     right: &[f64],
 ) -> Option<(Vec<f64>, bool)> {
@@ -141,7 +185,7 @@ pub(super) fn solve_linear(
 }
 
 /// The solution of the equations without what was added, by refinement, and whether there is one.
-fn refined(bordered: &BorderedSystem, right: &[f64]) -> Option<(Vec<f64>, bool)> {
+fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(Vec<f64>, bool)> {
     let mut x = vec![0.0; right.len()];
     let mut rest = right.to_vec();
     let mut before = f64::INFINITY;

@@ -2,7 +2,8 @@
 //! column from the factorised equations.
 
 use super::control::Control;
-use super::linearised::factorised;
+use super::factors::ModeEquations;
+use super::linearised::{factorised, kept};
 use super::measure::increment_along;
 use super::state::State;
 use super::system::StepSystem;
@@ -10,6 +11,7 @@ use super::tangent::tangent_at;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::BorderedSystem;
+use crate::linear::inner;
 use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
 use nalgebra::DMatrix;
 
@@ -29,25 +31,38 @@ pub(super) fn second_order_work(system: &mut StepSystem, state: &State) -> Optio
 }
 
 /// The equations with the factor held.
-fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem> {
+fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<ModeEquations>> {
     let gradient = system.gradient(state);
     let equations = system.equations(state, &gradient);
     let mut row = vec![0.0; system.size()];
     row[system.size() - 1] = 1.0;
-    let (held, _) = factorised(system, state, &equations, &row)?;
+    let held = match kept(system, state, &equations).filter(|kept| kept.held.borders(&row)) {
+        Some(kept) => kept.held.clone(),
+        None => factorised(system, state, &equations, &row)?.0,
+    };
     BorderedSystem::new(held, &row)
 }
 
 /// Motions that solve the equations for some right-hand sides.
-fn solved(held: &BorderedSystem, rights: &[Vec<f64>], first: usize) -> Option<Vec<Vec<f64>>> {
-    let equations = held.equations();
-    let found = equations.condense(rights)?;
-    let motions = rights.first()?.len() - 1 - first;
-    Some(found.iter().map(|y| (0..motions).map(|j| equations.other(first + j, y)).collect()).collect())
+fn solved(held: &BorderedSystem<ModeEquations>, rights: &[Vec<f64>], first: usize) -> Option<Vec<Vec<f64>>> {
+    let mut found = held.equations().motions(first, rights)?;
+    if let Some((control, w, along)) = held.border() {
+        for z in &mut found {
+            let t = -inner(&control[first..], z) / along;
+            z.iter_mut().zip(&w[first..]).for_each(|(z, w)| *z += t * w);
+        }
+    }
+    found.iter_mut().for_each(|z| z.truncate(z.len() - 1));
+    Some(found)
 }
 
 /// S times the columns of a matrix. Balance is −∂V/∂q: what it says of K is −K.
-fn images(held: &BorderedSystem, basis: &DMatrix<f64>, first: usize, size: usize) -> Option<DMatrix<f64>> {
+fn images(
+    held: &BorderedSystem<ModeEquations>,
+    basis: &DMatrix<f64>,
+    first: usize,
+    size: usize,
+) -> Option<DMatrix<f64>> {
     let right = |column: usize| {
         let mut right = vec![0.0; size];
         (0..basis.nrows()).for_each(|j| right[first + j] = -basis[(j, column)]);

@@ -5,6 +5,7 @@ use super::geometry::Place;
 use super::loads::Loads;
 use super::tractions::TractionUpdates;
 use crate::contact::mode::ContactMode;
+use std::rc::Rc;
 
 /// A state with its history.
 #[derive(Debug, Clone)]
@@ -26,6 +27,19 @@ impl State {
     /// Where derivatives at it are taken.
     pub fn place<'a>(&'a self, loads: &'a Loads<'a>) -> Place<'a> {
         Place { force: &self.force, motion: &self.motion, loads, blocks: &self.blocks }
+    }
+
+    /// Whether derivatives at another state are those at this one.
+    pub fn is_at_place_of(&self, other: &State) -> bool {
+        let same = |(a, b): (&Option<YieldingBlock>, &Option<YieldingBlock>)| match (a, b) {
+            (Some(a), Some(b)) => Rc::ptr_eq(&a.linear, &b.linear),
+            (None, None) => true,
+            _ => false,
+        };
+        self.factor == other.factor
+            && self.force == other.force
+            && self.motion == other.motion
+            && self.blocks.iter().zip(&other.blocks).all(same)
     }
 
     /// Whether a block yields in the step that ends here.

@@ -4,7 +4,7 @@ use super::blocks::{YieldingBlock, undeformed};
 use super::control::MonitorWeights;
 use super::derivatives::Gradient;
 use super::equations::Equations;
-use super::factors::Factorised;
+use super::factors::LastFactors;
 use super::geometry::Geometry;
 use super::kinematics::{gradient, hessian};
 use super::loads::StagedLoads;
@@ -34,7 +34,9 @@ pub(super) struct Laws {
 pub(super) struct Cache {
     /// Gaps and balance of linear blocks with small displacements, of the present load step.
     pub equations: Option<Rc<Equations>>,
-    pub factors: Factorised,
+    /// The last ones of finite displacements or blocks that yield, with the state that they are of.
+    pub at: Option<(State, Rc<Equations>)>,
+    pub factors: LastFactors,
 }
 
 /// The system of a step.
@@ -146,7 +148,7 @@ impl<'a> StepSystem<'a> {
     pub fn load(&mut self, loads: StagedLoads<'a>) {
         self.scaled.units.factor = self.scaled.units.of_factor(self.problem, loads.growing);
         self.loads = loads;
-        self.cache.equations = None;
+        (self.cache.equations, self.cache.at) = (None, None);
         self.cache.factors.forget();
     }
 
@@ -244,12 +246,18 @@ impl<'a> StepSystem<'a> {
     /// Gaps and balance linearised at a state.
     pub fn equations(&mut self, state: &State, gradient: &Gradient) -> Rc<Equations> {
         if self.finite() || state.yields() {
+            if let Some((_, equations)) = self.cache.at.as_ref().filter(|(at, _)| at.is_at_place_of(state)) {
+                return equations.clone();
+            }
             let loads = self.loads.at(state.factor);
-            return Rc::new(Equations::new(&self.scaled, &hessian(&self.geometry, &state.place(&loads), gradient)));
+            let hessian = hessian(&self.geometry, &state.place(&loads), gradient);
+            let equations = Rc::new(Equations::new(&self.scaled, hessian));
+            self.cache.at = Some((state.clone(), equations.clone()));
+            return equations;
         }
         let linear = || {
             let load = Load::new(&self.scaled, self.problem, self.loads.growing);
-            Rc::new(Equations::linear(&self.scaled, &load))
+            Rc::new(Equations::linear(&self.scaled, &load, self.geometry.pattern.clone()))
         };
         self.cache.equations.get_or_insert_with(linear).clone()
     }

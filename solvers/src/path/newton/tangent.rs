@@ -7,6 +7,7 @@ use super::linearised::solve_linear;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
+use std::rc::Rc;
 
 /// Greatest force, in units, up to which the path begins from nothing: tolerances are then those of the forces themselves,
 /// and the least that they are.
@@ -15,6 +16,15 @@ const LEAST: f64 = 1e-12;
 
 pub(super) fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);
+    if share == 1.0 {
+        // What is left of a force that the mode says is rounding.
+        for (c, force) in state.force.iter_mut().enumerate() {
+            if let Some(corner) = system.law(c).and_then(|law| law.corner(state.mode[c])) {
+                let area = system.problem.contacts[c].area;
+                *force = corner.map(|r| r * area);
+            }
+        }
+    }
     state.factor += share * step[step.len() - 1] * system.units().factor;
     system.settle(&mut state.motion, state.factor);
 }
@@ -107,7 +117,7 @@ pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes:
 }
 
 /// Tangent of a state with its modes held, per unit of `row`.
-fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Equations, row: &[f64]) -> Option<Tangent> {
+fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Rc<Equations>, row: &[f64]) -> Option<Tangent> {
     let mut right = vec![0.0; system.size()];
     right[system.size() - 1] = 1.0;
     let (x, _) = solve_linear(system, state, equations, row, &right).filter(|(_, solved)| *solved)?;
@@ -128,8 +138,8 @@ pub(super) fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
 
 /// The rate of a solution of the linear equations.
 pub(super) fn tangent_from(system: &StepSystem, x: &[f64], state: &State, equations: &Equations) -> Tangent {
-    let rows = &equations.gaps;
-    let along = |i: usize| rows.row_dot(i, x) * system.units().displacement;
-    let gap = (0..state.gap.len()).map(|c| [along(2 * c), along(2 * c + 1)]).collect();
+    let along = equations.gaps.product(x);
+    let gap = (0..state.gap.len()).map(|c| [along[2 * c], along[2 * c + 1]].map(|g| g * system.units().displacement));
+    let gap = gap.collect();
     Tangent { gap, ..tangent_without_gaps(system, x) }
 }

@@ -18,7 +18,7 @@ use super::equations::Equations;
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::condensed::{Elimination, pair};
+use crate::linear::condensed::{Condensed, Elimination, pair};
 use crate::linear::csr::CsrMatrix;
 use crate::linear::updated::UpdatedFactorisation;
 use nalgebra::{DMatrix, DVector};
@@ -42,7 +42,7 @@ struct Change {
 
 /// A factorisation with what has changed since.
 struct Base {
-    updated: UpdatedFactorisation<BorderedSystem>,
+    updated: UpdatedFactorisation<BorderedSystem<Condensed>>,
     /// x_0: right-hand sides, kept unknowns.
     from: Vec<f64>,
     changes: Vec<Change>,
@@ -131,13 +131,13 @@ impl UpdatedEquations {
             }
         }
         self.equations.bodies(&mut rows, &mut shifts, 0.0);
-        let held = BorderedFactors::new(
-            rows.with(&shifts),
-            CsrMatrix::empty(self.control.len() - 1),
-            self.points,
-            &self.control,
-            &mut self.elimination,
-        )?;
+        let (all, nothing) = (rows.with(&shifts), CsrMatrix::empty(self.control.len()));
+        let held = BorderedFactors::new(self.points, &self.control, |last| {
+            let mut all = all.clone();
+            all.open_row().extend(last);
+            all.end_row();
+            Condensed::of(all, &nothing, self.points, &mut self.elimination)
+        })?;
         let factors = BorderedSystem::new(Rc::new(held), &self.control)?;
         let mut x = factors.apply(&self.right)?;
         let step = factors.apply(&factors.left(&self.right, &x).0)?;

@@ -1,0 +1,347 @@
+//! Rows of contact points over contact forces, in dense blocks between groups of points, and over all other unknowns.
+//!
+//! Points of one joint are a group, next to each other. Groups on one elastic body feel each other: their entries stand
+//! in a block, column by column, so that products, sums of rows and the assembly of factors run along columns. A group
+//! that touches no elastic body has a diagonal only.
+
+use super::csr::CsrMatrix;
+use nalgebra::{DMatrix, Matrix2};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Which groups feel each other.
+#[derive(Debug, Default)]
+pub struct Pattern {
+    /// First contact point of every group, and the number of points.
+    start: Vec<usize>,
+    /// Group of every contact point.
+    group: Vec<usize>,
+    /// By groups of rows, in order: the group of the columns, and where the block begins.
+    beside: Vec<Vec<(usize, usize)>>,
+    /// Numbers in all blocks.
+    entries: usize,
+}
+
+impl Pattern {
+    /// Of contact points by their groups, numbered in order, whose groups feel each other in `pairs` (both ways).
+    pub fn new(group: Vec<usize>, pairs: impl IntoIterator<Item = (usize, usize)>) -> Self {
+        let groups = group.last().map_or(0, |last| last + 1);
+        let mut start = vec![0; groups + 1];
+        group.iter().for_each(|g| start[g + 1] += 1);
+        (0..groups).for_each(|g| start[g + 1] += start[g]);
+        let mut beside: Vec<Vec<(usize, usize)>> = vec![Vec::new(); groups];
+        for (a, b) in pairs {
+            for (row, column) in [(a, b), (b, a)] {
+                if !beside[row].iter().any(|e| e.0 == column) {
+                    beside[row].push((column, 0));
+                }
+            }
+        }
+        let mut entries = 0;
+        for (row, own) in beside.iter_mut().enumerate() {
+            own.sort_unstable();
+            for (column, at) in own {
+                *at = entries;
+                entries += 4 * (start[row + 1] - start[row]) * (start[*column + 1] - start[*column]);
+            }
+        }
+        Pattern { start, group, beside, entries }
+    }
+
+    /// Number of groups.
+    pub fn groups(&self) -> usize {
+        self.beside.len()
+    }
+
+    /// Whether any groups feel each other.
+    pub fn couples(&self) -> bool {
+        self.entries > 0
+    }
+
+    /// Group of a contact point.
+    pub fn group(&self, contact: usize) -> usize {
+        self.group[contact]
+    }
+
+    /// Contact points of a group.
+    pub fn contacts(&self, group: usize) -> Range<usize> {
+        self.start[group]..self.start[group + 1]
+    }
+
+    /// Groups whose forces the gaps of a group feel by blocks.
+    pub fn beside(&self, group: usize) -> impl Iterator<Item = usize> {
+        self.beside[group].iter().map(|e| e.0)
+    }
+
+    fn rows(&self, group: usize) -> Range<usize> {
+        2 * self.start[group]..2 * self.start[group + 1]
+    }
+
+    fn block(&self, row: usize, column: usize) -> Option<usize> {
+        self.beside[row].iter().find(|e| e.0 == column).map(|e| e.1)
+    }
+}
+
+/// A square matrix over contact forces.
+#[derive(Debug, Clone)]
+pub struct BlockMatrix {
+    pattern: Arc<Pattern>,
+    /// Blocks one after the other, each column by column.
+    values: Vec<f64>,
+    /// Diagonal of groups without a block of their own.
+    diagonal: Vec<f64>,
+}
+
+impl BlockMatrix {
+    /// Nothing but zeros.
+    pub fn zeros(pattern: Arc<Pattern>) -> Self {
+        let (values, diagonal) = (vec![0.0; pattern.entries], vec![0.0; 2 * pattern.group.len()]);
+        BlockMatrix { pattern, values, diagonal }
+    }
+
+    /// Which groups feel each other.
+    pub fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    /// All entries times a factor.
+    pub fn scale(&mut self, by: f64) {
+        self.values.iter_mut().chain(&mut self.diagonal).for_each(|v| *v *= by);
+    }
+
+    /// Adds the 2 × 2 entries between two points, row by row; without a block of theirs only a diagonal may be.
+    pub fn add(&mut self, row: usize, column: usize, entries: [[f64; 2]; 2]) {
+        let pattern = &*self.pattern;
+        let (a, b) = (pattern.group[row], pattern.group[column]);
+        let Some(at) = pattern.block(a, b) else {
+            debug_assert_eq!(row, column);
+            (0..2).for_each(|k| self.diagonal[2 * row + k] += entries[k][k]);
+            return;
+        };
+        let height = 2 * (pattern.start[a + 1] - pattern.start[a]);
+        let first = at + 2 * (column - pattern.start[b]) * height + 2 * (row - pattern.start[a]);
+        for (i, entries) in entries.into_iter().enumerate() {
+            self.values[first + i] += entries[0];
+            self.values[first + height + i] += entries[1];
+        }
+    }
+
+    /// Adds to the block of two groups all 2 × 2 entries Mᵀ C N between points of them: C a matrix over the slots of the
+    /// points, given as (point, slot, frame) in their order.
+    pub fn add_turned(
+        &mut self,
+        rows: &[(usize, usize, Matrix2<f64>)],
+        columns: &[(usize, usize, Matrix2<f64>)],
+        c: &DMatrix<f64>,
+    ) {
+        let (Some(first), Some(other)) = (rows.first(), columns.first()) else { return };
+        let pattern = &*self.pattern;
+        let (a, b) = (pattern.group[first.0], pattern.group[other.0]);
+        let Some(at) = pattern.block(a, b) else { return };
+        let (own, height) = (pattern.rows(a), pattern.rows(a).len());
+        let block = &mut self.values[at..at + height * pattern.rows(b).len()];
+        let slots = c.nrows();
+        for (point, slot, n) in columns {
+            let (x, y) = c.as_slice()[2 * slot * slots..][..2 * slots].split_at(slots);
+            let target = &mut block[2 * (point - pattern.start[b]) * height..][..2 * height];
+            let (normal, tangent) = target.split_at_mut(height);
+            for (point, slot, m) in rows {
+                let (k, s) = (2 * point - own.start, 2 * slot);
+                let [p, q] = [0, 1].map(|j| {
+                    let turned = [x[s] * n[(0, j)] + y[s] * n[(1, j)], x[s + 1] * n[(0, j)] + y[s + 1] * n[(1, j)]];
+                    [0, 1].map(|i| m[(0, i)] * turned[0] + m[(1, i)] * turned[1])
+                });
+                normal[k] += p[0];
+                normal[k + 1] += p[1];
+                tangent[k] += q[0];
+                tangent[k + 1] += q[1];
+            }
+        }
+    }
+
+    /// Adds one entry; without a block of its own only to the diagonal.
+    pub fn add_entry(&mut self, i: usize, j: usize, value: f64) {
+        let mut entries = [[0.0; 2]; 2];
+        entries[i % 2][j % 2] = value;
+        self.add(i / 2, j / 2, entries);
+    }
+
+    /// Entries of a row that are not nothing, by columns.
+    fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let pattern = &*self.pattern;
+        let group = pattern.group[i / 2];
+        let (rows, diagonal) = (pattern.rows(group), self.diagonal[i]);
+        let (height, own) = (rows.len(), i - rows.start);
+        let blocks = pattern.beside[group].iter().flat_map(move |&(column, at)| {
+            pattern.rows(column).enumerate().map(move |(k, j)| (j, self.values[at + k * height + own]))
+        });
+        blocks.chain([(i, diagonal)]).filter(|e| e.1 != 0.0)
+    }
+
+    /// Columns of the blocks of a group of rows: their index among the forces, and their numbers.
+    pub fn columns(&self, group: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let pattern = &*self.pattern;
+        let height = pattern.rows(group).len();
+        pattern.beside[group].iter().flat_map(move |&(column, at)| {
+            let rows = pattern.rows(column);
+            let block = &self.values[at..at + height * rows.len()];
+            rows.zip(block.chunks_exact(height))
+        })
+    }
+
+    /// Diagonal entry of a row, where its group has no block of its own.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.diagonal[i]
+    }
+
+    /// Blocks of a group of rows: the forces of the columns, and the numbers column by column.
+    fn blocks(&self, group: usize) -> impl Iterator<Item = (Range<usize>, &[f64])> {
+        let pattern = &*self.pattern;
+        let height = pattern.rows(group).len();
+        pattern.beside[group].iter().map(move |&(column, at)| {
+            let rows = pattern.rows(column);
+            let size = height * rows.len();
+            (rows, &self.values[at..at + size])
+        })
+    }
+
+    /// out += A x.
+    pub fn add_product(&self, x: &[f64], out: &mut [f64]) {
+        for group in 0..self.pattern.groups() {
+            let out = &mut out[self.pattern.rows(group)];
+            for (columns, block) in self.blocks(group) {
+                super::dense::add_block(out, block, &x[columns]);
+            }
+        }
+        out.iter_mut().zip(self.diagonal.iter().zip(x)).for_each(|(out, (d, x))| *out += d * x);
+    }
+
+    /// out += A x, and the sizes of what adds up.
+    fn add_product_and_sizes(&self, x: &[f64], out: &mut [f64], sizes: &mut [f64]) {
+        for group in 0..self.pattern.groups() {
+            let rows = self.pattern.rows(group);
+            for (columns, block) in self.blocks(group) {
+                let (out, sizes) = (&mut out[rows.clone()], &mut sizes[rows.clone()]);
+                super::dense::add_block_and_sizes((out, sizes), block, &x[columns]);
+            }
+        }
+        let all = out.iter_mut().zip(sizes.iter_mut()).zip(self.diagonal.iter().zip(x));
+        for ((out, size), (d, x)) in all {
+            *out += d * x;
+            *size += (d * x).abs();
+        }
+    }
+
+    /// out += wᵀ A.
+    fn add_weighted(&self, w: &[f64], out: &mut [f64]) {
+        for group in 0..self.pattern.groups() {
+            let w = &w[self.pattern.rows(group)];
+            if w.iter().any(|w| *w != 0.0) {
+                for (columns, block) in self.blocks(group) {
+                    super::dense::add_row_block(&mut out[columns], w, block);
+                }
+            }
+        }
+        out.iter_mut().zip(self.diagonal.iter().zip(w)).for_each(|(out, (d, w))| *out += d * w);
+    }
+}
+
+/// Rows of contact points over all unknowns: two per point.
+#[derive(Debug)]
+pub struct GapRows {
+    /// Over contact forces.
+    pub forces: BlockMatrix,
+    /// Over all other unknowns, by their index among all.
+    pub others: CsrMatrix,
+}
+
+impl GapRows {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.others.len()
+    }
+
+    /// Entries of a row, forces first.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.forces.row(i).chain(self.others.row(i).iter().copied())
+    }
+
+    /// One row times all unknowns.
+    pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
+        self.row(i).map(|(j, v)| v * x[j]).sum()
+    }
+
+    /// All rows times all unknowns.
+    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+        let mut out: Vec<f64> = (0..self.len()).map(|i| self.others.row_dot(i, x)).collect();
+        self.forces.add_product(&x[..self.len()], &mut out);
+        out
+    }
+
+    /// The same, and the sizes of what adds up.
+    pub fn product_and_sizes(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut out, mut sizes) = (vec![0.0; self.len()], vec![0.0; self.len()]);
+        for (i, (out, size)) in out.iter_mut().zip(&mut sizes).enumerate() {
+            for (j, v) in self.others.row(i) {
+                *out += v * x[*j];
+                *size += (v * x[*j]).abs();
+            }
+        }
+        self.forces.add_product_and_sizes(&x[..self.len()], &mut out, &mut sizes);
+        (out, sizes)
+    }
+
+    /// Adds the sum of weighted rows.
+    pub fn add_weighted(&self, weights: &[f64], out: &mut [f64]) {
+        self.forces.add_weighted(weights, &mut out[..weights.len()]);
+        for (i, w) in weights.iter().enumerate().filter(|(_, w)| **w != 0.0) {
+            self.others.row(i).iter().for_each(|&(j, v)| out[j] += w * v);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Products, sums of rows, rows and 2 × 2 blocks are those of the matrix entry by entry.
+    #[test]
+    fn blocks_are_the_matrix_entry_by_entry() {
+        let pattern = Pattern::new(vec![0, 0, 1, 1, 1, 2, 3], [(0, 0), (1, 1), (0, 1), (1, 2), (2, 2)]);
+        let (points, size) = (7, 17);
+        let mut forces = BlockMatrix::zeros(Arc::new(pattern));
+        let value = |i: usize, j: usize| ((13 * i + 7 * j * j + 2) as f64).sin();
+        let coupled = |a: usize, b: usize| {
+            let group = [0, 0, 1, 1, 1, 2, 3];
+            [(0, 0), (1, 1), (0, 1), (1, 0), (1, 2), (2, 1), (2, 2)].contains(&(group[a], group[b]))
+        };
+        let mut dense = vec![vec![0.0; size]; 2 * points];
+        for a in 0..points {
+            for b in (0..points).filter(|b| coupled(a, *b) || (a == 6 && *b == 6)) {
+                let all =
+                    [0, 1].map(|i| [0, 1].map(|j| if a == 6 && i != j { 0.0 } else { value(2 * a + i, 2 * b + j) }));
+                forces.add(a, b, all);
+                (0..2).for_each(|i| (0..2).for_each(|j| dense[2 * a + i][2 * b + j] = all[i][j]));
+            }
+        }
+        let others: Vec<Vec<(usize, f64)>> = (0..2 * points).map(|i| vec![(14 + i % 3, value(i, 3))]).collect();
+        others.iter().enumerate().for_each(|(i, row)| row.iter().for_each(|&(j, v)| dense[i][j] = v));
+        let rows = GapRows { forces, others: CsrMatrix::from_rows(&others) };
+        let x: Vec<f64> = (0..size).map(|i| if i % 5 == 1 { 0.0 } else { value(i, 8) }).collect();
+        let w: Vec<f64> = (0..2 * points).map(|i| if (4..10).contains(&i) { 0.0 } else { value(i, 5) }).collect();
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-13;
+        let (product, sizes) = rows.product_and_sizes(&x);
+        for i in 0..2 * points {
+            let exact: f64 = dense[i].iter().zip(&x).map(|(a, x)| a * x).sum();
+            let size: f64 = dense[i].iter().zip(&x).map(|(a, x)| (a * x).abs()).sum();
+            assert!(close(rows.product(&x)[i], exact) && close(product[i], exact) && close(rows.row_dot(i, &x), exact));
+            assert!(close(sizes[i], size));
+            let row: Vec<(usize, f64)> = rows.row(i).collect();
+            let own: Vec<(usize, f64)> = dense[i].iter().copied().enumerate().filter(|e| e.1 != 0.0).collect();
+            assert_eq!(row, own);
+        }
+        let mut sum = vec![0.0; size];
+        rows.add_weighted(&w, &mut sum);
+        assert!((0..size).all(|j| close(sum[j], (0..2 * points).map(|i| w[i] * dense[i][j]).sum())));
+    }
+}

@@ -1,0 +1,356 @@
+//! Equations of contact points and bodies along a chain of elastic bodies, factorised by fronts.
+//!
+//! The two rows of a contact point are combinations of its forces and its gaps, so that they never stand in memory,
+//!
+//! ```text
+//! P r_c + S g_c = f_c        g = C r + G q + g_λ λ
+//! ```
+//!
+//! then come those of the bodies and one more. Blocks of C go into fronts column by column, residuals are products with
+//! C. Points whose rows hold no gap (open ones, S = 0) are condensed out: r_c = P⁻¹ f_c. What is added to them, a soft
+//! spring between two bodies, is added to the rows of the bodies. Residuals are those of all equations without what was
+//! added.
+
+use super::blocks::GapRows;
+use super::csr::CsrMatrix;
+use super::factorised::Factorised;
+use std::rc::Rc;
+use voussoir_core::linear::{FrontRows, FrontalLu};
+
+/// Determinant of P, relative to its entries, with which a point is condensed out.
+const STRONG: f64 = 1e-3;
+
+/// The two rows of a contact point by its forces and its gaps, and what is added to both.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PointRows {
+    /// P.
+    pub force: [[f64; 2]; 2],
+    /// S.
+    pub gap: [[f64; 2]; 2],
+    /// Added to P.
+    pub force_shift: [[f64; 2]; 2],
+    /// Added to S.
+    pub gap_shift: [[f64; 2]; 2],
+}
+
+/// Rows of the bodies, and what is added to their diagonal.
+#[derive(Debug, Clone)]
+pub struct BodyRows {
+    /// Over all unknowns.
+    pub rows: Rc<CsrMatrix>,
+    /// Added to the diagonal, part of the equations.
+    pub diagonal: f64,
+    /// Added to the diagonal, taken out again by refinement.
+    pub shift: f64,
+}
+
+/// The equations.
+struct Equations {
+    gaps: Rc<GapRows>,
+    bodies: BodyRows,
+    points: Vec<PointRows>,
+    /// The last row.
+    last: Vec<(usize, f64)>,
+    /// P⁻¹ of points that are condensed out.
+    inverse: Vec<Option<[[f64; 2]; 2]>>,
+    /// Rows of the bodies and the last one over kept unknowns by their places, with what is added.
+    reduced: CsrMatrix,
+    /// Places of the forces of every group of points that are kept.
+    forces_of: Vec<std::ops::Range<usize>>,
+    /// Unknowns that are not.
+    kept: Vec<usize>,
+    /// Their places by unknowns; `usize::MAX` for the others.
+    place: Vec<usize>,
+}
+
+/// Factorised equations along a chain.
+pub struct ChainFactors {
+    equations: Equations,
+    factors: FrontalLu,
+}
+
+/// P⁻¹ of a point whose rows hold no gap.
+fn own_inverse(rows: &PointRows) -> Option<[[f64; 2]; 2]> {
+    if rows.gap != [[0.0; 2]; 2] {
+        return None;
+    }
+    let at = |i: usize, j: usize| rows.force[i][j];
+    let determinant = at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0);
+    let size = [0, 1].map(|i| at(i, 0).abs().max(at(i, 1).abs()));
+    let strong = determinant != 0.0 && determinant.abs() >= STRONG * size[0] * size[1];
+    strong.then(|| [[at(1, 1), -at(0, 1)], [-at(1, 0), at(0, 0)]].map(|row| row.map(|v| v / determinant)))
+}
+
+impl Equations {
+    fn forces(&self) -> usize {
+        2 * self.points.len()
+    }
+
+    /// A sum of both rows of a contact point over the unknowns that are no forces.
+    fn others(&self, contact: usize, weights: [f64; 2]) -> impl Iterator<Item = (usize, f64)> {
+        let row = move |k: usize| self.gaps.others.row(2 * contact + k).iter().map(move |&(j, v)| (j, weights[k] * v));
+        row(0).chain(row(1)).filter(|e| e.1 != 0.0)
+    }
+
+    /// Weights of the gaps of a row of a point, what is added among them.
+    fn gap_weights(&self, i: usize) -> [f64; 2] {
+        let (rows, k) = (&self.points[i / 2], i % 2);
+        [rows.gap[k][0] + rows.gap_shift[k][0], rows.gap[k][1] + rows.gap_shift[k][1]]
+    }
+
+    /// What the spring that is added to a point which is condensed out gives in a row of a body in which its forces have
+    /// these factors: weights of the gaps of that point.
+    fn condensed(&self, contact: usize, factors: [f64; 2]) -> Option<[f64; 2]> {
+        let (inverse, rows) = (self.inverse[contact]?, &self.points[contact]);
+        let by = [0, 1].map(|i| factors[0] * inverse[0][i] + factors[1] * inverse[1][i]);
+        Some([0, 1].map(|k| -(by[0] * rows.gap_shift[0][k] + by[1] * rows.gap_shift[1][k])))
+    }
+
+    /// Rows of the bodies and the last one over kept unknowns.
+    fn reduced_rows(&self) -> CsrMatrix {
+        let forces = self.forces();
+        let mut rows = CsrMatrix::with_capacity(self.bodies.rows.entries());
+        let mut sum = vec![0.0; self.kept.len()];
+        let mut met = vec![usize::MAX; self.kept.len()];
+        for i in 0..self.bodies.rows.len() {
+            let row = rows.open_row();
+            let begin = row.len();
+            let mut add = |j: usize, v: f64| {
+                let at = self.place[j];
+                if met[at] != i {
+                    (met[at], sum[at]) = (i, 0.0);
+                    row.push((at, 0.0));
+                }
+                sum[at] += v;
+            };
+            for &(j, v) in self.bodies.rows.row(i) {
+                if self.place[j] != usize::MAX {
+                    add(j, v);
+                } else if let Some(weights) = self.condensed(j / 2, if j % 2 == 0 { [v, 0.0] } else { [0.0, v] }) {
+                    self.others(j / 2, weights).for_each(|(j, v)| add(j, v));
+                }
+            }
+            add(forces + i, self.bodies.diagonal + self.bodies.shift);
+            row[begin..].iter_mut().for_each(|entry| entry.1 = sum[entry.0]);
+            rows.end_row();
+        }
+        let last = self.last.iter().map(|&(j, v)| (self.place[j], v));
+        rows.open_row().extend(last.filter(|e| e.0 != usize::MAX));
+        rows.end_row();
+        rows
+    }
+
+    /// A row of the bodies or the last one over kept unknowns, by its place.
+    fn row(&self, place: usize) -> &[(usize, f64)] {
+        self.reduced.row(self.kept[place] - self.forces())
+    }
+
+    /// Places of the own forces of the point of a row.
+    fn own_places(&self, i: usize) -> impl Iterator<Item = usize> {
+        let own = i - i % 2;
+        [self.place[own], self.place[own + 1]].into_iter().filter(|j| *j != usize::MAX)
+    }
+
+    /// Runs of rows of points of one group among rows: where they begin and end.
+    fn runs<'r>(&'r self, rows: &'r [usize]) -> impl Iterator<Item = (usize, &'r [usize])> {
+        let pattern = self.gaps.forces.pattern();
+        let group = |k: &usize| Some(self.kept[*k]).filter(|i| *i < self.forces()).map(|i| pattern.group(i / 2));
+        let mut first = 0;
+        rows.chunk_by(move |a, b| group(a).is_some() && group(a) == group(b)).map(move |run| {
+            first += run.len();
+            (first - run.len(), run)
+        })
+    }
+}
+
+impl FrontRows for Equations {
+    fn candidates(&self, row: usize, each: &mut dyn FnMut(usize)) {
+        let i = self.kept[row];
+        if i >= self.forces() {
+            return self.row(row).iter().for_each(|entry| each(entry.0));
+        }
+        self.own_places(i).for_each(&mut *each);
+        let weights = self.gap_weights(i);
+        if weights == [0.0; 2] {
+            return;
+        }
+        // Unknowns of a group have one rank.
+        let pattern = self.gaps.forces.pattern();
+        pattern
+            .beside(pattern.group(i / 2))
+            .filter_map(|group| self.forces_of[group].clone().next())
+            .for_each(&mut *each);
+        self.others(i / 2, weights).for_each(|(j, _)| each(self.place[j]));
+    }
+
+    fn unknowns(&self, rows: &[usize], each: &mut dyn FnMut(usize)) {
+        let pattern = self.gaps.forces.pattern();
+        for (_, run) in self.runs(rows) {
+            let first = self.kept[run[0]];
+            if first >= self.forces() {
+                run.iter().for_each(|row| self.row(*row).iter().for_each(|entry| each(entry.0)));
+                continue;
+            }
+            if run.iter().any(|k| self.gap_weights(self.kept[*k]) != [0.0; 2]) {
+                pattern
+                    .beside(pattern.group(first / 2))
+                    .flat_map(|group| self.forces_of[group].clone())
+                    .for_each(&mut *each);
+            }
+            for i in run.iter().map(|k| self.kept[*k]) {
+                self.own_places(i).for_each(&mut *each);
+                self.others(i / 2, self.gap_weights(i)).for_each(|(j, _)| each(self.place[j]));
+            }
+        }
+    }
+
+    fn add(&self, rows: &[usize], place: &[usize], values: &mut [f64], height: usize, first: usize) {
+        for (begin, run) in self.runs(rows) {
+            let (top, lead) = (first + begin, self.kept[run[0]]);
+            if lead >= self.forces() {
+                for (k, row) in run.iter().enumerate() {
+                    self.row(*row).iter().for_each(|&(j, v)| values[place[j] * height + top + k] += v);
+                }
+                continue;
+            }
+            let group = self.gaps.forces.pattern().group(lead / 2);
+            let start = self.gaps.forces.pattern().contacts(group).start;
+            let combined: Vec<(usize, [f64; 2])> =
+                run.iter().map(|row| (2 * (self.kept[*row] / 2 - start), self.gap_weights(self.kept[*row]))).collect();
+            for (j, column) in self.gaps.forces.columns(group).filter(|(j, _)| self.place[*j] != usize::MAX) {
+                let target = &mut values[place[self.place[j]] * height + top..][..run.len()];
+                for (target, (row, [a, b])) in target.iter_mut().zip(&combined) {
+                    *target += a * column[*row] + b * column[row + 1];
+                }
+            }
+            for (k, row) in run.iter().enumerate() {
+                let (i, mut add) = (self.kept[*row], |j: usize, v: f64| values[place[j] * height + top + k] += v);
+                let (c, weights, rows) = (i / 2, self.gap_weights(i), &self.points[i / 2]);
+                for (l, weight) in weights.into_iter().enumerate().filter(|(l, _)| self.place[2 * c + l] != usize::MAX)
+                {
+                    let own = rows.force[i % 2][l] + rows.force_shift[i % 2][l];
+                    add(self.place[2 * c + l], own + weight * self.gaps.forces.diagonal(2 * c + l));
+                }
+                self.others(c, weights).for_each(|(j, v)| add(self.place[j], v));
+            }
+        }
+    }
+}
+
+impl ChainFactors {
+    /// Factorises the rows of contact points, of bodies and the `last` one; `chain` has the rank of every unknown but the
+    /// last, which is eliminated at the end. `None` where they are singular in their pattern.
+    pub fn new(
+        gaps: Rc<GapRows>,
+        bodies: BodyRows,
+        points: Vec<PointRows>,
+        last: Vec<(usize, f64)>,
+        chain: &[usize],
+    ) -> Option<Self> {
+        let forces = 2 * points.len();
+        let size = forces + bodies.rows.len() + 1;
+        let inverse: Vec<_> = points.iter().map(own_inverse).collect();
+        let kept: Vec<usize> = (0..size).filter(|i| *i >= forces || inverse[i / 2].is_none()).collect();
+        let mut place = vec![usize::MAX; size];
+        kept.iter().enumerate().for_each(|(k, i)| place[*i] = k);
+        let end = chain.iter().copied().max().unwrap_or(0);
+        let rank: Vec<usize> = kept.iter().map(|i| chain.get(*i).copied().unwrap_or(end)).collect();
+        let pattern = gaps.forces.pattern();
+        let mut of = 0;
+        let forces_of = (0..pattern.groups()).map(|group| {
+            let kept = pattern.contacts(group).filter(|c| inverse[*c].is_none()).count();
+            of += 2 * kept;
+            of - 2 * kept..of
+        });
+        let forces_of = forces_of.collect();
+        let reduced = CsrMatrix::empty(0);
+        let mut equations = Equations { gaps, bodies, points, last, inverse, reduced, forces_of, kept, place };
+        equations.reduced = equations.reduced_rows();
+        let factors = FrontalLu::of(equations.kept.len(), &equations, &rank)?;
+        Some(ChainFactors { equations, factors })
+    }
+
+    /// What forces alone give, taken out of a right-hand side; kept rows of it.
+    fn without(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
+        let own = &self.equations;
+        let forces = own.forces();
+        let mut gap = vec![0.0; forces];
+        own.gaps.forces.add_product(&x[..forces], &mut gap);
+        let left = |i: &usize| match *i {
+            i if i < forces => {
+                let row = own.points[i / 2].gap[i % 2];
+                right[i] - row[0] * gap[i - i % 2] - row[1] * gap[i - i % 2 + 1]
+            }
+            i if i + 1 < x.len() => right[i] - own.bodies.rows.row_dot(i - forces, x),
+            i => right[i] - self.last_row_dot(x),
+        };
+        own.kept.iter().map(left).collect()
+    }
+
+    /// The unknowns after the contact forces, for right-hand sides of which the rows of contact points have none.
+    pub fn motions(&self, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        let own = &self.equations;
+        let of_kept = |right: &Vec<f64>| own.kept.iter().map(|i| right[*i]).collect();
+        let solved = self.factors.solve(&rights.iter().map(of_kept).collect::<Vec<_>>())?;
+        let motions = own.forces()..own.place.len();
+        Some(solved.iter().map(|y| motions.clone().map(|j| y[own.place[j]]).collect()).collect())
+    }
+}
+
+impl Factorised for ChainFactors {
+    fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
+        let own = &self.equations;
+        let mut x = vec![0.0; right.len()];
+        for (c, inverse) in own.inverse.iter().enumerate() {
+            if let Some(a) = inverse {
+                let f = [right[2 * c], right[2 * c + 1]];
+                (0..2).for_each(|k| x[2 * c + k] = a[k][0] * f[0] + a[k][1] * f[1]);
+            }
+        }
+        let reduced: Vec<f64> = match x.iter().any(|v| *v != 0.0) {
+            true => self.without(right, &x),
+            false => own.kept.iter().map(|i| right[*i]).collect(),
+        };
+        let y = self.factors.solve(&[reduced])?.swap_remove(0);
+        own.kept.iter().zip(&y).for_each(|(i, y)| x[*i] = *y);
+        Some(x)
+    }
+
+    fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let own = &self.equations;
+        let (gap, gap_sizes) = own.gaps.product_and_sizes(x);
+        let mut left = Vec::with_capacity(right.len());
+        let mut worst = 0.0f64;
+        let mut take = |rest: f64, size: f64| {
+            // A row of zeros is solved; what is no number is not.
+            let error = if rest == 0.0 { 0.0 } else { (rest / size).abs() };
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            left.push(rest);
+        };
+        for (c, rows) in own.points.iter().enumerate() {
+            for k in 0..2 {
+                let (mut rest, mut size) = (right[2 * c + k], right[2 * c + k].abs());
+                for l in 0..2 {
+                    let (own, of_gap) = (rows.force[k][l] * x[2 * c + l], rows.gap[k][l]);
+                    rest -= own + of_gap * gap[2 * c + l];
+                    size += own.abs() + of_gap.abs() * gap_sizes[2 * c + l];
+                }
+                take(rest, size);
+            }
+        }
+        let forces = own.forces();
+        for i in 0..own.bodies.rows.len() {
+            let damped = own.bodies.diagonal * x[forces + i];
+            let (rest, size) = own.bodies.rows.left_of_row(i, right[forces + i] - damped, x);
+            take(rest, size + damped.abs());
+        }
+        let products = || own.last.iter().map(|&(j, v)| v * x[j]);
+        let last = right[right.len() - 1];
+        take(last - products().sum::<f64>(), last.abs() + products().map(f64::abs).sum::<f64>());
+        (left, worst)
+    }
+
+    fn last_row_dot(&self, x: &[f64]) -> f64 {
+        self.equations.last.iter().map(|&(j, v)| v * x[j]).sum()
+    }
+}
