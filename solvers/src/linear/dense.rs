@@ -160,7 +160,8 @@ pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) 
         for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
             factors.iter_mut().enumerate().for_each(|(i, f)| *f = b[(j, i)]);
             match factors.as_slice() {
-                [0.0, 0.0] => {}
+                [0.0] | [0.0, 0.0] => {}
+                [f] => column.iter_mut().zip(a.as_slice()).for_each(|(t, a)| *t += a * f),
                 [f, g] => {
                     let (a, b) = a.as_slice().split_at(height);
                     column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);

@@ -69,8 +69,8 @@ fn newton_steps_hardly_grow_with_the_ring() {
     }
 }
 
-/// On elastic voussoirs the whole system is asked at the beginning and at the end only; an event of the chain of joints
-/// costs two steps of refinement at most, and one factorisation of all joints serves dozens.
+/// On elastic voussoirs the whole system is asked at the beginning and at the end only; at an event the points of few
+/// joints are examined: 6 and 9 of 14 and 41.
 #[test]
 fn an_event_of_elastic_voussoirs_costs_little() {
     for voussoirs in [13, 40] {
@@ -79,9 +79,9 @@ fn an_event_of_elastic_voussoirs_costs_little() {
         let counters = answered(&ring.study()).counters;
         let directions = counters["rate_problems"];
         assert!(counters["rate_problems_by_redundants"] + 5 >= directions, "{voussoirs}: {counters:?}");
-        assert!(counters["solves"] <= 2 * directions, "{voussoirs}: {counters:?}");
+        assert!(counters["factorisations"] <= 8 && counters["solves"] <= 20, "{voussoirs}: {counters:?}");
         assert!(5 * counters["rate_trials"] <= 6 * directions + 50, "{voussoirs}: {counters:?}");
-        assert!(counters["factorisations"] <= 4 + directions / 25, "{voussoirs}: {counters:?}");
+        assert!(counters["sections_looked_at"] <= 12 * directions, "{voussoirs}: {counters:?}");
     }
 }
 

@@ -48,6 +48,44 @@ fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
     }
 }
 
+/// Associated flow is followed by the tree of joints. Friction whose dilatancy misses its own angle by 1e-11 is not
+/// associated, so that the same path is found by the chain and the whole system: point by point the same events at
+/// the same factors.
+#[test]
+fn the_tree_of_joints_goes_where_the_chain_goes() {
+    for mu in [0.6f64, 0.35] {
+        let dilatancy = (mu * (1.0 - 1e-11)).atan().to_degrees();
+        let all = [
+            format!("law = \"coulomb_associated\"\nfriction = {mu:?}"),
+            format!("law = \"coulomb\"\nfriction = {mu:?}\ndilatancy_angle = {dilatancy:?}"),
+        ]
+        .map(|joint| {
+            let arch = Arch { joint, voussoirs: 17, ends: "jointed", ..Arch::default() };
+            let case = first_case(&elastic_study(&arch, "elements = [1, 4]\norder = 2"));
+            let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
+            let (answer, _) = trace(&problem);
+            let mut events: Vec<_> =
+                answer.events.iter().map(|e| (e.contact, format!("{:?}", e.what), e.factor)).collect();
+            events.sort_by(|a, b| (a.0, a.2).partial_cmp(&(b.0, b.2)).unwrap());
+            (answer, events)
+        });
+        let [(tree, own), (chain, other)] = all;
+        assert_eq!(
+            (tree.status, chain.status),
+            (Status::Collapse, Status::Collapse),
+            "{:?} {:?}",
+            tree.notes,
+            chain.notes
+        );
+        assert!(tree.counters["sections_looked_at"] > 0 && chain.counters["sections_looked_at"] == 0);
+        assert_close(tree.factor.unwrap(), chain.factor.unwrap(), 1e-10);
+        assert_eq!(own.len(), other.len());
+        for (a, b) in own.iter().zip(&other) {
+            assert!((a.0, &a.1) == (b.0, &b.1) && (a.2 - b.2).abs() < 1e-7 * b.2.abs().max(1.0), "{a:?} {b:?}");
+        }
+    }
+}
+
 /// Also with little friction, jointed ends and other rises; a locked arch ends unbounded.
 #[test]
 fn other_arches_end_where_limit_analysis_does() {

@@ -3,6 +3,7 @@
 use super::direction::{Next, next_direction};
 use super::elastic_chain::ElasticChain;
 use super::force_method::{Followed, RECORDED, Sections, by_force_method};
+use super::joint_tree::by_joint_tree;
 use super::next_event::{MOMENT, SAME, advance, next_event};
 use super::rates::Direction;
 use super::stability::stage_stability;
@@ -288,7 +289,16 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
     }
     let before = run.events;
     let bounds = (run.sense, run.target, run.most_events);
-    match by_force_method(&mut follower.trace, follower.sections.as_ref(), &run.load, bounds, &mut run.events) {
+    // What has not been recorded yet is not known there.
+    if run.unrecorded.events > 0 && !run.unrecorded.record(&mut follower.trace) {
+        return Err(End::Stalled("stopped by its observer".into()));
+    }
+    let trace = &mut follower.trace;
+    let followed = match &follower.sections {
+        Some(sections) => by_force_method(trace, sections, &run.load, bounds, &mut run.events),
+        None => by_joint_tree(trace, &run.load, bounds, &mut run.events),
+    };
+    match followed {
         Followed::Reached => return Ok(true),
         Followed::Stopped => return Err(End::Stalled("stopped by its observer".into())),
         Followed::Left => {}

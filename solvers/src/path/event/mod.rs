@@ -11,6 +11,7 @@ mod energy;
 mod factorisation;
 mod follow;
 mod force_method;
+mod joint_tree;
 mod next_event;
 mod point;
 mod rates;

@@ -1,7 +1,7 @@
 //! What all joints of the chain do for the redundants and the load, while points change their modes.
 
 use super::factors::{Factor, Factors};
-use super::joint::joints;
+use super::joint::{Joint, joints};
 use super::rates::ChainRates;
 use super::redundants::{MOST_WEAK, Open, closing};
 use crate::contact::mode::ContactMode;
@@ -10,6 +10,7 @@ use crate::path::event::force_method::Sections;
 use crate::path::event::rates::Rates;
 use crate::path::system::{Load, System};
 use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
+use std::rc::Rc;
 use voussoir_core::path::PathProblem;
 
 /// Changes of modes after which everything is factorised anew.
@@ -22,10 +23,11 @@ const CANCELS: f64 = 16.0;
 
 /// A chain of joints in the present modes.
 pub struct ElasticChain {
-    sections: Sections,
+    /// The sections that the joints are.
+    pub sections: Rc<Sections>,
     factors: Factors,
     /// Joint and place in it of every contact point.
-    places: Vec<(usize, usize)>,
+    pub places: Rc<Vec<(usize, usize)>>,
     modes: Vec<ContactMode>,
     /// R about the centre of every joint from (X, s).
     statics: Vec<Matrix3xX<f64>>,
@@ -51,9 +53,9 @@ impl ElasticChain {
         let sections = Sections::new(system, problem, true)?;
         let (joints, places) = joints(system, &sections)?;
         Some(ElasticChain {
-            sections,
+            sections: Rc::new(sections),
             factors: Factors { all: joints.into_iter().map(Factor::new).collect() },
-            places,
+            places: Rc::new(places),
             modes: Vec::new(),
             statics: Vec::new(),
             responses: Vec::new(),
@@ -64,6 +66,11 @@ impl ElasticChain {
             rates: None,
             factorisations: 0,
         })
+    }
+
+    /// The joints in their order.
+    pub fn shared_joints(&self) -> Vec<Rc<Joint>> {
+        self.factors.all.iter().map(|factor| factor.joint.clone()).collect()
     }
 
     /// Number of joints.

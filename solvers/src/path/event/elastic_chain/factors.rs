@@ -12,6 +12,7 @@
 use super::joint::{Joint, ModeRows};
 use crate::linear::dense::{add_outer, dot, product, row_product};
 use nalgebra::DMatrix;
+use std::rc::Rc;
 
 /// Share of what it began with at which an update or a response has died away.
 const DIES: f64 = 1e-14;
@@ -23,7 +24,7 @@ const INVERSE: f64 = 1e-8;
 /// A joint with its equations in the present modes.
 pub struct Factor {
     /// What stays.
-    pub joint: Joint,
+    pub joint: Rc<Joint>,
     /// Rows of its points.
     pub rows: ModeRows,
     /// Whether it has a spring.
@@ -64,7 +65,7 @@ impl Factor {
     /// Not factorised yet.
     pub fn new(joint: Joint) -> Self {
         let n = joint.size();
-        Factor { joint, rows: Vec::new(), weak: false, inverse: DMatrix::zeros(n, n) }
+        Factor { joint: Rc::new(joint), rows: Vec::new(), weak: false, inverse: DMatrix::zeros(n, n) }
     }
 
     fn forces(&self) -> usize {

@@ -31,3 +31,4 @@ mod redundants;
 
 pub use chain::ElasticChain;
 pub use decide::by_elastic_chain;
+pub use joint::Joint;

@@ -31,7 +31,7 @@ pub enum Followed {
 /// counts, are `most`.
 pub fn by_force_method(
     trace: &mut Trace,
-    sections: Option<&Sections>,
+    sections: &Sections,
     load: &Load,
     (sense, target, most): (f64, f64, usize),
     steps: &mut usize,
@@ -40,7 +40,7 @@ pub fn by_force_method(
     if trace.state.x.iter().all(|v| *v == 0.0) {
         return Followed::Left;
     }
-    let run = sections.and_then(|sections| Run::new(trace, sections, load));
+    let run = Run::new(trace, sections, load);
     run.and_then(|mut run| follow(&mut run, trace, (sense, target, most), steps)).unwrap_or(Followed::Left)
 }
 

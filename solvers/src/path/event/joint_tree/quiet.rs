@@ -1,0 +1,307 @@
+//! How far what comes from outside may change before anything can happen in a joint, or in all joints of a node.
+//!
+//! When a joint is examined each of its rates is given a room: while none leaves it no point leaves its mode, and no
+//! event comes before a deadline. All rates below a node are linear in what comes from outside: forces of the two outer
+//! joints that have no resultant, whose effect dies away (Saint-Venant), resultants, and twists of weak joints. Norms of
+//! these maps, node by node upwards, say which share of all room a change from outside uses up at most.
+
+use super::node::Table;
+use super::tree::Tree;
+use crate::contact::mode::ContactMode;
+use crate::linear::dense::add_product;
+use nalgebra::{DMatrix, Matrix3, Vector3};
+use voussoir_core::path::PathProblem;
+
+/// Events for which a node is not bounded, at most.
+const MOST_RESTS: u32 = 8;
+
+/// What holds of a joint while nothing happens in it.
+#[derive(Default, Clone)]
+pub struct Own {
+    /// What it did when it was last examined.
+    pub reference: Vec<f64>,
+    /// The room of each rate.
+    pub room: Vec<f64>,
+    /// The arc until which nothing happens within.
+    pub deadline: f64,
+    /// Whether it is to be examined at every event.
+    pub always: bool,
+    /// Greatest rates of a force and of a gap.
+    pub sizes: [f64; 2],
+}
+
+/// The same of all joints of a node.
+#[derive(Default, Clone)]
+pub struct Below {
+    /// What came from outside.
+    reference: Vec<f64>,
+    /// Share of the room that is used up, at most, by a change of 1 of the forces of an outer joint without resultant,
+    by_force: [f64; 2],
+    /// of each component of the redundants about the centre of the node's joint,
+    by_resultant: Vec<f64>,
+    /// of the twists of weak joints.
+    by_twist: Vec<f64>,
+    /// The arc until which nothing happens.
+    pub deadline: f64,
+    /// Whether one is to be examined at every event.
+    pub always: bool,
+    /// Greatest rates of a force and of a gap.
+    pub sizes: [f64; 2],
+    /// Events for which it is not bounded, since it was of no use before, and how many next time.
+    rests: u32,
+    patience: u32,
+    /// When it was last bounded.
+    event: u64,
+}
+
+/// A joint's forces with a resultant.
+struct Span {
+    /// An orthonormal basis of H.
+    basis: DMatrix<f64>,
+    /// Area of each point.
+    areas: Vec<f64>,
+    /// E⁻¹.
+    to_origin: Matrix3<f64>,
+    /// E.
+    to_centre: Matrix3<f64>,
+}
+
+/// Of all joints and nodes.
+pub struct Quiet {
+    spans: Vec<Span>,
+    norms: Vec<Norms>,
+    /// Events so far.
+    pub events: u64,
+    /// Of every joint.
+    pub own: Vec<Own>,
+    /// Of every node.
+    pub below: Vec<Below>,
+}
+
+/// Norms of the maps from outside to what a joint does.
+#[derive(Clone, Default)]
+struct Norms {
+    /// Version of the equations whose norms these are.
+    version: u64,
+    /// Row by row: from forces without resultant,
+    by_force: [Vec<f64>; 2],
+    /// from resultants about the joint's centre,
+    by_resultant: Vec<Vec<f64>>,
+    /// from twists of weak joints.
+    by_twist: Vec<Vec<f64>>,
+    /// Of the joint's forces together.
+    across: [f64; 2],
+    across_by_twist: Vec<f64>,
+    /// The joint's forces from redundants.
+    forces: DMatrix<f64>,
+    /// Forces of the outer joints that are taken for those of their resultants, from redundants: without them the others
+    /// die away.
+    shapes: [DMatrix<f64>; 2],
+}
+
+/// The greatest stress, at most, of forces of a joint that are at most these in its axes.
+fn stress(table: &Table, areas: &[f64], forces: &[f64]) -> f64 {
+    let of = |(k, area): (usize, &f64)| {
+        let [u, v] = [0, 1].map(|i| if table.free[2 * k + i] { forces[2 * k + i].abs() } else { 0.0 });
+        let force = if table.axes[k] == [1.0, 0.0] { u.max(v) } else { u + v };
+        force / area
+    };
+    areas.iter().enumerate().map(of).fold(0.0, f64::max)
+}
+
+/// The greatest share of what is left of the room.
+fn most(by: &[f64], rest: &[f64]) -> f64 {
+    by.iter().zip(rest).map(|(by, rest)| by * rest).fold(0.0, f64::max)
+}
+
+impl Quiet {
+    /// Nothing has been examined yet. `None` where a joint takes no resultant.
+    pub fn new(tree: &Tree, problem: &PathProblem) -> Option<Self> {
+        let mut spans = Vec::with_capacity(tree.joints.len());
+        for joint in &tree.joints {
+            let to_centre = tree.sections.all[joint.section].to_centre;
+            spans.push(Span {
+                basis: joint.by_twist.clone().qr().q(),
+                areas: joint.contacts.iter().map(|c| problem.contacts[*c].area).collect(),
+                to_origin: to_centre.try_inverse()?,
+                to_centre,
+            });
+        }
+        let count = tree.joints.len();
+        let own = Own { always: true, ..Own::default() };
+        let below = Below { always: true, ..Below::default() };
+        Some(Quiet {
+            spans,
+            events: 0,
+            norms: vec![Norms::default(); count],
+            own: vec![own; count],
+            below: vec![below; count],
+        })
+    }
+
+    /// Which share of all room below a node is used up at most by its present rates from outside.
+    pub fn used(&self, tree: &Tree, m: usize) -> f64 {
+        let below = &self.below[m];
+        if below.always || tree.dirty[m] {
+            return f64::INFINITY;
+        }
+        let change: Vec<f64> = tree.moved[m].rates.iter().zip(&below.reference).map(|(now, then)| now - then).collect();
+        let [a, b] = tree.outer(m);
+        let n = tree.redundants();
+        let forces = [&change[..a], &change[a..a + b]];
+        let mut used = 0.0;
+        for (side, forces) in forces.into_iter().enumerate() {
+            if let Some(e) = tree.places[m].outer[side] {
+                let mut rest = forces.to_vec();
+                let redundants: Vec<f64> = change[a + b..a + b + n].iter().map(|v| -v).collect();
+                add_product(&mut rest, &self.norms[m].shapes[side], &redundants);
+                let areas = self.spans[e].areas.iter().flat_map(|area| [area, area]);
+                let stress = rest.iter().zip(areas).map(|(force, area)| force.abs() / area).fold(0.0, f64::max);
+                used += below.by_force[side] * stress;
+            }
+        }
+        for k in 0..n / 3 {
+            let at = a + b + 3 * k;
+            let change = self.spans[m].to_centre * Vector3::new(change[at], change[at + 1], change[at + 2]);
+            used += (0..3).map(|i| below.by_resultant[3 * k + i] * change[i].abs()).sum::<f64>();
+        }
+        let twists = &change[a + b + n + 1..];
+        used + twists.iter().zip(&below.by_twist).map(|(change, by)| change.abs() * by).sum::<f64>()
+    }
+
+    /// Norms of a node's equations, which have changed.
+    fn find_norms(&self, tree: &Tree, m: usize) -> Norms {
+        let (table, n) = (&tree.tables[m], tree.redundants());
+        let (height, [a, b]) = (table.free.len(), tree.outer(m));
+        let mut by_redundants = table.by_outer.columns(a + b, n).clone_owned();
+        let shape = |side: usize| tree.places[m].outer[side].map_or(DMatrix::zeros(0, n), |e| self.shape(tree, e));
+        let shapes = [shape(0), shape(1)];
+        let by_force = [(0, 0, a), (1, a, b)].map(|(side, first, count)| {
+            let mut sums = vec![0.0; height];
+            let Some(e) = tree.places[m].outer[side] else { return sums };
+            let Span { basis, areas, .. } = &self.spans[e];
+            let columns = table.by_outer.columns(first, count);
+            by_redundants += columns * &shapes[side];
+            // Of forces without resultant.
+            let columns = columns - (columns * basis) * basis.transpose();
+            for (j, column) in columns.as_slice().chunks_exact(height).enumerate() {
+                let area = areas[j / 2];
+                sums.iter_mut().zip(column).for_each(|(sum, value)| *sum += area * value.abs());
+            }
+            sums
+        });
+        let mut by_resultant = Vec::with_capacity(n);
+        for k in 0..n / 3 {
+            let own = by_redundants.columns(3 * k, 3) * self.spans[m].to_origin;
+            for column in own.column_iter() {
+                let column: Vec<f64> = column.iter().copied().collect();
+                by_resultant.push(column.iter().map(|v| v.abs()).collect());
+            }
+        }
+        let first = a + b + n + 1;
+        let twists: Vec<&[f64]> = table.by_outer.as_slice()[height * first..].chunks_exact(height).collect();
+        let own = |rows: &[f64]| stress(table, &self.spans[m].areas, rows);
+        Norms {
+            version: table.version,
+            across: [0, 1].map(|side| own(&by_force[side])),
+            across_by_twist: twists.iter().map(|column| own(column)).collect(),
+            by_twist: twists.iter().map(|column| column.iter().map(|v| v.abs()).collect()).collect(),
+            by_force,
+            by_resultant,
+            forces: DMatrix::from_iterator(
+                height - 3,
+                n,
+                by_redundants.column_iter().flat_map(|column| {
+                    let column: Vec<f64> = column.iter().copied().collect();
+                    table.forces(&column)
+                }),
+            ),
+            shapes,
+        }
+    }
+
+    /// Bounds a node anew at its present rates, those below being bounded.
+    pub fn bound(&mut self, tree: &mut Tree, m: usize, out: &[f64]) {
+        let own = &self.own[m];
+        let mut below = Below {
+            deadline: own.deadline,
+            always: own.always,
+            sizes: own.sizes,
+            reference: tree.moved[m].rates.clone(),
+            ..Below::default()
+        };
+        let last = &self.below[m];
+        (below.rests, below.patience) = match last.rests {
+            0 if self.events > last.event + 1 => (0, 1),
+            0 => (last.patience, (2 * last.patience).clamp(1, MOST_RESTS)),
+            rests => (rests - 1, last.patience),
+        };
+        below.event = self.events;
+        below.always |= below.rests > 0;
+        let children = tree.places[m].children;
+        for child in children.into_iter().flatten().map(|child| &self.below[child]) {
+            below.deadline = below.deadline.min(child.deadline);
+            below.always |= child.always;
+            below.sizes = [0, 1].map(|i| below.sizes[i].max(child.sizes[i]));
+        }
+        if !below.always {
+            self.bound_shares(tree, m, out, &mut below);
+        }
+        tree.dirty[m] = false;
+        self.below[m] = below;
+    }
+
+    fn bound_shares(&mut self, tree: &Tree, m: usize, out: &[f64], below: &mut Below) {
+        let (table, n) = (&tree.tables[m], tree.redundants());
+        if self.norms[m].version != table.version {
+            self.norms[m] = self.find_norms(tree, m);
+        }
+        let (own, norms) = (&self.own[m], &self.norms[m]);
+        let rooms = own.room.iter().zip(out.iter().zip(&own.reference));
+        let rest: Vec<f64> = rooms.map(|(room, (now, then))| 1.0 / (room - (now - then).abs())).collect();
+        below.always = rest.iter().any(|r| *r <= 0.0);
+        below.by_force = [0, 1].map(|side| most(&norms.by_force[side], &rest));
+        below.by_resultant = norms.by_resultant.iter().map(|by| most(by, &rest)).collect();
+        below.by_twist = norms.by_twist.iter().map(|by| most(by, &rest)).collect();
+        for (side, child) in tree.places[m].children.into_iter().enumerate() {
+            let Some(child) = child else { continue };
+            let used = self.used(tree, child);
+            below.always |= used.is_nan() || used >= 1.0;
+            let rest = 1.0 / (1.0 - used);
+            let by = &self.below[child];
+            let (outside, inside) = (by.by_force[side] * rest, by.by_force[1 - side] * rest);
+            let more = |most: &mut f64, value: f64| *most = most.max(value);
+            more(&mut below.by_force[side], outside + inside * norms.across[side]);
+            more(&mut below.by_force[1 - side], inside * norms.across[1 - side]);
+            let moved = self.spans[child].to_centre * self.spans[m].to_origin;
+            let apart = &norms.forces - &self.norms[child].shapes[1 - side];
+            for j in 0..n {
+                let own = |i: usize| by.by_resultant[3 * (j / 3) + i] * moved[(i, j % 3)].abs();
+                let own = (0..3).map(own).sum::<f64>() * rest;
+                let apart = apart.columns(3 * (j / 3), 3) * self.spans[m].to_origin.column(j % 3);
+                let areas = self.spans[m].areas.iter().flat_map(|area| [area, area]);
+                let apart = apart.iter().zip(areas).map(|(force, area)| force.abs() / area).fold(0.0, f64::max);
+                more(&mut below.by_resultant[j], own + inside * apart);
+            }
+            let start = if side == 0 { 0 } else { 3 * tree.places[m].below[0] };
+            for (j, across) in norms.across_by_twist.iter().enumerate() {
+                let own = j.checked_sub(start).and_then(|j| by.by_twist.get(j)).map_or(0.0, |by| by * rest);
+                more(&mut below.by_twist[j], own + inside * across);
+            }
+        }
+    }
+
+    /// Forces of a joint from redundants with stresses that vary linearly over the points that are not open.
+    fn shape(&self, tree: &Tree, e: usize) -> DMatrix<f64> {
+        let (joint, areas, n) = (&tree.joints[e], &self.spans[e].areas, tree.redundants());
+        let shape = |closed: &dyn Fn(usize) -> bool| {
+            let weight = |i: usize| if closed(joint.contacts[i / 2]) { areas[i / 2] } else { 0.0 };
+            let stress = DMatrix::from_fn(joint.by_twist.nrows(), 3, |i, j| weight(i) * joint.by_twist[(i, j)]);
+            Some(&stress * joint.by_twist.tr_mul(&stress).try_inverse()?)
+        };
+        let open = |c: usize| matches!(tree.modes[c], ContactMode::Open | ContactMode::Corner(..));
+        let closed = joint.contacts.iter().filter(|c| !open(**c)).count();
+        let shape = if closed > 1 { shape(&|c| !open(c)) } else { shape(&|_| true) };
+        shape.map_or(DMatrix::zeros(joint.by_twist.nrows(), n), |shape| shape * tree.statics[e].columns(0, n))
+    }
+}

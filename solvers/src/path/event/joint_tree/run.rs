@@ -1,0 +1,307 @@
+//! The run on the tree: from event to event.
+
+use super::examine::{Change, examine, may_leave};
+use super::state::{Hit, Run};
+use crate::path::event::force_method::{Followed, RECORDED};
+use crate::path::event::next_event::{MOMENT, arrive, stepped};
+use crate::path::event::trace::Trace;
+use crate::path::system::Load;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Rounds of the active set, and those in which all points change at once.
+const ROUNDS: [usize; 2] = [40, 12];
+/// Share of a room that may be used up before a joint or a node is looked at.
+const USED: f64 = 0.5;
+/// Forces below this share of the gaps: a mechanism is near.
+const NEAR_MECHANISM: f64 = 1e-4;
+
+/// What waits until a deadline: a joint, or all joints of a node.
+#[derive(Clone, Copy, PartialEq)]
+struct Waiting {
+    deadline: f64,
+    node: usize,
+    own: bool,
+}
+
+impl Eq for Waiting {}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.deadline.total_cmp(&self.deadline).then(other.node.cmp(&self.node)).then(other.own.cmp(&self.own))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The rates at an event.
+struct Going {
+    /// Of redundants, load and twists of weak joints.
+    rates: Vec<f64>,
+    /// Of the displacement at the load.
+    displacement: f64,
+}
+
+/// Follows the path from event to event as far as it goes, in a `sense` of λ to a `target`, until `steps`, which
+/// counts, are `most`.
+pub fn by_joint_tree(trace: &mut Trace, load: &Load, bounds: (f64, f64, usize), steps: &mut usize) -> Followed {
+    // From nothing every point is in the active set.
+    if trace.state.x.iter().all(|v| *v == 0.0) {
+        return Followed::Left;
+    }
+    let run = Run::new(trace, load);
+    run.and_then(|mut run| follow(&mut run, trace, bounds, steps)).unwrap_or(Followed::Left)
+}
+
+fn follow(
+    run: &mut Run,
+    trace: &mut Trace,
+    (sense, target, most): (f64, f64, usize),
+    steps: &mut usize,
+) -> Option<Followed> {
+    let mut unrecorded = 0;
+    let mut events: u64 = 0;
+    loop {
+        run.before.clear();
+        let bound = (target - trace.state.factor) * sense;
+        let next = if *steps < most { next(run, trace, bound) } else { None };
+        let Some((going, step, hits)) = next.filter(|next| next.1.is_finite()) else {
+            for (c, mode) in run.before.drain(..).rev() {
+                trace.state.points[c].mode = mode;
+            }
+            return match unrecorded == 0 || record(run, trace) {
+                true => (events > 0).then_some(Followed::Left),
+                false => Some(Followed::Stopped),
+            };
+        };
+        let whole = step >= bound;
+        advance(run, trace, &going, (step, sense), if whole { &[] } else { &hits });
+        if whole {
+            trace.state.factor = target;
+        }
+        *steps += 1;
+        events += 1;
+        unrecorded += 1;
+        trace.log.counts.rate_problems += 1;
+        trace.log.counts.by_force_method += 1;
+        if whole || unrecorded * RECORDED >= trace.log.counts.rate_problems {
+            unrecorded = 0;
+            if !record(run, trace) {
+                return Some(Followed::Stopped);
+            }
+        }
+        if whole {
+            return Some(Followed::Reached);
+        }
+    }
+}
+
+/// Gives the tree the modes of the points that have changed theirs. `None` where that is singular.
+fn refresh(run: &mut Run, trace: &mut Trace) -> Option<()> {
+    for e in std::mem::take(&mut run.stale) {
+        let joint = run.tree.joints[e].clone();
+        let mut settled = false;
+        for &c in &joint.contacts {
+            let point = &mut trace.state.points[c];
+            point.mode = point.settled().unwrap_or(point.mode);
+            let mode = point.mode;
+            if mode == run.tree.modes[c] {
+                continue;
+            }
+            if !std::mem::replace(&mut settled, true) {
+                let openings = run.settle(trace, e);
+                debug_assert!(openings.is_empty());
+            }
+            run.tree.set_mode(&trace.system, c, mode)?;
+        }
+        run.fresh.push(e);
+        run.quiet.own[e].always = true;
+        run.tree.taint(e);
+    }
+    Some(())
+}
+
+/// The rates from the present state, how far they hold, and what ends them. `None` where that is not
+/// decided here.
+fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Going, f64, Vec<Hit>)> {
+    for round in 0..ROUNDS[0] {
+        trace.log.counts.rates.trials += 1;
+        refresh(run, trace)?;
+        let (rates, displacement) = run.tree.close()?;
+        let mut changes: Vec<Change> = Vec::new();
+        let best = look(run, trace, &rates, bound, &mut changes);
+        if changes.is_empty() {
+            run.quiet.events += 1;
+            for m in std::mem::take(&mut run.seen).into_iter().rev() {
+                run.quiet.bound(&mut run.tree, m, &run.out[m]);
+            }
+            run.sizes = run.quiet.below[run.tree.root()].sizes;
+            if run.sizes[0] < NEAR_MECHANISM * run.sizes[1] {
+                return None;
+            }
+            let mut hits: Vec<Hit> = run.hits.iter().filter(|hit| (hit.0 - best) * hit.1 <= MOMENT).copied().collect();
+            hits.sort_by_key(|hit| (hit.2, hit.3));
+            return Some((Going { rates, displacement }, best, hits));
+        }
+        if round >= ROUNDS[1] {
+            changes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            changes.truncate(1);
+        }
+        for (_, c, to) in changes {
+            run.before.push((c, trace.state.points[c].mode));
+            trace.state.points[c].mode = to;
+            run.stale.push(run.tree.at[c].0);
+        }
+    }
+    None
+}
+
+/// Looks at the joints in which something may happen before the nearest event, which is returned.
+fn look(run: &mut Run, trace: &mut Trace, rates: &[f64], bound: f64, changes: &mut Vec<Change>) -> f64 {
+    let root = run.tree.root();
+    run.hits.clear();
+    run.seen.clear();
+    run.tree.moved[root].rates.copy_from_slice(rates);
+    let mut best = bound;
+    let mut open = vec![root];
+    let mut waiting: BinaryHeap<Waiting> = BinaryHeap::new();
+    loop {
+        while let Some(m) = open.pop() {
+            best = best.min(visit(run, trace, m, (&mut open, &mut waiting), changes));
+        }
+        let Some(next) = waiting.pop().filter(|next| changes.is_empty() && next.deadline - run.arc() < best) else {
+            return best;
+        };
+        match next.own {
+            true => best = best.min(examine(run, trace, next.node, changes)),
+            false => open.push(next.node),
+        }
+    }
+}
+
+/// Looks at a node whose rates from outside are known: its joint, and those of the nodes below.
+fn visit(
+    run: &mut Run,
+    trace: &mut Trace,
+    m: usize,
+    (open, waiting): (&mut Vec<usize>, &mut BinaryHeap<Waiting>),
+    changes: &mut Vec<Change>,
+) -> f64 {
+    run.seen.push(m);
+    let outer = std::mem::take(&mut run.tree.moved[m].rates);
+    run.out[m] = run.tree.tables[m].answer(&outer);
+    let forces = run.tree.tables[m].forces(&run.out[m]);
+    for (side, child) in run.tree.places[m].children.into_iter().enumerate() {
+        let Some(child) = child else { continue };
+        let mut below = std::mem::take(&mut run.tree.moved[child].rates);
+        run.tree.into_child((m, side), &outer, &forces, |i, value| below[i] = value);
+        run.tree.moved[child].rates = below;
+        if run.quiet.used(&run.tree, child) > USED {
+            open.push(child);
+        } else {
+            waiting.push(Waiting { deadline: run.quiet.below[child].deadline, node: child, own: false });
+        }
+    }
+    run.tree.moved[m].rates = outer;
+    let own = &run.quiet.own[m];
+    let left = || {
+        let change = run.out[m].iter().zip(&own.reference).map(|(now, then)| (now - then).abs());
+        change.zip(&own.room).any(|(change, room)| change > USED * room)
+    };
+    if own.always || left() {
+        return examine(run, trace, m, changes);
+    }
+    waiting.push(Waiting { deadline: own.deadline, node: m, own: true });
+    f64::INFINITY
+}
+
+/// Goes a step and notes the events at its end.
+fn advance(run: &mut Run, trace: &mut Trace, going: &Going, (step, sense): (f64, f64), hits: &[Hit]) {
+    let root = run.tree.root();
+    let moved = &mut run.tree.moved[root];
+    moved.pending.iter_mut().zip(&going.rates).for_each(|(pending, rate)| *pending += step * rate);
+    moved.any = true;
+    run.progress.place.iter_mut().zip(&going.rates).for_each(|(place, rate)| *place += step * rate);
+    let before = trace.state.factor;
+    trace.state.factor += sense * step;
+    let moved = sense * going.displacement * step;
+    run.progress.since[0] += 0.5 * (before + trace.state.factor) * moved;
+    run.progress.since[1] += moved;
+    let mut ended = std::mem::take(&mut run.fresh);
+    // Those above first: on the way to one below nobody would know that their points are about to open.
+    ended.sort_unstable_by_key(|e| (run.tree.path(*e).len(), *e));
+    ended.dedup();
+    let mut stepping: Vec<(usize, [f64; 2], f64)> = Vec::new();
+    for &e in &ended {
+        let openings = run.settle(trace, e);
+        for (k, c) in run.tree.joints[e].contacts.iter().enumerate() {
+            let [rate, _] = run.tree.tables[e].point(k, &run.out[e]);
+            stepping.push((*c, rate, openings.get(k).copied().unwrap_or(0.0)));
+        }
+    }
+    stepping.sort_by_key(|point| point.0);
+    for (c, rate, opening) in stepping {
+        stepped(trace, c, rate, opening, before, run.sizes[0]);
+    }
+    for hit in hits {
+        let e = run.tree.at[hit.2].0;
+        let openings = run.settle(trace, e);
+        for (c, opening) in run.tree.joints[e].contacts.iter().zip(openings) {
+            let point = &mut trace.state.points[*c];
+            if point.open() {
+                point.opening = (point.opening + opening).max(0.0);
+            }
+        }
+        ended.push(e);
+    }
+    let hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();
+    arrive(trace, &hits);
+    ended.sort_unstable();
+    ended.dedup();
+    for e in ended {
+        after(run, trace, e, &hits);
+    }
+}
+
+/// What a joint whose points have stepped or arrived is at the next event.
+fn after(run: &mut Run, trace: &Trace, e: usize, hits: &[(usize, usize)]) {
+    let points = run.tree.joints[e].contacts.iter().map(|c| (*c, &trace.state.points[*c]));
+    let (mut stale, mut leaves) = (false, false);
+    for (c, point) in points {
+        stale |= point.settled().unwrap_or(point.mode) != run.tree.modes[c] || hits.iter().any(|hit| hit.0 == c);
+        leaves |= may_leave(point);
+    }
+    run.quiet.own[e].always = true;
+    run.tree.taint(e);
+    if stale {
+        run.stale.push(e);
+    } else if leaves {
+        run.fresh.push(e);
+    }
+}
+
+/// Writes the present state to the path and records it.
+fn record(run: &mut Run, trace: &mut Trace) -> bool {
+    let mut open = vec![run.tree.root()];
+    while let Some(m) = open.pop() {
+        run.settle_node(trace, m);
+        open.extend(run.tree.places[m].children.into_iter().flatten());
+    }
+    let mut twists = run.progress.twists.clone();
+    for (joint, twist) in run.tree.joints.iter().zip(&run.progress.twists) {
+        twists[joint.section] = *twist;
+    }
+    let start = 2 * trace.system.contacts;
+    for (b, motion) in run.tree.sections.motions(&twists).into_iter().enumerate() {
+        (0..3).for_each(|i| trace.state.x[start + 3 * b + i] = run.progress.motions[3 * b + i] + motion[i]);
+    }
+    let [work, moved, factor] = run.progress.since;
+    let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
+    trace.state.energy.work += (work - trapezoid) * trace.system.units.energy();
+    run.progress.since = [0.0, 0.0, trace.state.factor];
+    trace.record()
+}

@@ -1,0 +1,182 @@
+//! The data of a run on the tree, and how forces, twists and openings of a joint are brought up to date.
+
+use super::quiet::Quiet;
+use super::tree::Tree;
+use crate::contact::facet::dot;
+use crate::contact::mode::ContactMode;
+use crate::path::event::elastic_chain::ElasticChain;
+use crate::path::event::trace::Trace;
+use crate::path::system::Load;
+use nalgebra::Vector3;
+use voussoir_core::law::FacetMode;
+
+/// What is nearest: arc until then, rate with which it comes, contact point, facet or `usize::MAX`.
+pub type Hit = (f64, f64, usize, usize);
+
+/// How far a run has come.
+pub struct Progress {
+    /// (X, s).
+    pub place: Vec<f64>,
+    /// Resultants of all joints at the beginning.
+    resultants: Vec<Vector3<f64>>,
+    /// Relative twists of all joints since.
+    pub twists: Vec<Vector3<f64>>,
+    /// Motions at the beginning.
+    pub motions: Vec<f64>,
+    /// Work by the trapezoidal rule, displacement at the load and factor since the last record.
+    pub since: [f64; 3],
+}
+
+/// One load step, or a part of it.
+pub struct Run {
+    /// The joints.
+    pub tree: Tree,
+    /// What holds of them while nothing happens.
+    pub quiet: Quiet,
+    /// How far it has come.
+    pub progress: Progress,
+    /// Sense of the slip of open points, which dilatancy follows.
+    pub senses: Vec<f64>,
+    /// What each joint did when it was last looked at.
+    pub out: Vec<Vec<f64>>,
+    /// Greatest rate of a force and of a gap.
+    pub sizes: [f64; 2],
+    /// Nodes looked at since the last event, those above first.
+    pub seen: Vec<usize>,
+    /// What is near in the joints examined since the last event.
+    pub hits: Vec<Hit>,
+    /// Joints with points whose modes are others than those of the tree.
+    pub stale: Vec<usize>,
+    /// Joints whose modes are new since the last event, and those whose points may leave their modes at any time.
+    pub fresh: Vec<usize>,
+    /// Modes before the present event.
+    pub before: Vec<(usize, ContactMode)>,
+}
+
+impl Run {
+    /// From the present state. `None` where a support moves, where flow is not associated, or
+    /// where the equations are singular.
+    pub fn new(trace: &Trace, load: &Load) -> Option<Self> {
+        if load.settles || !trace.associated {
+            return None;
+        }
+        let chain: &ElasticChain = trace.factors.chain.as_ref()?;
+        let tree = Tree::new(&trace.system, chain, load, &trace.state.points)?;
+        let count = tree.joints.len();
+        let force = |c: &usize| trace.state.force(*c);
+        let resultants = tree.joints.iter().map(|joint| {
+            let forces: Vec<f64> = joint.contacts.iter().flat_map(force).collect();
+            Vector3::from_fn(|i, _| joint.resultant(i, &forces))
+        });
+        let progress = Progress {
+            place: vec![0.0; tree.redundants() + 1],
+            resultants: resultants.collect(),
+            twists: vec![Vector3::zeros(); count],
+            motions: trace.state.x[2 * trace.system.contacts..].to_vec(),
+            since: [0.0, 0.0, trace.state.factor],
+        };
+        Some(Run {
+            quiet: Quiet::new(&tree, trace.problem)?,
+            tree,
+            progress,
+            senses: vec![0.0; trace.system.contacts],
+            out: vec![Vec::new(); count],
+            sizes: [0.0; 2],
+            seen: Vec::new(),
+            hits: Vec::new(),
+            stale: (0..count).collect(),
+            fresh: Vec::new(),
+            before: Vec::new(),
+        })
+    }
+
+    /// Hands what waits above a joint down to it. Returns by how much each of its points opens, which is left to the
+    /// caller.
+    pub fn settle(&mut self, trace: &mut Trace, e: usize) -> Vec<f64> {
+        let path = self.tree.path(e);
+        let (_, above) = path.split_last().unwrap_or((&e, &[]));
+        above.iter().for_each(|m| self.settle_node(trace, *m));
+        self.take(trace, e)
+    }
+
+    /// The same of a node to which all above has been handed down; its points open.
+    pub fn settle_node(&mut self, trace: &mut Trace, m: usize) {
+        let openings = self.take(trace, m);
+        for (c, opening) in self.tree.joints[m].contacts.iter().zip(openings) {
+            let point = &mut trace.state.points[*c];
+            if point.open() {
+                point.opening = (point.opening + opening).max(0.0);
+            }
+        }
+    }
+
+    /// Brings the forces, the twist and the dissipation of a node's joint up to date.
+    fn take(&mut self, trace: &mut Trace, m: usize) -> Vec<f64> {
+        if !std::mem::take(&mut self.tree.moved[m].any) {
+            return Vec::new();
+        }
+        let mut pending = std::mem::take(&mut self.tree.moved[m].pending);
+        let mut out = self.tree.tables[m].answer(&pending);
+        self.balance(trace, m, &mut out);
+        let (table, joint) = (&self.tree.tables[m], &self.tree.joints[m]);
+        let (forces, n) = (table.forces(&out), out.len());
+        let mut openings = vec![0.0; joint.contacts.len()];
+        let mut dissipated = 0.0;
+        for (k, &c) in joint.contacts.iter().enumerate() {
+            (0..2).for_each(|i| trace.state.x[2 * c + i] += forces[2 * k + i]);
+            let (mode, facets) = (self.tree.modes[c], trace.system.facets[c].as_deref().unwrap_or_default());
+            if mode == ContactMode::Stick {
+                continue;
+            }
+            let [_, gap] = table.point(k, &out);
+            openings[k] = dot(mode.opening(facets, self.senses[c]), gap);
+            let flows = match mode {
+                ContactMode::Facet(f) => vec![f],
+                ContactMode::Corner(i, j) => vec![i, j],
+                _ => Vec::new(),
+            };
+            // Flow is associated: its work is its rate by the bound. Opening is reversible.
+            for (f, rate) in flows.iter().zip(mode.unknowns(facets, gap)) {
+                let facet = &facets[*f as usize];
+                if facet.mode != FacetMode::Opening {
+                    dissipated += rate * facet.bound;
+                }
+            }
+        }
+        trace.state.energy.dissipated += dissipated * trace.system.units.energy();
+        self.progress.twists[m] += Vector3::new(out[n - 3], out[n - 2], out[n - 1]);
+        for (side, child) in self.tree.places[m].children.into_iter().enumerate() {
+            let Some(child) = child else { continue };
+            let mut below = std::mem::take(&mut self.tree.moved[child].pending);
+            self.tree.into_child((m, side), &pending, &forces, |i, value| below[i] += value);
+            (self.tree.moved[child].pending, self.tree.moved[child].any) = (below, true);
+        }
+        pending.fill(0.0);
+        self.tree.moved[m].pending = pending;
+        openings
+    }
+
+    /// Takes out what increments leave of the joint's resultant.
+    fn balance(&self, trace: &Trace, m: usize, out: &mut [f64]) {
+        if self.tree.places[m].weak.last() == Some(&m) {
+            return;
+        }
+        let (table, joint, statics) = (&self.tree.tables[m], &self.tree.joints[m], &self.tree.statics[m]);
+        let mut forces = table.forces(out);
+        for (k, &c) in joint.contacts.iter().enumerate() {
+            let force = trace.state.force(c);
+            (0..2).for_each(|i| forces[2 * k + i] += force[i]);
+        }
+        let first = out.len() - 3;
+        for i in 0..3 {
+            let given: f64 = (0..statics.ncols()).map(|j| statics[(i, j)] * self.progress.place[j]).sum();
+            let left = self.progress.resultants[m][i] + given - joint.resultant(i, &forces);
+            out.iter_mut().zip(table.local.column(first + i).iter()).for_each(|(out, by)| *out += by * left);
+        }
+    }
+
+    /// The greatest arc so far.
+    pub fn arc(&self) -> f64 {
+        self.progress.place[self.progress.place.len() - 1]
+    }
+}
