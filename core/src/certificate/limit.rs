@@ -9,10 +9,11 @@
 
 use super::mechanism::{CentroidVelocity, Jump, jumps, velocity_at};
 use super::products::proved;
+use super::rounding::{ROUNDED, jump_rounding, lie};
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::limit::{LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, add_force};
+use crate::model::{Assembly, Bond, FillReaction, StageLoads, add_force};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -79,9 +80,6 @@ pub struct NonAssociatedClaim<'a> {
 
 /// Tolerance of residuals that should be rounding.
 pub const ROUNDING: f64 = 1e-10;
-
-/// Share of the terms of a sum that its rounding may be: a few units in the last place.
-const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// A lower bound by products may lose so much of the factor to rounding.
 const PRODUCTS: f64 = 1e-6;
@@ -572,28 +570,6 @@ struct Powers {
     uncertain: f64,
     /// The greatest motion that no force of a law could do, relative to the greatest jump.
     impossible: f64,
-}
-
-/// The greatest coordinate of a joint's ends.
-fn reach(joint: &Joint) -> f64 {
-    joint.ends.iter().map(|end| end.amax()).fold(0.0, f64::max)
-}
-
-/// By how much rounding of coordinates turns a joint, in units of the rounding of one: along it blocks slide, and loads do
-/// work on that.
-fn lie(joint: &Joint) -> f64 {
-    1.0 + reach(joint) / joint.height()
-}
-
-/// By how much rounding may change the jump at a joint: that of the velocities of which it is the difference, and of the
-/// coordinates that say where the joint is and how it lies.
-fn jump_rounding(joint: &Joint, motion: &[CentroidVelocity], centroids: &[Vec2]) -> f64 {
-    let of = |body: usize| {
-        let [vx, vy, omega] = motion[body];
-        let arm = (joint.middle() - centroids[body]).norm() + joint.height() / 2.0;
-        (vx.hypot(vy) + omega.abs() * arm) * lie(joint) + omega.abs() * reach(joint)
-    };
-    ROUNDED * (of(joint.plus) + of(joint.minus))
 }
 
 /// Power that goes into fill whose point of action moves towards the ring at a speed: its greatest force resists motion

@@ -4,6 +4,7 @@ mod limit;
 mod mechanism;
 mod path;
 mod products;
+mod rounding;
 mod settlement;
 
 pub use self::limit::{

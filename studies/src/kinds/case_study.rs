@@ -154,7 +154,7 @@ impl LoadedStudy for Study {
         if observer.cancelled() {
             return Err("the check was cancelled".into());
         }
-        // Read once more, entry by entry: as a tree of values they take ten times the space of what is read of them.
+        // Read once more, entry by entry: as a tree of values all of them take more space than everything else here.
         let mut check = StoredCheck::new(self, &results, &again);
         read_cases(stored.results()?, &mut |entry| check.entry(&entry))?;
         let findings = check.findings()?;

@@ -28,11 +28,9 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     let mut gravity = Vec2::zeros();
     let mut stages = Vec::new();
     for (stage, table) in case.stages.iter().zip(resolved) {
-        let weights = fill_weights(assembly, stage.gravity.map_or(Vec2::zeros(), |now| now - gravity));
-        if let Some(now) = stage.gravity {
-            gravity = now;
-        }
-        stages.extend(stage_tables(assembly, stage, table, &weights));
+        let change = stage.gravity.map_or(Vec2::zeros(), |now| now - gravity);
+        gravity += change;
+        stages.extend(stage_tables(assembly, stage, table, change));
     }
     study.insert("stages".into(), stages.into());
     let text = toml::to_string(&without_nulls(Json::Object(study))).map_err(|error| error.to_string())?;
@@ -54,8 +52,10 @@ fn without_nulls(value: Json) -> Json {
     }
 }
 
-/// A stage; before it one with the weight of the fill, which its factor does not multiply.
-fn stage_tables(assembly: &Assembly, stage: &Stage, table: &Json, weights: &[PointForce]) -> Vec<Json> {
+/// A stage; where fill has weight, before it one with all weights, which its factor does not multiply. They grow together
+/// there, as loads: gravity alone would have to be carried by blocks that do not stand without their fill.
+fn stage_tables(assembly: &Assembly, stage: &Stage, table: &Json, gravity: Vec2) -> Vec<Json> {
+    let weights = fill_weights(assembly, gravity);
     let point = |force: &PointForce| {
         let (block, point, force): (_, [f64; 2], [f64; 2]) =
             (&assembly.bodies[force.body].name, force.point.into(), force.force.into());
@@ -67,9 +67,10 @@ fn stage_tables(assembly: &Assembly, stage: &Stage, table: &Json, weights: &[Poi
     if weights.is_empty() {
         return vec![own];
     }
-    let name = format!("{} (weight of the fill)", stage.name);
-    let before = json!({ "name": name, "gravity": own["gravity"].take(), "loads": weights.iter().map(point).collect::<Vec<_>>() });
-    vec![before, own]
+    let name = format!("{} (weight of blocks and fill)", stage.name);
+    let loads: Vec<Json> = weights.iter().map(point).chain([body(&gravity)]).collect();
+    own["gravity"].take();
+    vec![json!({ "name": name, "loads": loads }), own]
 }
 
 /// `[scene]`.

@@ -5,6 +5,7 @@
 mod bridge;
 mod fill;
 mod program;
+mod twins;
 
 use self::bridge::{Bridge, DAMAGED, MORE};
 use voussoir::core::limit::Status;
