@@ -40,8 +40,7 @@ impl HeldModes {
     /// With some modes; `None` where motions without stiffness leave nothing to be told.
     fn new(trace: &Trace, modes: Vec<ContactMode>) -> Option<Self> {
         let system = &trace.system;
-        let flows = modes.iter().zip(&system.facets);
-        let associated = flows.clone().all(|(mode, facets)| match (mode, facets) {
+        let associated = modes.iter().zip(&system.facets).all(|(mode, facets)| match (mode, facets) {
             (ContactMode::Facet(f), Some(facets)) => facets[*f as usize].flow == facets[*f as usize].normal,
             _ => true,
         });

@@ -69,7 +69,8 @@ pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) 
 }
 
 /// The branch with falling λ from a limit point at which none rises, where friction is not associated: Newton's method
-/// may find elastic unloading, which is always a solution and never the way on. `None` where a first step shows the way.
+/// may find elastic unloading, which is always a solution and never the way on. `None` where none was found, or it is not
+/// proven that none rises.
 pub(super) fn falling_branch(
     tracer: &mut Tracer,
     state: &State,
