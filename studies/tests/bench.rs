@@ -1,6 +1,6 @@
 //! `voussoir bench`: who takes part, what errors are measured from, what is written.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Five bonded voussoirs that crush, elastic: limit analysis and paths ask for the same load.
@@ -52,7 +52,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-fn bench(folder: &PathBuf, text: &str, more: &[&str]) -> Output {
+fn bench(folder: &Path, text: &str, more: &[&str]) -> Output {
     std::fs::write(folder.join("small.toml"), text).expect("a study");
     let voussoir = env!("CARGO_BIN_EXE_voussoir");
     let arguments = ["bench", "small.toml", "--runs", "1", "--out", "out"];
@@ -60,7 +60,7 @@ fn bench(folder: &PathBuf, text: &str, more: &[&str]) -> Output {
 }
 
 /// Columns of bench.csv of one contestant; no name of these studies holds a comma and a quote at once.
-fn rows(folder: &PathBuf) -> Vec<Vec<String>> {
+fn rows(folder: &Path) -> Vec<Vec<String>> {
     let text = std::fs::read_to_string(folder.join("out/bench.csv")).expect("bench.csv");
     let cells = |line: &str| {
         let mut quoted = false;

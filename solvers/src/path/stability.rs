@@ -14,7 +14,18 @@
 //! necessary (Hill 1958, J. Mech. Phys. Solids 6, 236-249); limit points are where a real eigenvalue of K itself
 //! changes sign.
 
+use crate::optimise::lcg::Lcg;
 use nalgebra::{DMatrix, DVector};
+
+/// Motions up to which all columns of the flexibility are computed; of more only its greatest eigenvalues are, by
+/// subspace iteration.
+const ALL: usize = 150;
+/// Size of that subspace, and its iterations.
+const SUBSPACE: usize = 10;
+const ITERATIONS: usize = 16;
+/// Eigenvalues of the flexibility, relative to the mean compliance of a contact, that are those of motions which the
+/// modes exclude: what is added to the equations is below them.
+const SOFTEST: f64 = 1e-6;
 
 /// Asymmetry of S, relative to its greatest entry, above which second-order work is not a potential's.
 const ASYMMETRY: f64 = 1e-7;
@@ -34,6 +45,35 @@ pub(super) struct SecondOrderWork {
     pub critical: (Vec<f64>, f64),
     /// Magnitude of the eigenvalue nearest to nothing.
     pub nearest: f64,
+}
+
+/// Second-order work of a state with `motions` unknown motions, from what wrenches on them, column by column, move.
+pub(super) fn work_by_responses(
+    motions: usize,
+    respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>,
+) -> Option<SecondOrderWork> {
+    if motions <= ALL {
+        return SecondOrderWork::of(&respond(&DMatrix::identity(motions, motions))?, SOFTEST);
+    }
+    let mut random = Lcg::new(11);
+    let mut basis = DMatrix::from_fn(motions, SUBSPACE, |_, _| random.next()).qr().q();
+    for _ in 0..ITERATIONS {
+        basis = respond(&basis)?.qr().q();
+    }
+    let mut found = SecondOrderWork::of(&(basis.transpose() * respond(&basis)?), SOFTEST)?;
+    let mode = &basis * DVector::from_vec(found.critical.0);
+    found.critical.0 = mode.as_slice().to_vec();
+    Some(found)
+}
+
+/// Whether what is decided with the weakly active points free and with them held decides of the state: positive with
+/// all of them free suffices, negative with all of them held is instability.
+pub(super) fn over_weak_points(free: Option<bool>, held: Option<bool>) -> Option<bool> {
+    match (free, held) {
+        (Some(true), _) => Some(true),
+        (_, Some(false)) => Some(false),
+        _ => None,
+    }
 }
 
 impl SecondOrderWork {

@@ -156,7 +156,7 @@ fn the_error_of_a_peak_is_covered() {
         elements: [1, 1],
         solver: FINITE,
     };
-    let [factor, estimate, error] = scene.errors(|_| 1673.755_626).expect("an estimate");
+    let [factor, estimate, error] = scene.errors(|_| 1673.755626).expect("an estimate");
     assert!(error <= estimate && estimate < 0.5 * factor, "{factor} {estimate} {error}");
     let found = answered(&(Arch::default().study() + ESTIMATE)).load_factor_error.expect("bounds");
     assert!(found.discretisation.is_none() && found.path.is_none() && found.total() < 1e-6, "{found:?}");

@@ -445,3 +445,27 @@ solver = "event_path"
     );
     assert!(result.counters["factorisations"] < 200, "{:?}", result.counters);
 }
+
+/// A state of small displacements is stable where its elastic blocks have no way to move without force: also a settled
+/// arch that three hinges have made statically determinate. The exact path says so from its own equations, Newton's
+/// method from the eigenvalues of its flexibility; where points that slide without dilatancy are free neither decides.
+#[test]
+fn stages_of_exact_paths_say_whether_they_are_stable_as_newtons_do() {
+    let settled = |law: &str| {
+        let stages = "[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"left\", displacement = [-0.02, 0.0] }]\n";
+        let joint = format!("law = {law:?}\nfriction = 0.6");
+        let arch = Arch { joint, voussoirs: 10, ..Arch::default() };
+        let study = elastic_study(&arch, "elements = [1, 2]");
+        let (scene, _) = study.split_once("[solver]").expect("stages and solver after the scene");
+        format!("{scene}\n{stages}")
+    };
+    let sliding = include_str!("peaks/137.toml").to_string();
+    for (study, decided) in [(settled("coulomb_associated"), true), (settled("coulomb"), true), (sliding, false)] {
+        let [exact, stepped] = ["event_path", "newton_path"]
+            .map(|solver| answered(&format!("{study}\n[solver]\nsolver = {solver:?}\n")))
+            .map(|result| result.stages.into_iter().map(|stage| stage.stability).collect::<Vec<_>>());
+        assert_eq!(exact, stepped);
+        assert_eq!(exact[0].stable_under_load, decided.then_some(true), "{exact:?}");
+        assert!(exact[0].stability.is_some() && (!decided || exact[1].stable_under_control == Some(true)), "{exact:?}");
+    }
+}

@@ -85,6 +85,14 @@ impl FactorisedModes {
         self.load_rate.as_ref().map(|(_, x)| x)
     }
 
+    /// Motions that a wrench on the bodies makes with every mode as factorised, in units.
+    pub fn moved_by(&self, system: &System, wrench: &[f64]) -> Option<Vec<f64>> {
+        let first = 2 * system.contacts;
+        let mut right = vec![0.0; system.size()];
+        right[first..].iter_mut().zip(wrench).for_each(|(right, wrench)| *right = -wrench);
+        self.updated.factors.solve(&right, REFINEMENTS).map(|mut x| x.split_off(first))
+    }
+
     /// Another load comes.
     pub fn forget_load(&mut self) {
         self.load_rate = None;

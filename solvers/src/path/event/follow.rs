@@ -5,6 +5,7 @@ use super::elastic_chain::ElasticChain;
 use super::force_method::{Followed, RECORDED, Sections, by_force_method};
 use super::next_event::{MOMENT, SAME, advance, next_event};
 use super::rates::Direction;
+use super::stability::stage_stability;
 use super::trace::Trace;
 use super::unique::unique;
 use crate::path::outcome::{Outcome, PathRecord};
@@ -164,6 +165,11 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
         }
         if let Some(end) = ended {
             return finish(follower, end, run.sense);
+        }
+        let next = problem.load_steps.get(load_step + 1);
+        if next.is_none_or(|next| next.stage != problem.load_steps[load_step].stage) {
+            let found = stage_stability(&follower.trace, &run.load);
+            follower.trace.log.stability.push(found);
         }
         if follower.limits.greatest.is_some() {
             let factor = follower.trace.state.factor;
@@ -428,7 +434,18 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     if outcome.status == Status::LimitPoint && limits.proven.is_empty() {
         limits.proven.push(proven(&state));
     }
-    let (load_step, limit_points, events, notes) = (state.load_step, limits.proven, log.events, log.notes);
-    let record = PathRecord { load_step, state, last, limit_points, events, counters, notes, ..PathRecord::default() };
+    let (load_step, limit_points) = (state.load_step, limits.proven);
+    let (stability, events, notes) = (log.stability, log.events, log.notes);
+    let record = PathRecord {
+        load_step,
+        state,
+        last,
+        limit_points,
+        stability,
+        events,
+        counters,
+        notes,
+        ..PathRecord::default()
+    };
     outcome.unconfirmed(record)
 }

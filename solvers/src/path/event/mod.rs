@@ -15,6 +15,7 @@ mod next_event;
 mod point;
 mod rates;
 mod schur;
+mod stability;
 mod trace;
 mod unique;
 

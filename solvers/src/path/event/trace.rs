@@ -9,7 +9,7 @@ use crate::contact::facet::dot;
 use crate::path::energy::{EnergyBalance, WorkState, load_displacement};
 use crate::path::system::System;
 use crate::rate::solve::RateCounts;
-use voussoir_core::path::{Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState, StageStability};
 
 /// The present state in scaled units.
 pub struct State {
@@ -50,6 +50,8 @@ pub struct Log {
     pub events: Vec<PathEvent>,
     /// Work done.
     pub counts: Counts,
+    /// Stability of the states at which stages end.
+    pub stability: Vec<StageStability>,
     /// Remarks for the answer.
     pub notes: Vec<String>,
 }

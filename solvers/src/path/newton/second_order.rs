@@ -10,19 +10,9 @@ use super::tangent::tangent_at;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::BorderedSystem;
-use crate::optimise::lcg::Lcg;
-use crate::path::stability::SecondOrderWork;
-use nalgebra::{DMatrix, DVector};
+use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
+use nalgebra::DMatrix;
 
-/// Motions up to which all columns of the flexibility are computed; of more only its greatest eigenvalues are, by
-/// subspace iteration.
-const ALL: usize = 150;
-/// Size of that subspace, and its iterations.
-const SUBSPACE: usize = 10;
-const ITERATIONS: usize = 16;
-/// Eigenvalues of the flexibility, relative to the mean compliance of a contact, that are those of motions which the
-/// modes exclude: what is added to the equations is below them.
-const SOFTEST: f64 = 1e-6;
 /// Slack, relative to the greatest force, with which a point is weakly active.
 const WEAK: f64 = 1e-9;
 
@@ -35,20 +25,7 @@ pub(super) fn second_order_work(system: &mut StepSystem, state: &State) -> Optio
         return None;
     }
     system.count("second_order_works", 1);
-    if motions <= ALL {
-        let mut rights = vec![vec![0.0; system.size()]; motions];
-        rights.iter_mut().enumerate().for_each(|(j, right)| right[first + j] = 1.0);
-        let columns = solved(&held, &rights, first)?;
-        // Balance is −∂V/∂q: what it says of K is −K.
-        let flexibility = DMatrix::from_fn(motions, motions, |i, j| -columns[j][i]);
-        return SecondOrderWork::of(&flexibility, SOFTEST);
-    }
-    let basis = softest_motions(&held, first, motions, system.size())?;
-    let images = images(&held, &basis, first, system.size())?;
-    let mut found = SecondOrderWork::of(&(basis.transpose() * images), SOFTEST)?;
-    let mode = &basis * DVector::from_vec(found.critical.0);
-    found.critical.0 = mode.as_slice().to_vec();
-    Some(found)
+    work_by_responses(motions, |wrenches| images(&held, wrenches, first, system.size()))
 }
 
 /// The equations with the factor held.
@@ -69,7 +46,7 @@ fn solved(held: &BorderedSystem, rights: &[Vec<f64>], first: usize) -> Option<Ve
     Some(found.iter().map(|y| (0..motions).map(|j| equations.other(first + j, y)).collect()).collect())
 }
 
-/// S times the columns of a matrix.
+/// S times the columns of a matrix. Balance is −∂V/∂q: what it says of K is −K.
 fn images(held: &BorderedSystem, basis: &DMatrix<f64>, first: usize, size: usize) -> Option<DMatrix<f64>> {
     let right = |column: usize| {
         let mut right = vec![0.0; size];
@@ -79,16 +56,6 @@ fn images(held: &BorderedSystem, basis: &DMatrix<f64>, first: usize, size: usize
     let rights: Vec<Vec<f64>> = (0..basis.ncols()).map(right).collect();
     let columns = solved(held, &rights, first)?;
     Some(DMatrix::from_fn(basis.nrows(), basis.ncols(), |i, j| columns[j][i]))
-}
-
-/// An orthonormal basis of the motions of the greatest flexibility, by subspace iteration.
-fn softest_motions(held: &BorderedSystem, first: usize, motions: usize, size: usize) -> Option<DMatrix<f64>> {
-    let mut random = Lcg::new(11);
-    let mut basis = DMatrix::from_fn(motions, SUBSPACE.min(motions), |_, _| random.next()).qr().q();
-    for _ in 0..ITERATIONS {
-        basis = images(held, &basis, first, size)?.qr().q();
-    }
-    Some(basis)
 }
 
 /// Stability of a state: whether second-order work is positive with its loads and settlements held, and with the load
@@ -110,13 +77,8 @@ pub(super) fn stability(system: &mut StepSystem, state: &State, settles: bool) -
     let found = second_order_work(system, &free);
     let sufficient_only = found.as_ref().is_some_and(|work| !work.symmetric);
     let stuck = if free.mode == held.mode { found.clone() } else { second_order_work(system, &held) };
-    let decided = |free: Option<bool>, held: Option<bool>| match (free, held) {
-        (Some(true), _) => Some(true),
-        (_, Some(false)) => Some(false),
-        _ => None,
-    };
     let positive = |work: &Option<SecondOrderWork>| work.as_ref().map(|work| work.negative == 0);
-    let under_load = decided(positive(&found), positive(&stuck));
+    let under_load = over_weak_points(positive(&found), positive(&stuck));
     if settles || under_load == Some(true) {
         return StateStability { under_load, under_control: under_load, sufficient_only };
     }
@@ -125,7 +87,7 @@ pub(super) fn stability(system: &mut StepSystem, state: &State, settles: bool) -
         let yields = increment_along(system, state, &rate).displacement;
         work.as_ref().map(|work| work.stable_under_control(yields))
     };
-    let under_control = decided(controlled(&free, &found), controlled(&held, &stuck));
+    let under_control = over_weak_points(controlled(&free, &found), controlled(&held, &stuck));
     StateStability { under_load, under_control, sufficient_only }
 }
 

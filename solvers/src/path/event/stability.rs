@@ -1,0 +1,136 @@
+//! Stability of the state at which a stage of an exact path ends, by its own factorised equations.
+//!
+//! With small displacements K is what holds the bodies together with the modes of the contact points held. Where nothing
+//! slides against a flow that is not associated it is GᵀC⁻¹G, which is positive semidefinite: the state is stable unless
+//! some motion has no stiffness. Where slip is not associated K is not symmetric, and its second-order work is examined
+//! ([`stability`](crate::path::stability)). Points that slide, or are about to, may move on or stick: positive with all of
+//! them free suffices, negative with all of them held is instability, else nothing is proven.
+
+use super::factorisation::FactorisedModes;
+use super::point::Point;
+use super::trace::Trace;
+use crate::contact::mode::ContactMode;
+use crate::optimise::lcg::Lcg;
+use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
+use crate::path::system::Load;
+use nalgebra::DMatrix;
+use voussoir_core::path::StageStability;
+
+/// Force, relative to the greatest, that is none.
+const NOTHING: f64 = 1e-9;
+/// Flexibility, in the mean compliance of a contact, above which a motion has no stiffness.
+const SOFT: f64 = 1e8;
+/// Iterations that find the softest motion.
+const ITERATIONS: usize = 8;
+
+/// What is known of the equations with the modes of all points held.
+struct HeldModes {
+    equations: FactorisedModes,
+    work: Work,
+}
+
+/// Their second-order work.
+enum Work {
+    /// Semidefinite, and whether it is positive.
+    Symmetric(bool),
+    Examined(SecondOrderWork),
+}
+
+impl HeldModes {
+    /// With some modes; `None` where motions without stiffness leave nothing to be told.
+    fn new(trace: &Trace, modes: Vec<ContactMode>) -> Option<Self> {
+        let system = &trace.system;
+        let flows = modes.iter().zip(&system.facets);
+        let associated = flows.clone().all(|(mode, facets)| match (mode, facets) {
+            (ContactMode::Facet(f), Some(facets)) => facets[*f as usize].flow == facets[*f as usize].normal,
+            _ => true,
+        });
+        let equations = FactorisedModes::new(system, modes, false)?;
+        let motions = system.size() - 2 * system.contacts;
+        let respond = |wrenches: &DMatrix<f64>| {
+            let columns = wrenches.column_iter().map(|wrench| equations.moved_by(system, wrench.as_slice()));
+            let columns: Option<Vec<Vec<f64>>> = columns.collect();
+            columns.map(|columns| DMatrix::from_fn(motions, columns.len(), |i, j| columns[j][i]))
+        };
+        let work = if associated {
+            Work::Symmetric(is_stiff(motions, respond)?)
+        } else {
+            Work::Examined(work_by_responses(motions, respond)?)
+        };
+        Some(HeldModes { equations, work })
+    }
+
+    /// Whether second-order work is positive with all loads held.
+    fn positive(&self) -> bool {
+        match &self.work {
+            Work::Symmetric(positive) => *positive,
+            Work::Examined(work) => work.negative == 0,
+        }
+    }
+
+    /// The same with the load point held; `None` where the load has no response.
+    fn positive_under_control(&mut self, trace: &Trace, load: &Load) -> Option<bool> {
+        let Work::Examined(work) = &self.work else { return Some(self.positive()) };
+        self.equations.forget_load();
+        let x = self.equations.load_rate(&trace.system, trace.state.load_step, load)?;
+        let (forces, motions) = x.split_at(2 * trace.system.contacts);
+        let dot = |own: &mut dyn Iterator<Item = &f64>, rates: &[f64]| -> f64 {
+            own.zip(rates).map(|(own, rate)| own * rate).sum()
+        };
+        let yields = dot(&mut load.wrench.iter().flatten(), motions) + dot(&mut load.gap.iter().flatten(), forces);
+        Some(work.stable_under_control(yields))
+    }
+}
+
+/// Whether a semidefinite stiffness leaves no motion free, by the softest one.
+fn is_stiff(motions: usize, respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>) -> Option<bool> {
+    let mut random = Lcg::new(7);
+    let mut motion = DMatrix::from_fn(motions, 1, |_, _| random.next());
+    let mut flexibility = 0.0;
+    for _ in 0..ITERATIONS {
+        let size = motion.norm();
+        if size == 0.0 {
+            break;
+        }
+        motion = respond(&(motion / size))?;
+        flexibility = motion.norm();
+    }
+    Some(flexibility < SOFT)
+}
+
+/// Stability of the present state under a load that has come to its end, of a stage in which supports may settle.
+pub fn stage_stability(trace: &Trace, load: &Load) -> StageStability {
+    let stage = trace.problem.load_steps[trace.state.load_step].stage;
+    let (free, held) = (modes(trace, released), modes(trace, |_, _| ContactMode::Stick));
+    let same = free == held;
+    let mut free = HeldModes::new(trace, free);
+    let mut stuck = if same { None } else { HeldModes::new(trace, held) };
+    let positive = |found: &Option<HeldModes>| found.as_ref().map(HeldModes::positive);
+    let under_load = if same { positive(&free) } else { over_weak_points(positive(&free), positive(&stuck)) };
+    let sufficient_only = free.as_ref().is_some_and(|free| matches!(free.work, Work::Examined(_)));
+    let under_control = if load.settles || under_load == Some(true) {
+        under_load
+    } else {
+        let controlled =
+            |found: &mut Option<HeldModes>| found.as_mut().and_then(|found| found.positive_under_control(trace, load));
+        over_weak_points(controlled(&mut free), controlled(&mut stuck))
+    };
+    StageStability { stage, under_load, under_control, sufficient_only }
+}
+
+/// Modes of all points, those without a choice in their own.
+fn modes(trace: &Trace, choose: impl Fn(&Point, f64) -> ContactMode) -> Vec<ContactMode> {
+    let points = &trace.state.points;
+    let largest = (0..points.len()).flat_map(|c| trace.state.force(c)).fold(0.0, |a: f64, r| a.max(r.abs()));
+    let share = |c: usize| trace.state.force(c).into_iter().fold(0.0, |a: f64, r| a.max(r.abs())) / largest.max(1e-300);
+    points.iter().enumerate().map(|(c, point)| point.settled().unwrap_or_else(|| choose(point, share(c)))).collect()
+}
+
+/// The mode in which a weakly active point gives way, with its force as a share of the greatest.
+fn released(point: &Point, force: f64) -> ContactMode {
+    match (point.mode, point.active.first()) {
+        (ContactMode::Stick, _) if point.apex && force <= NOTHING => ContactMode::Open,
+        (ContactMode::Stick, Some(facet)) => ContactMode::Facet(*facet as u8),
+        (own, _) => own,
+    }
+}
