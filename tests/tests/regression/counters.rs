@@ -70,7 +70,7 @@ fn newton_steps_hardly_grow_with_the_ring() {
 }
 
 /// On elastic voussoirs the whole system is asked at the beginning and at the end only; at an event the points of few
-/// joints are examined: 6 and 9 of 14 and 41.
+/// joints are examined: 7 and 10 of 14 and 41.
 #[test]
 fn an_event_of_elastic_voussoirs_costs_little() {
     for voussoirs in [13, 40] {

@@ -97,6 +97,8 @@ struct Norms {
     /// Forces of the outer joints that are taken for those of their resultants, from redundants: without them the others
     /// die away.
     shapes: [DMatrix<f64>; 2],
+    /// Whether there are such forces.
+    known: bool,
 }
 
 /// The greatest stress, at most, of forces of a joint that are at most these in its axes.
@@ -174,8 +176,12 @@ impl Quiet {
         let (table, n) = (&tree.tables[m], tree.redundants());
         let (height, [a, b]) = (table.free.len(), tree.outer(m));
         let mut by_redundants = table.by_outer.columns(a + b, n).clone_owned();
-        let shape = |side: usize| tree.places[m].outer[side].map_or(DMatrix::zeros(0, n), |e| self.shape(tree, e));
-        let shapes = [shape(0), shape(1)];
+        let none = |side: usize| DMatrix::zeros([a, b][side], n);
+        let shape = |side: usize| tree.places[m].outer[side].map_or(Some(none(side)), |e| self.shape(tree, e));
+        let (known, shapes) = match (shape(0), shape(1)) {
+            (Some(first), Some(second)) => (true, [first, second]),
+            _ => (false, [none(0), none(1)]),
+        };
         let by_force = [(0, 0, a), (1, a, b)].map(|(side, first, count)| {
             let mut sums = vec![0.0; height];
             let Some(e) = tree.places[m].outer[side] else { return sums };
@@ -217,6 +223,7 @@ impl Quiet {
                 }),
             ),
             shapes,
+            known,
         }
     }
 
@@ -259,7 +266,7 @@ impl Quiet {
         let (own, norms) = (&self.own[m], &self.norms[m]);
         let rooms = own.room.iter().zip(out.iter().zip(&own.reference));
         let rest: Vec<f64> = rooms.map(|(room, (now, then))| 1.0 / (room - (now - then).abs())).collect();
-        below.always = rest.iter().any(|r| *r <= 0.0);
+        below.always = !norms.known || rest.iter().any(|r| r.is_nan() || *r <= 0.0);
         below.by_force = [0, 1].map(|side| most(&norms.by_force[side], &rest));
         below.by_resultant = norms.by_resultant.iter().map(|by| most(by, &rest)).collect();
         below.by_twist = norms.by_twist.iter().map(|by| most(by, &rest)).collect();
@@ -291,8 +298,9 @@ impl Quiet {
         }
     }
 
-    /// Forces of a joint from redundants with stresses that vary linearly over the points that are not open.
-    fn shape(&self, tree: &Tree, e: usize) -> DMatrix<f64> {
+    /// Forces of a joint from redundants with stresses that vary linearly over the points that are not open. `None`
+    /// where those take no resultant.
+    fn shape(&self, tree: &Tree, e: usize) -> Option<DMatrix<f64>> {
         let (joint, areas, n) = (&tree.joints[e], &self.spans[e].areas, tree.redundants());
         let shape = |closed: &dyn Fn(usize) -> bool| {
             let weight = |i: usize| if closed(joint.contacts[i / 2]) { areas[i / 2] } else { 0.0 };
@@ -302,6 +310,6 @@ impl Quiet {
         let open = |c: usize| matches!(tree.modes[c], ContactMode::Open | ContactMode::Corner(..));
         let closed = joint.contacts.iter().filter(|c| !open(**c)).count();
         let shape = if closed > 1 { shape(&|c| !open(c)) } else { shape(&|_| true) };
-        shape.map_or(DMatrix::zeros(joint.by_twist.nrows(), n), |shape| shape * tree.statics[e].columns(0, n))
+        Some(shape? * tree.statics[e].columns(0, n))
     }
 }

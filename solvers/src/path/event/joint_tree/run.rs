@@ -200,7 +200,8 @@ fn visit(
         let mut below = std::mem::take(&mut run.tree.moved[child].rates);
         run.tree.into_child((m, side), &outer, &forces, |i, value| below[i] = value);
         run.tree.moved[child].rates = below;
-        if run.quiet.used(&run.tree, child) > USED {
+        let used = run.quiet.used(&run.tree, child);
+        if used.is_nan() || used > USED {
             open.push(child);
         } else {
             waiting.push(Waiting { deadline: run.quiet.below[child].deadline, node: child, own: false });
