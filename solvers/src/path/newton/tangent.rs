@@ -9,8 +9,8 @@ use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
 use std::rc::Rc;
 
-/// Greatest force, in units, up to which the path begins from nothing: tolerances are then those of the forces themselves,
-/// and the least that they are.
+/// Greatest force, in units, up to which a path with finite displacements begins from nothing: tolerances are then those of
+/// the forces themselves, and the least that they are.
 const FROM_NOTHING: f64 = 1e-3;
 const LEAST: f64 = 1e-12;
 
@@ -58,7 +58,8 @@ pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State
     system.count("law_evaluations", state.gap.len() as u64);
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let unit = system.units().force;
-    let largest = if largest > FROM_NOTHING * unit { largest.max(unit) } else { largest.max(LEAST * unit) };
+    let own = system.finite() && largest <= FROM_NOTHING * unit;
+    let largest = largest.max(if own { LEAST * unit } else { unit });
     let rounding = gap_rounding(system, state);
     let mut holds = true;
     let modes = (0..state.gap.len())
