@@ -42,13 +42,9 @@ fn rotation(angle: f64) -> Matrix2<f64> {
 
 /// Contact points by joints; those on one elastic body feel each other.
 fn by_joints(problem: &PathProblem, sides: &[Vec<Side>]) -> Pattern {
-    let mut groups = 0;
-    let mut group = Vec::with_capacity(problem.contacts.len());
     let joint = |c: &Contact| (c.joint, c.minus.body, c.plus.body);
-    for joint in problem.contacts.chunk_by(|a, b| joint(a) == joint(b)) {
-        group.extend(joint.iter().map(|_| groups));
-        groups += 1;
-    }
+    let joints = problem.contacts.chunk_by(|a, b| joint(a) == joint(b)).enumerate();
+    let group: Vec<usize> = joints.flat_map(|(index, points)| points.iter().map(move |_| index)).collect();
     let on_body = |sides: &Vec<Side>| {
         let mut own: Vec<usize> = sides.iter().map(|side| group[side.contact]).collect();
         own.dedup();

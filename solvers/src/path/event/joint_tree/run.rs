@@ -198,7 +198,7 @@ fn visit(
     for (side, child) in run.tree.places[m].children.into_iter().enumerate() {
         let Some(child) = child else { continue };
         let mut below = std::mem::take(&mut run.tree.moved[child].rates);
-        run.tree.into_child((m, side), &outer, &forces, |i, value| below[i] = value);
+        run.tree.hand_down((m, side), &outer, &forces, |i, value| below[i] = value);
         run.tree.moved[child].rates = below;
         let used = run.quiet.used(&run.tree, child);
         if used.is_nan() || used > USED {

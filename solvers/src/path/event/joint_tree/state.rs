@@ -148,7 +148,7 @@ impl Run {
         for (side, child) in self.tree.places[m].children.into_iter().enumerate() {
             let Some(child) = child else { continue };
             let mut below = std::mem::take(&mut self.tree.moved[child].pending);
-            self.tree.into_child((m, side), &pending, &forces, |i, value| below[i] += value);
+            self.tree.hand_down((m, side), &pending, &forces, |i, value| below[i] += value);
             (self.tree.moved[child].pending, self.tree.moved[child].any) = (below, true);
         }
         pending.fill(0.0);

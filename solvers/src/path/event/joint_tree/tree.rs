@@ -265,13 +265,7 @@ impl Tree {
     }
 
     /// Outer unknowns of a node on a side below, from those of this one and the forces of its joint.
-    pub fn into_child(
-        &self,
-        (m, side): (usize, usize),
-        outer: &[f64],
-        forces: &[f64],
-        mut add: impl FnMut(usize, f64),
-    ) {
+    pub fn hand_down(&self, (m, side): (usize, usize), outer: &[f64], forces: &[f64], mut add: impl FnMut(usize, f64)) {
         let [a, b] = self.outer(m);
         let base = self.redundants() + 1;
         let [first, second] = if side == 0 { [&outer[..a], forces] } else { [forces, &outer[a..a + b]] };
