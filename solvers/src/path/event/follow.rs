@@ -2,7 +2,8 @@
 
 use super::direction::{Next, next_direction};
 use super::elastic_chain::ElasticChain;
-use super::force_method::{Followed, RECORDED, Sections, by_force_method};
+use super::event_run::{Followed, RECORDED};
+use super::force_method::{Sections, by_force_method};
 use super::joint_tree::by_joint_tree;
 use super::next_event::{MOMENT, SAME, advance, next_event};
 use super::rates::Direction;

@@ -8,6 +8,7 @@
 mod direction;
 mod elastic_chain;
 mod energy;
+mod event_run;
 mod factorisation;
 mod follow;
 mod force_method;

@@ -3,9 +3,10 @@
 
 use super::joint::Joint;
 use super::section::Section;
-use super::state::{Hit, Run};
+use super::state::Run;
 use crate::contact::facet::{dilatancy, dot, norm, slack};
 use crate::contact::mode::ContactMode;
+use crate::path::event::event_run::{Change, Hit};
 use crate::path::event::next_event::opening_rate;
 use crate::path::event::trace::Trace;
 use nalgebra::Vector3;
@@ -16,9 +17,6 @@ const NEIGHBOURHOOD: f64 = 0.3;
 const INEQUALITY: f64 = 1e-10;
 /// Changes of a section's rate below this share of the greatest rate of a gap are rounding.
 const ROUNDING: f64 = 1e-13;
-
-/// A point that leaves its mode: how far, which, and the mode that mends it.
-pub type Change = (f64, usize, ContactMode);
 
 /// Events of the points of a section.
 #[derive(Default)]

@@ -28,5 +28,5 @@ mod section;
 mod state;
 
 pub use equations::solved;
-pub use run::{Followed, RECORDED, by_force_method};
+pub use run::by_force_method;
 pub use section::{Section, Sections};

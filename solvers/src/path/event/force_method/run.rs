@@ -1,9 +1,13 @@
 //! The run of the force method: from event to event by the equations of the cycles.
 
 use super::equations::Solution;
-use super::examine::{Change, examine};
+use super::examine::examine;
 use super::section::Sections;
-use super::state::{Hit, Run};
+use super::state::Run;
+use crate::contact::mode::ContactMode;
+use crate::path::event::event_run::{
+    Change, EventRun, Followed, Hit, ROUNDS, add_work_between, changes_of_round, follow_events,
+};
 use crate::path::event::next_event::{MOMENT, arrive, stepped};
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
@@ -11,79 +15,35 @@ use nalgebra::{DVector, Vector3};
 
 /// Points of the active set from which flow that is not associated is not examined for other rates.
 const UNEXAMINED: usize = 7;
-/// Rounds of the active set, and those in which all points change at once.
-const ROUNDS: [usize; 2] = [40, 12];
-/// Events that are all recorded; of more, so many each time their number grows e-fold.
-pub const RECORDED: u64 = 64;
-
-/// How it ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Followed {
-    /// At the target.
-    Reached,
-    /// Where the whole system must decide.
-    Left,
-    /// By its observer.
-    Stopped,
-}
-
-/// Follows the path from event to event as far as it goes, in a `sense` of λ to a `target`, until `steps`, which
-/// counts, are `most`.
+/// Follows the path from event to event as far as it goes, in a sense of λ to a target, until `steps`, which counts,
+/// are as many as `bounds` allow.
 pub fn by_force_method(
     trace: &mut Trace,
     sections: &Sections,
     load: &Load,
-    (sense, target, most): (f64, f64, usize),
+    bounds: (f64, f64, usize),
     steps: &mut usize,
 ) -> Followed {
-    // From nothing every point is in the active set.
-    if trace.state.x.iter().all(|v| *v == 0.0) {
-        return Followed::Left;
-    }
-    let run = Run::new(trace, sections, load);
-    run.and_then(|mut run| follow(&mut run, trace, (sense, target, most), steps)).unwrap_or(Followed::Left)
+    follow_events(trace, |trace| Run::new(trace, sections, load), bounds, steps)
 }
 
-fn follow(
-    run: &mut Run,
-    trace: &mut Trace,
-    (sense, target, most): (f64, f64, usize),
-    steps: &mut usize,
-) -> Option<Followed> {
-    let mut unrecorded = 0;
-    let mut events: u64 = 0;
-    loop {
-        run.before.clear();
-        let bound = (target - trace.state.factor) * sense;
-        let next = if *steps < most { next(run, trace, bound) } else { None };
-        let Some((solution, step, hits)) = next.filter(|next| next.1.is_finite()) else {
-            for (c, mode) in run.before.drain(..).rev() {
-                trace.state.points[c].mode = mode;
-            }
-            return match unrecorded == 0 || record(run, trace) {
-                true => (events > 0).then_some(Followed::Left),
-                false => Some(Followed::Stopped),
-            };
-        };
-        let whole = step >= bound;
-        advance(run, trace, &solution, (step, sense), if whole { &[] } else { &hits });
-        if whole {
-            trace.state.factor = target;
-        }
-        *steps += 1;
-        events += 1;
-        unrecorded += 1;
-        trace.log.counts.rate_problems += 1;
-        trace.log.counts.by_force_method += 1;
-        if whole || unrecorded * RECORDED >= trace.log.counts.rate_problems {
-            unrecorded = 0;
-            if !record(run, trace) {
-                return Some(Followed::Stopped);
-            }
-        }
-        if whole {
-            return Some(Followed::Reached);
-        }
+impl EventRun for Run<'_> {
+    type Rates = Solution;
+
+    fn before(&mut self) -> &mut Vec<(usize, ContactMode)> {
+        &mut self.before
+    }
+
+    fn next(&mut self, trace: &mut Trace, bound: f64) -> Option<(Solution, f64, Vec<Hit>)> {
+        next(self, trace, bound)
+    }
+
+    fn advance(&mut self, trace: &mut Trace, rates: &Solution, step: (f64, f64), hits: &[Hit]) {
+        advance(self, trace, rates, step, hits);
+    }
+
+    fn record(&mut self, trace: &mut Trace) -> bool {
+        record(self, trace)
     }
 }
 
@@ -102,8 +62,6 @@ fn refresh(run: &mut Run, trace: &mut Trace) -> Option<()> {
     Some(())
 }
 
-/// The rates from the present state, how far they hold, and what ends them. `None` where that is not
-/// decided here.
 fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Solution, f64, Vec<Hit>)> {
     for round in 0..ROUNDS[0] {
         trace.log.counts.rates.trials += 1;
@@ -129,11 +87,7 @@ fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Solution, f64, 
             let hits = all.filter(|hit| (hit.0 - best) * hit.1 <= MOMENT).copied().collect();
             return Some((solution, best, hits));
         }
-        if round >= ROUNDS[1] {
-            changes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            changes.truncate(1);
-        }
-        for (_, c, to) in changes {
+        for (_, c, to) in changes_of_round(round, changes) {
             run.before.push((c, trace.state.points[c].mode));
             trace.state.points[c].mode = to;
             run.joints[run.sections.of[c]].stale = true;
@@ -182,7 +136,6 @@ fn examine_all(
     best
 }
 
-/// Goes a step and notes the events at its end.
 fn advance(run: &mut Run, trace: &mut Trace, solution: &Solution, (step, sense): (f64, f64), hits: &[Hit]) {
     let last = run.progress.place.len() - 1;
     let rate = DVector::from_fn(last + 1, |i, _| if i < last { solution.redundants[i] } else { 1.0 });
@@ -220,7 +173,6 @@ fn advance(run: &mut Run, trace: &mut Trace, solution: &Solution, (step, sense):
     arrive(trace, &hits);
 }
 
-/// Writes the present state to the path and records it.
 fn record(run: &mut Run, trace: &mut Trace) -> bool {
     for e in 0..run.joints.len() {
         run.update_all(trace, e, None);
@@ -230,9 +182,6 @@ fn record(run: &mut Run, trace: &mut Trace) -> bool {
     for (b, motion) in run.sections.motions(&twists).into_iter().enumerate() {
         (0..3).for_each(|i| trace.state.x[start + 3 * b + i] = run.motions[3 * b + i] + motion[i]);
     }
-    let [work, moved, factor] = run.since;
-    let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
-    trace.state.energy.work += (work - trapezoid) * trace.system.units.energy();
-    run.since = [0.0, 0.0, trace.state.factor];
+    add_work_between(trace, &mut run.since);
     trace.record()
 }

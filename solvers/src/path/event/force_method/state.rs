@@ -5,12 +5,10 @@ use super::joint::Joint;
 use super::progress::Progress;
 use super::section::Sections;
 use crate::contact::mode::ContactMode;
+use crate::path::event::event_run::Hit;
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 use nalgebra::Vector3;
-
-/// What is nearest: arc until then, rate with which it comes, contact point, facet or `usize::MAX`.
-pub type Hit = (f64, f64, usize, usize);
 
 /// One load step, or a part of it.
 pub struct Run<'s> {

@@ -2,9 +2,10 @@
 //! room in which nothing else happens.
 
 use super::quiet::Own;
-use super::state::{Hit, Run};
+use super::state::Run;
 use crate::contact::facet::{dilatancy, dot, slack};
 use crate::contact::mode::ContactMode;
+use crate::path::event::event_run::{Change, Hit};
 use crate::path::event::next_event::opening_rate;
 use crate::path::event::point::Point;
 use crate::path::event::trace::Trace;
@@ -19,9 +20,6 @@ const WIDEST: f64 = 1e4;
 const INEQUALITY: f64 = 1e-10;
 /// Changes of a rate below this share of the greatest rate are rounding.
 const ROUNDING: f64 = 1e-13;
-
-/// A point that leaves its mode: how far, which, and the mode that mends it.
-pub type Change = (f64, usize, ContactMode);
 
 /// Whether a point stands at facets that it may leave at any time.
 pub fn may_leave(point: &Point) -> bool {

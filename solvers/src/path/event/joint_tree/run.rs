@@ -1,16 +1,17 @@
 //! The run on the tree: from event to event.
 
-use super::examine::{Change, examine, may_leave};
-use super::state::{Hit, Run};
-use crate::path::event::force_method::{Followed, RECORDED};
+use super::examine::{examine, may_leave};
+use super::state::Run;
+use crate::contact::mode::ContactMode;
+use crate::path::event::event_run::{
+    Change, EventRun, Followed, Hit, ROUNDS, add_work_between, changes_of_round, follow_events,
+};
 use crate::path::event::next_event::{MOMENT, arrive, stepped};
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Rounds of the active set, and those in which all points change at once.
-const ROUNDS: [usize; 2] = [40, 12];
 /// Share of a room that may be used up before a joint or a node is looked at.
 const USED: f64 = 0.5;
 /// Forces below this share of the gaps: a mechanism is near.
@@ -39,64 +40,36 @@ impl PartialOrd for Waiting {
 }
 
 /// The rates at an event.
-struct Going {
+pub struct Going {
     /// Of redundants, load and twists of weak joints.
     rates: Vec<f64>,
     /// Of the displacement at the load.
     displacement: f64,
 }
 
-/// Follows the path from event to event as far as it goes, in a `sense` of λ to a `target`, until `steps`, which
-/// counts, are `most`.
+/// Follows the path from event to event as far as it goes, in a sense of λ to a target, until `steps`, which counts,
+/// are as many as `bounds` allow.
 pub fn by_joint_tree(trace: &mut Trace, load: &Load, bounds: (f64, f64, usize), steps: &mut usize) -> Followed {
-    // From nothing every point is in the active set.
-    if trace.state.x.iter().all(|v| *v == 0.0) {
-        return Followed::Left;
-    }
-    let run = Run::new(trace, load);
-    run.and_then(|mut run| follow(&mut run, trace, bounds, steps)).unwrap_or(Followed::Left)
+    follow_events(trace, |trace| Run::new(trace, load), bounds, steps)
 }
 
-fn follow(
-    run: &mut Run,
-    trace: &mut Trace,
-    (sense, target, most): (f64, f64, usize),
-    steps: &mut usize,
-) -> Option<Followed> {
-    let mut unrecorded = 0;
-    let mut events: u64 = 0;
-    loop {
-        run.before.clear();
-        let bound = (target - trace.state.factor) * sense;
-        let next = if *steps < most { next(run, trace, bound) } else { None };
-        let Some((going, step, hits)) = next.filter(|next| next.1.is_finite()) else {
-            for (c, mode) in run.before.drain(..).rev() {
-                trace.state.points[c].mode = mode;
-            }
-            return match unrecorded == 0 || record(run, trace) {
-                true => (events > 0).then_some(Followed::Left),
-                false => Some(Followed::Stopped),
-            };
-        };
-        let whole = step >= bound;
-        advance(run, trace, &going, (step, sense), if whole { &[] } else { &hits });
-        if whole {
-            trace.state.factor = target;
-        }
-        *steps += 1;
-        events += 1;
-        unrecorded += 1;
-        trace.log.counts.rate_problems += 1;
-        trace.log.counts.by_force_method += 1;
-        if whole || unrecorded * RECORDED >= trace.log.counts.rate_problems {
-            unrecorded = 0;
-            if !record(run, trace) {
-                return Some(Followed::Stopped);
-            }
-        }
-        if whole {
-            return Some(Followed::Reached);
-        }
+impl EventRun for Run {
+    type Rates = Going;
+
+    fn before(&mut self) -> &mut Vec<(usize, ContactMode)> {
+        &mut self.before
+    }
+
+    fn next(&mut self, trace: &mut Trace, bound: f64) -> Option<(Going, f64, Vec<Hit>)> {
+        next(self, trace, bound)
+    }
+
+    fn advance(&mut self, trace: &mut Trace, rates: &Going, step: (f64, f64), hits: &[Hit]) {
+        advance(self, trace, rates, step, hits);
+    }
+
+    fn record(&mut self, trace: &mut Trace) -> bool {
+        record(self, trace)
     }
 }
 
@@ -125,8 +98,6 @@ fn refresh(run: &mut Run, trace: &mut Trace) -> Option<()> {
     Some(())
 }
 
-/// The rates from the present state, how far they hold, and what ends them. `None` where that is not
-/// decided here.
 fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Going, f64, Vec<Hit>)> {
     for round in 0..ROUNDS[0] {
         trace.log.counts.rates.trials += 1;
@@ -147,11 +118,7 @@ fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Going, f64, Vec
             hits.sort_by_key(|hit| (hit.2, hit.3));
             return Some((Going { rates, displacement }, best, hits));
         }
-        if round >= ROUNDS[1] {
-            changes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            changes.truncate(1);
-        }
-        for (_, c, to) in changes {
+        for (_, c, to) in changes_of_round(round, changes) {
             run.before.push((c, trace.state.points[c].mode));
             trace.state.points[c].mode = to;
             run.stale.push(run.tree.at[c].0);
@@ -220,7 +187,6 @@ fn visit(
     f64::INFINITY
 }
 
-/// Goes a step and notes the events at its end.
 fn advance(run: &mut Run, trace: &mut Trace, going: &Going, (step, sense): (f64, f64), hits: &[Hit]) {
     let root = run.tree.root();
     let moved = &mut run.tree.moved[root];
@@ -285,7 +251,6 @@ fn after(run: &mut Run, trace: &Trace, e: usize, hits: &[(usize, usize)]) {
     }
 }
 
-/// Writes the present state to the path and records it.
 fn record(run: &mut Run, trace: &mut Trace) -> bool {
     let mut open = vec![run.tree.root()];
     while let Some(m) = open.pop() {
@@ -300,9 +265,6 @@ fn record(run: &mut Run, trace: &mut Trace) -> bool {
     for (b, motion) in run.tree.sections.motions(&twists).into_iter().enumerate() {
         (0..3).for_each(|i| trace.state.x[start + 3 * b + i] = run.progress.motions[3 * b + i] + motion[i]);
     }
-    let [work, moved, factor] = run.progress.since;
-    let trapezoid = 0.5 * (factor + trace.state.factor) * moved;
-    trace.state.energy.work += (work - trapezoid) * trace.system.units.energy();
-    run.progress.since = [0.0, 0.0, trace.state.factor];
+    add_work_between(trace, &mut run.progress.since);
     trace.record()
 }

@@ -5,13 +5,11 @@ use super::tree::Tree;
 use crate::contact::facet::dot;
 use crate::contact::mode::ContactMode;
 use crate::path::event::elastic_chain::ElasticChain;
+use crate::path::event::event_run::Hit;
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 use nalgebra::Vector3;
 use voussoir_core::law::FacetMode;
-
-/// What is nearest: arc until then, rate with which it comes, contact point, facet or `usize::MAX`.
-pub type Hit = (f64, f64, usize, usize);
 
 /// How far a run has come.
 pub struct Progress {
