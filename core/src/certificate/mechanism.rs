@@ -162,8 +162,8 @@ pub fn mechanism(
 pub struct Deforming<'a> {
     /// Jumps below this share of the greatest are deformation.
     pub share: f64,
-    /// By joint, whether its blocks press on each other: its toe yields where an end of it comes nearer.
-    pub pressed: &'a [bool],
+    /// By joint, the end near which its blocks press on each other: there it touches, even where its toe gives way.
+    pub pressed: &'a [Option<usize>],
 }
 
 /// Reads a mechanism off rates of bodies that also deform.
@@ -203,7 +203,8 @@ pub fn mechanism_of_deforming(
         // Where nothing can crush, an end that comes nearer was apart and closes again, unless blocks press there
         // and their toe gives way by less than the other end opens.
         let crushable = can_crush[law];
-        let gives_way = turns_about(clear).filter(|_| deforming.pressed.get(index) == Some(&true));
+        let pressed = deforming.pressed.get(index).copied().flatten();
+        let gives_way = pressed.filter(|end| turns_about(clear, *end));
         if !crushable && gives_way.is_none() && clear.iter().all(|c| c.abs() > tolerance) {
             continue;
         }
@@ -280,14 +281,10 @@ fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {
     rays
 }
 
-/// Where pressed blocks that deform turn: the end that comes nearer while the other opens, else the one that
-/// stays, if by far; `None` where the joint hardly turns for how much it closes or opens.
-fn turns_about(clear: [f64; 2]) -> Option<usize> {
-    let stays = usize::from(clear[1].abs() < clear[0].abs());
-    if clear[0] * clear[1] < 0.0 {
-        return Some(usize::from(clear[1] < clear[0]));
-    }
-    (clear[stays].abs() < CRUSHES * clear[1 - stays].abs()).then_some(stays)
+/// Whether pressed blocks that deform turn about an end: one end comes nearer while the other parts, or the end where
+/// they press stays by far more than the other.
+fn turns_about(clear: [f64; 2], end: usize) -> bool {
+    clear[0] * clear[1] < 0.0 || clear[end].abs() < CRUSHES * clear[1 - end].abs()
 }
 
 /// Share of the height over which the clearance, linear along the joint, is negative.
@@ -331,16 +328,18 @@ mod tests {
     #[test]
     fn a_pressed_joint_turns_about_the_end_that_is_pressed() {
         let cases = [
-            ([-0.1, 1.0], Some(0)), // the toe yields by a tenth of what the other end opens
-            ([-1.5, 1.0], Some(0)), // and by more
-            ([1.0, -0.2], Some(1)),
-            ([0.05, 1.0], Some(0)),  // it grows longer
-            ([-0.2, -1.0], Some(0)), // an open joint closes
-            ([-0.8, -1.0], None),    // the joint is pressed together all along
-            ([0.8, 1.0], None),
+            ([-0.1, 1.0], true),   // the toe yields by a tenth of what the other end opens
+            ([-1.5, 1.0], true),   // and by more
+            ([0.1, -1.0], true),   // an open joint closes, its toe is relieved
+            ([0.05, 1.0], true),   // it grows longer
+            ([-0.2, -1.0], true),  // an open joint closes, and is pressed
+            ([-0.8, -1.0], false), // the joint is pressed together all along
+            ([0.8, 1.0], false),
+            ([-1.0, -0.2], false),
         ];
-        for (clear, end) in cases {
-            assert_eq!(turns_about(clear), end, "{clear:?}");
+        for (clear, turns) in cases {
+            assert_eq!(turns_about(clear, 0), turns, "{clear:?}");
+            assert_eq!(turns_about([clear[1], clear[0]], 1), turns, "{clear:?}");
         }
     }
 }

@@ -39,17 +39,21 @@ pub fn mechanism_of(
     found.map(|found| with_crushing(found, assembly, problem, &state.yielded))
 }
 
-/// By joint, whether its blocks press on each other.
-fn pressed_joints(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<bool> {
+/// By joint, the end next to which the resultant presses its blocks together.
+fn pressed_joints(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<Option<usize>> {
     let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0].abs()));
-    let mut pressed = vec![false; assembly.joints.len()];
-    // Contact points of the fill come after those of all joints.
+    // Normal force of every joint, and its moment about the middle over the height.
+    let mut resultants = vec![[0.0; 2]; assembly.joints.len()];
     for (contact, force) in problem.contacts.iter().zip(&state.force) {
-        if let Some(own) = pressed.get_mut(contact.joint) {
-            *own |= force[0] > 1e-9 * largest;
-        }
+        // Contact points of the fill come after those of all joints.
+        let Some(joint) = assembly.joints.get(contact.joint) else { break };
+        let along = joint.ends[1] - joint.ends[0];
+        let place = (contact.position - joint.middle()).dot(&along) / along.norm_squared();
+        resultants[contact.joint][0] += force[0];
+        resultants[contact.joint][1] += force[0] * place;
     }
-    pressed
+    let end = |[force, moment]: &[f64; 2]| (*force > 1e-9 * largest).then(|| usize::from(*moment > 0.0));
+    resultants.iter().map(end).collect()
 }
 
 /// Displacement of a point that moves rigidly with a body: \[u_x, u_y, θ\] at `from`, u + R(θ) a − a
