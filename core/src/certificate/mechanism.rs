@@ -200,8 +200,8 @@ pub fn mechanism_of_deforming(
         if jump.slip.abs() > tolerance {
             found.sliding.push(Sliding { joint: index, between: between(), slip: jump.slip });
         }
-        // Where nothing can crush, an end that comes nearer was apart and closes again, unless blocks press there
-        // and their toe gives way by less than the other end opens.
+        // Where nothing can crush, an end that comes nearer was apart and closes again, unless blocks that deform are
+        // pressed and turn.
         let crushable = can_crush[law];
         let pressed = deforming.pressed.get(index).copied().flatten();
         let gives_way = pressed.filter(|end| turns_about(clear, *end));
@@ -237,19 +237,23 @@ impl Mechanism {
             }
         }
         self.crushing.sort_by_key(|c| c.joint);
-        let crushes = |joint: usize| self.crushing.iter().any(|c| c.joint == joint && c.share > CRUSHES);
-        self.hinges.retain(|hinge| !crushes(hinge.joint));
+        let turning = std::mem::take(&mut self.hinges);
+        self.hinges = turning.into_iter().filter(|hinge| !self.crushes(hinge.joint)).collect();
         self.name_kind(assembly);
         self
     }
 
+    /// Whether more than [`CRUSHES`] of a joint crushes.
+    pub fn crushes(&self, joint: usize) -> bool {
+        self.crushing.iter().any(|c| c.joint == joint && c.share > CRUSHES)
+    }
+
     /// Counts hinges and names the kind.
     fn name_kind(&mut self, assembly: &Assembly) {
-        let crushing = || self.crushing.iter().filter(|c| c.share > CRUSHES);
-        let crushes = |joint: usize| crushing().any(|c| c.joint == joint);
-        let hinges: Vec<&Hinge> = self.hinges.iter().filter(|hinge| !crushes(hinge.joint)).collect();
+        let crushing = self.crushing.iter().any(|c| c.share > CRUSHES);
+        let hinges: Vec<&Hinge> = self.hinges.iter().filter(|hinge| !self.crushes(hinge.joint)).collect();
         self.hinge_count = count_merged(assembly, &hinges);
-        self.kind = match (self.hinge_count, self.sliding.is_empty(), crushing().next().is_none()) {
+        self.kind = match (self.hinge_count, self.sliding.is_empty(), !crushing) {
             (0, false, true) => MechanismKind::Sliding,
             (0, true, false) => MechanismKind::Crushing,
             (3, true, true) => MechanismKind::ThreeHinge,

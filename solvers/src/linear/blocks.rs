@@ -180,13 +180,8 @@ impl BlockMatrix {
 
     /// Columns of the blocks of a group of rows: their index among the forces, and their numbers.
     pub fn columns(&self, group: usize) -> impl Iterator<Item = (usize, &[f64])> {
-        let pattern = &*self.pattern;
-        let height = pattern.rows(group).len();
-        pattern.beside[group].iter().flat_map(move |&(column, at)| {
-            let rows = pattern.rows(column);
-            let block = &self.values[at..at + height * rows.len()];
-            rows.zip(block.chunks_exact(height))
-        })
+        let height = self.pattern.rows(group).len();
+        self.blocks(group).flat_map(move |(columns, block)| columns.zip(block.chunks_exact(height)))
     }
 
     /// Diagonal entry of a row, where its group has no block of its own.

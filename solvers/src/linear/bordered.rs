@@ -16,7 +16,7 @@
 //! 469-483).
 
 use super::condensed::{Condensed, pair};
-use super::factorised::Factorised;
+use super::factorised::{Factorised, row_error};
 use super::inner;
 use std::rc::Rc;
 
@@ -159,7 +159,7 @@ impl<E: Factorised> BorderedSystem<E> {
             size += (c * x).abs();
         }
         left[last] = own;
-        (left, if own == 0.0 { error } else { error.max((own / size).abs()) })
+        (left, error.max(row_error(own, size)))
     }
 }
 

@@ -13,7 +13,7 @@
 
 use super::blocks::GapRows;
 use super::csr::CsrMatrix;
-use super::factorised::Factorised;
+use super::factorised::{Factorised, row_error};
 use std::rc::Rc;
 use voussoir_core::linear::{FrontRows, FrontalLu};
 
@@ -322,9 +322,7 @@ impl Factorised for ChainFactors {
         let mut left = Vec::with_capacity(right.len());
         let mut worst = 0.0f64;
         let mut take = |rest: f64, size: f64| {
-            // A row of zeros is solved; what is no number is not.
-            let error = if rest == 0.0 { 0.0 } else { (rest / size).abs() };
-            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            worst = worst.max(row_error(rest, size));
             left.push(rest);
         };
         for (c, rows) in own.points.iter().enumerate() {

@@ -16,7 +16,7 @@
 //! refinement leave the accuracy of the equations before condensation.
 
 use super::csr::CsrMatrix;
-use super::factorised::Factorised;
+use super::factorised::{Factorised, row_error};
 use std::sync::Arc;
 use voussoir_core::linear::{Analysis, Entries, FrontalLu, SparseLu};
 
@@ -356,15 +356,11 @@ impl Factorised for Condensed {
         Some(self.expand(right, &y))
     }
 
-    /// The backward error of a row is what is left of it, relative to the sizes of what it adds up (Arioli, Demmel & Duff
-    /// 1989, SIAM J. Matrix Anal. Appl. 10, 165-190).
     fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let mut worst = 0.0f64;
         let by_row = |(i, right): (usize, &f64)| {
             let (left, size) = self.rows.left_of_row(i, *right, x);
-            // A row of zeros is solved; what is no number is not.
-            let error = if left == 0.0 { 0.0 } else { (left / size).abs() };
-            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            worst = worst.max(row_error(left, size));
             left
         };
         (right.iter().enumerate().map(by_row).collect(), worst)

@@ -1,7 +1,6 @@
 //! What was measured: problems, contestants at them, errors.
 
 use crate::results::CaseResult;
-use voussoir_core::limit::Status;
 
 /// One contestant at one problem.
 #[derive(Debug, Clone)]
@@ -21,8 +20,7 @@ pub struct Measurement {
 impl Measurement {
     /// The load factor, where it is a certified collapse or limit point.
     pub fn factor(&self) -> Option<f64> {
-        let ends = matches!(self.result.status, Status::Collapse | Status::LimitPoint);
-        self.result.load_factor.filter(|_| self.result.certificate.passed && ends)
+        self.result.collapse_load()
     }
 }
 

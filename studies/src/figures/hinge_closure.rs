@@ -6,7 +6,7 @@
 
 use super::displaced::Placement;
 use nalgebra::{DMatrix, DVector};
-use voussoir_core::certificate::{CRUSHES, Mechanism};
+use voussoir_core::certificate::Mechanism;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, root};
 
@@ -16,10 +16,7 @@ const GREATEST: usize = 150;
 /// Corrects placements so that hinges stay closed. Bodies at rest stay at rest. Hinges of joints that slide, or
 /// crush over more than a toe, are left alone: they do not stay where they are.
 pub fn close_hinges(assembly: &Assembly, mechanism: &Mechanism, mut placements: Vec<Placement>) -> Vec<Placement> {
-    let wanders = |joint: usize| {
-        mechanism.sliding.iter().any(|slide| slide.joint == joint)
-            || mechanism.crushing.iter().any(|crush| crush.joint == joint && crush.share > CRUSHES)
-    };
+    let wanders = |joint: usize| mechanism.sliding.iter().any(|slide| slide.joint == joint) || mechanism.crushes(joint);
     let (link_of, links) = links(assembly, &placements);
     let hinges: Vec<(usize, usize, Vec2)> = mechanism
         .hinges

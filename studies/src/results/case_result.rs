@@ -181,6 +181,12 @@ impl CaseResult {
         CaseResult { notes: vec![why.into()], ..CaseResult::empty() }
     }
 
+    /// The load factor, where it is a certified collapse or limit point.
+    pub fn collapse_load(&self) -> Option<f64> {
+        let ends = matches!(self.status, Status::Collapse | Status::LimitPoint);
+        self.load_factor.filter(|_| self.certificate.passed && ends)
+    }
+
     /// A stalled answer that says nothing, to be filled in.
     pub fn empty() -> Self {
         CaseResult {

@@ -16,7 +16,7 @@ use super::restated::restated;
 use crate::results::{CaseResult, LoadFactorError};
 use crate::study::{Case, SelectedSolver};
 use serde_json::{Value as Json, json};
-use voussoir_core::limit::{LimitProblem, Status};
+use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::{Assembly, stage_loads};
 use voussoir_core::plugin::{PluginKind, card};
 
@@ -30,7 +30,7 @@ pub type Solve<'a> = &'a dyn Fn(&CaseInput) -> CaseResult;
 
 /// Errors of the load factor of an answer, found by solving again; an error says why there are none.
 pub fn estimate(case: &Case, result: &CaseResult, solve: Solve) -> Result<LoadFactorError, String> {
-    let factor = collapse_load(result).ok_or("there is no proved collapse load")?;
+    let factor = result.collapse_load().ok_or("there is no proved collapse load")?;
     let path = card(PluginKind::PathSolver, &result.solver);
     let solution = match (path, result.bounds) {
         (Some(_), _) => case.solver.settings.tolerance * factor.abs(),
@@ -73,20 +73,14 @@ fn limit_load(case: &Case) -> Option<f64> {
     if !ends_at_limit_load(case) {
         return None;
     }
-    collapse_load(&solve_by_limit_analysis(&CaseInput { solver: &SelectedSolver::Auto, ..CaseInput::of(case) }))
-}
-
-/// The load factor of an answer that is a proved collapse, or a proved peak.
-fn collapse_load(result: &CaseResult) -> Option<f64> {
-    let ends = matches!(result.status, Status::Collapse | Status::LimitPoint);
-    result.load_factor.filter(|_| result.certificate.passed && ends)
+    solve_by_limit_analysis(&CaseInput { solver: &SelectedSolver::Auto, ..CaseInput::of(case) }).collapse_load()
 }
 
 /// The load factor of the case with some keys changed.
 fn again(case: &Case, solve: Solve, sets: impl IntoIterator<Item = (String, Json)>) -> Result<f64, String> {
     let other = restated(case, sets)?;
     let result = solve(&CaseInput::of(&other));
-    collapse_load(&result).ok_or_else(|| result.notes.first().cloned().unwrap_or_else(|| "it does not collapse".into()))
+    result.collapse_load().ok_or_else(|| result.notes.first().cloned().unwrap_or_else(|| "it does not collapse".into()))
 }
 
 /// The estimate in words.

@@ -5,14 +5,13 @@ use crate::study::Case;
 use serde_json::{Map, Value as Json, json};
 use voussoir_core::elastic::MeshDensity;
 use voussoir_core::plugin::{Capability, Card, PluginKind, card};
+use voussoir_solvers::path::continuation::LARGEST_FINITE_STEP;
 
 /// Dotted keys with the values they take.
 pub type Sets = Vec<(String, Json)>;
 
 /// The strategy of a path that names none.
 const STRATEGY: &str = "arc_length";
-/// `largest_step` with finite displacements where none is given, as its card says.
-const LARGEST_FINITE_STEP: f64 = 0.002;
 
 /// The mesh of the scene, where it can have one: its table, elements filled in.
 fn mesh_of(case: &Case) -> Option<Map<String, Json>> {

@@ -112,7 +112,7 @@ impl Equations {
         PointRows { force, gap, force_shift, gap_shift }
     }
 
-    /// The rows of a contact point whose law gives tractions from gaps: own and stiffness as in `response`.
+    /// The rows of a contact point whose law gives tractions from gaps: own and stiffness as `traction_row` has them.
     pub fn response_rows(own: [f64; 2], stiffness: [[f64; 2]; 2]) -> PointRows {
         PointRows {
             force: [[own[0], 0.0], [0.0, own[1]]],
@@ -122,51 +122,24 @@ impl Equations {
         }
     }
 
-    /// Adds row k of a contact point in a mode to open rows: its equation, and what is added. The latter
-    /// keeps the equations monotone where it is `whole`; where the forces of other points are left out of
-    /// it, those of open points have equations of their own, which can be condensed out.
-    pub fn point(
-        &self,
-        law: Option<&YieldPolygon>,
-        (c, k): (usize, usize),
-        mode: ContactMode,
-        whole: bool,
-        equation: Open,
-        shift: Open,
-    ) {
+    /// Adds row k of a contact point to open rows: its equation, and what is added. The latter keeps the equations
+    /// monotone where it is `whole`; where the forces of other points are left out of it, those of open points have
+    /// equations of their own, which can be condensed out.
+    pub fn add_row(&self, rows: &PointRows, (c, k): (usize, usize), whole: bool, equation: Open, shift: Open) {
         let forces = self.gaps.len();
-        let gap = |k: usize, by: f64| self.gaps.row(2 * c + k).map(move |(j, v)| (j, by * v));
-        match (mode, law) {
-            (ContactMode::Facet(i), Some(law)) => {
-                let (a, d) = (law.facets[i as usize].normal, law.facets[i as usize].flow);
-                let square = d[0] * d[0] + d[1] * d[1];
-                if k == 0 {
-                    equation.extend([(2 * c, a[0]), (2 * c + 1, a[1])]);
-                    (0..2).for_each(|k| shift.extend(gap(k, REGULARISATION * d[k] / square)));
-                } else {
-                    equation.extend(gap(0, d[1]));
-                    equation.extend(gap(1, -d[0]));
-                }
-            }
-            (ContactMode::Corner(..) | ContactMode::Open, Some(_)) => {
-                equation.push((2 * c + k, 1.0));
-                shift.extend(gap(k, REGULARISATION).filter(|&(j, _)| whole || j >= forces || j / 2 == c));
-            }
-            _ => {
-                equation.extend(self.gaps.row(2 * c + k));
-                shift.push((2 * c + k, REGULARISATION));
-            }
-        }
-    }
-
-    /// Adds row k of a contact point whose law gives tractions from gaps: own and stiffness as in `response`.
-    pub fn response(&self, c: usize, k: usize, own: f64, stiffness: [f64; 2], equation: Open, shift: Open) {
-        for (gap, s) in stiffness.into_iter().enumerate().filter(|(_, s)| *s != 0.0) {
-            equation.extend(self.gaps.row(2 * c + gap).map(|(j, v)| (j, s * v)));
-        }
-        equation.push((2 * c + k, own));
-        shift.extend(self.gaps.row(2 * c + k).map(|(j, v)| (j, REGULARISATION * v)));
-        shift.push((2 * c + k, REGULARISATION));
+        let open = rows.gap == [[0.0; 2]; 2];
+        let own = |j: usize| whole || !open || j >= forces || j / 2 == c;
+        let gaps = |weights: [f64; 2]| {
+            let taken = weights.into_iter().enumerate().filter(|(_, by)| *by != 0.0);
+            taken.flat_map(|(l, by)| self.gaps.row(2 * c + l).map(move |(j, v)| (j, by * v)))
+        };
+        let of_point = |weights: [f64; 2]| {
+            weights.into_iter().enumerate().filter(|(_, by)| *by != 0.0).map(move |(l, by)| (2 * c + l, by))
+        };
+        equation.extend(gaps(rows.gap[k]));
+        equation.extend(of_point(rows.force[k]));
+        shift.extend(gaps(rows.gap_shift[k]).filter(|e| own(e.0)));
+        shift.extend(of_point(rows.force_shift[k]));
     }
 
     /// Adds the rows of the bodies, with viscous wrenches of this rate.

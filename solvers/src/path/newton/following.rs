@@ -10,15 +10,12 @@ use super::system::StepSystem;
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::contact::mode::ContactMode;
+use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
-
-/// Movement in a step with finite displacements where the strategy sets no bound, as a share of the
-/// scene's size.
-const LARGEST_FINITE_STEP: f64 = 0.002;
 
 /// Length of the first step on another branch, relative to that of the load step.
 const BRANCH: f64 = 0.1;

@@ -24,7 +24,7 @@ use super::system::StepSystem;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::chain::{BodyRows, ChainFactors};
+use crate::linear::chain::{BodyRows, ChainFactors, PointRows};
 use crate::linear::condensed::Condensed;
 use crate::linear::csr::CsrMatrix;
 use std::rc::Rc;
@@ -107,15 +107,9 @@ pub(super) fn factorised(
     let chain = system.scaled.chain.clone().filter(|_| system.geometry.pattern.couples());
     let held = match chain {
         Some(chain) => BorderedFactors::new(state.mode.len(), row, |last| {
-            let points = (0..state.mode.len()).map(|c| match system.laws.responses.is(c) {
-                true => {
-                    let (own, stiffness) = traction_row(system, state, c);
-                    Equations::response_rows(own, stiffness)
-                }
-                false => Equations::point_rows(system.law(c), state.mode[c]),
-            });
+            let points = (0..state.mode.len()).map(|c| rows_of_point(system, state, c)).collect();
             let bodies = BodyRows { rows: equations.bodies.clone(), diagonal: -damping, shift: -REGULARISATION };
-            let factors = ChainFactors::new(equations.gaps.clone(), bodies, points.collect(), last, &chain);
+            let factors = ChainFactors::new(equations.gaps.clone(), bodies, points, last, &chain);
             factors.map(ModeEquations::Chain)
         }),
         None => by_rows(system, state, equations, row, damping),
@@ -131,6 +125,15 @@ pub(super) fn factorised(
     Some((held, false))
 }
 
+/// The rows of a contact point, by its mode or by its tractions.
+fn rows_of_point(system: &StepSystem, state: &State, c: usize) -> PointRows {
+    if system.laws.responses.is(c) {
+        let (own, stiffness) = traction_row(system, state, c);
+        return Equations::response_rows(own, stiffness);
+    }
+    Equations::point_rows(system.law(c), state.mode[c])
+}
+
 /// The same row by row, whatever bodies stand beside each other.
 fn by_rows(
     system: &mut StepSystem,
@@ -141,14 +144,10 @@ fn by_rows(
 ) -> Option<BorderedFactors<ModeEquations>> {
     let capacity = equations.bodies.entries() + 8 * system.size();
     let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(8 * system.size()));
-    for (c, mode) in state.mode.iter().enumerate() {
-        let answer = system.laws.responses.is(c).then(|| traction_row(system, state, c));
+    for c in 0..state.mode.len() {
+        let (point, whole) = (rows_of_point(system, state, c), system.laws.responses.is(c));
         for k in 0..2 {
-            let (equation, shift) = (rows.open_row(), shifts.open_row());
-            match &answer {
-                Some((own, stiffness)) => equations.response(c, k, own[k], stiffness[k], equation, shift),
-                None => equations.point(system.law(c), (c, k), *mode, false, equation, shift),
-            }
+            equations.add_row(&point, (c, k), whole, rows.open_row(), shifts.open_row());
             rows.end_row();
             shifts.end_row();
         }

@@ -108,9 +108,10 @@ impl UpdatedEquations {
 
     /// The two rows of a contact point in a mode.
     fn rows_of(&self, system: &StepSystem, c: usize, mode: ContactMode) -> [Row; 2] {
+        let point = Equations::point_rows(system.law(c), mode);
         [0, 1].map(|k| {
             let (mut row, mut shift) = (Row::new(), Row::new());
-            self.equations.point(system.law(c), (c, k), mode, true, &mut row, &mut shift);
+            self.equations.add_row(&point, (c, k), true, &mut row, &mut shift);
             row.append(&mut shift);
             row
         })
@@ -123,9 +124,9 @@ impl UpdatedEquations {
         }
         let (mut rows, mut shifts) = (CsrMatrix::with_capacity(0), CsrMatrix::with_capacity(0));
         for c in 0..self.points {
+            let point = Equations::point_rows(system.law(c), self.modes[c]);
             for k in 0..2 {
-                let law = system.law(c);
-                self.equations.point(law, (c, k), self.modes[c], true, rows.open_row(), shifts.open_row());
+                self.equations.add_row(&point, (c, k), true, rows.open_row(), shifts.open_row());
                 rows.end_row();
                 shifts.end_row();
             }

@@ -63,14 +63,8 @@ impl Looked<'_> {
 /// Examines a joint. Returns the arc to the next event in it; points that leave their modes are added to `changes`.
 pub fn examine(run: &mut Run, trace: &mut Trace, e: usize, changes: &mut Vec<Change>) -> f64 {
     trace.log.counts.sections += 1;
-    let openings = run.settle(trace, e);
+    run.settle_joint(trace, e);
     let joint = run.tree.joints[e].clone();
-    for (c, opening) in joint.contacts.iter().zip(openings) {
-        let point = &mut trace.state.points[*c];
-        if point.open() {
-            point.opening = (point.opening + opening).max(0.0);
-        }
-    }
     let out = run.out[e].clone();
     let table = &run.tree.tables[e];
     let height = out.len() - 3;

@@ -216,13 +216,7 @@ fn advance(run: &mut Run, trace: &mut Trace, going: &Going, (step, sense): (f64,
     }
     for hit in hits {
         let e = run.tree.at[hit.2].0;
-        let openings = run.settle(trace, e);
-        for (c, opening) in run.tree.joints[e].contacts.iter().zip(openings) {
-            let point = &mut trace.state.points[*c];
-            if point.open() {
-                point.opening = (point.opening + opening).max(0.0);
-            }
-        }
+        run.settle_joint(trace, e);
         ended.push(e);
     }
     let hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();

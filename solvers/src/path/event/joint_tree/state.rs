@@ -91,10 +91,20 @@ impl Run {
     /// Hands what waits above a joint down to it. Returns by how much each of its points opens, which is left to the
     /// caller.
     pub fn settle(&mut self, trace: &mut Trace, e: usize) -> Vec<f64> {
+        self.settle_above(trace, e);
+        self.take(trace, e)
+    }
+
+    /// The same; its points open.
+    pub fn settle_joint(&mut self, trace: &mut Trace, e: usize) {
+        self.settle_above(trace, e);
+        self.settle_node(trace, e);
+    }
+
+    fn settle_above(&mut self, trace: &mut Trace, e: usize) {
         let path = self.tree.path(e);
         let (_, above) = path.split_last().unwrap_or((&e, &[]));
         above.iter().for_each(|m| self.settle_node(trace, *m));
-        self.take(trace, e)
     }
 
     /// The same of a node to which all above has been handed down; its points open.
