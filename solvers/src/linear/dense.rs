@@ -66,20 +66,19 @@ fn add_row_columns(out: &mut [f64], w: &[f64], a: &[f64]) {
 #[inline(always)]
 fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
     let height = out.len();
-    let mut columns = a.chunks_exact(rows).zip(x).filter(|(_, x)| **x != 0.0);
-    loop {
-        let next: [Option<(&[f64], &f64)>; 4] = std::array::from_fn(|_| columns.next());
-        if let [Some((a, w)), Some((b, x)), Some((c, y)), Some((d, z))] = next {
-            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-            for (i, out) in out.iter_mut().enumerate() {
-                *out += (a[i] * w + b[i] * x) + (c[i] * y + d[i] * z);
-            }
-            continue;
+    let (a4, x4) = (a.chunks_exact(4 * rows), x.chunks_exact(4));
+    let whole = (a.len() / (4 * rows)).min(x.len() / 4);
+    let (a1, x1) = (&a[4 * rows * whole..], &x[4 * whole..]);
+    for (a, x) in a4.zip(x4).filter(|(_, x)| **x != [0.0; 4]) {
+        let (a, b) = a.split_at(2 * rows);
+        let ((a, b), (c, d)) = (a.split_at(rows), b.split_at(rows));
+        let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
+        for (i, out) in out.iter_mut().enumerate() {
+            *out += (a[i] * x[0] + b[i] * x[1]) + (c[i] * x[2] + d[i] * x[3]);
         }
-        for (a, x) in next.into_iter().flatten() {
-            out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
-        }
-        return;
+    }
+    for (a, x) in a1.chunks_exact(rows).zip(x1).filter(|(_, x)| **x != 0.0) {
+        out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
     }
 }
 
