@@ -11,6 +11,11 @@ use voussoir_core::model::Wrenches;
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
 pub const TOLERANCE: f64 = 1e-6;
+/// The same for the first programs: a sequence that converges is followed to its limit, which does not depend on where it
+/// was left.
+const CLOSE: f64 = 1e-10;
+/// The first programs.
+const CLOSELY: usize = 36;
 /// Greatest number of programs.
 const PROGRAMS: usize = 120;
 /// Programs solved at vertices before fields are taken from the middle of those that carry the factor: vertices may jump
@@ -80,7 +85,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
-        let steady = (factor - last).abs() <= TOLERANCE * factor.abs().max(TOLERANCE * systems.unit);
+        let asked = if step < CLOSELY { CLOSE } else { TOLERANCE };
+        let steady = (factor - last).abs() <= asked * factor.abs().max(TOLERANCE * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);
         let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
@@ -88,7 +94,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
         course.take(factor, worst, idle);
-        if worst.max(idle) <= TOLERANCE
+        if worst.max(idle) <= asked
             && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
             return Sequence::Converged(state);
