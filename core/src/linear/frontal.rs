@@ -8,7 +8,7 @@
 //! Sources: Irons 1970, Int. J. Numer. Meth. Engng 2, 5-32; Hood 1976, Int. J. Numer. Meth. Engng 10, 379-399.
 
 use super::entries::Entries;
-use faer::traits::pulp::Arch;
+use crate::with_vectors;
 
 /// The elimination of the unknowns of one rank.
 struct Front {
@@ -221,45 +221,47 @@ impl FrontalLu {
 
     /// Solves for several right-hand sides. `None` where the matrix is singular to rounding.
     pub fn solve(&self, right: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-        let all: Vec<Vec<f64>> = Arch::new().dispatch(|| self.solve_all(right));
+        let (fronts, size) = (self.fronts.as_slice(), self.size);
+        let all =
+            with_vectors!('a, solve_all(fronts: &'a [Front], size: usize, right: &'a [Vec<f64>]) -> Vec<Vec<f64>>);
         all.iter().flatten().all(|v| v.is_finite()).then_some(all)
     }
+}
 
-    /// All right-hand sides through one front after the other.
-    #[inline(always)]
-    fn solve_all(&self, right: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let mut pivotal: Vec<Vec<f64>> = right.iter().map(|_| Vec::with_capacity(self.size)).collect();
-        let mut left: Vec<Vec<f64>> = vec![Vec::new(); right.len()];
-        for front in &self.fronts {
-            let pivots = front.exchanged.len();
-            for ((left, pivotal), right) in left.iter_mut().zip(&mut pivotal).zip(right) {
-                left.extend(front.joining.iter().map(|i| right[*i]));
-                exchange(left, &front.exchanged);
-                substitute(left, &front.eliminated, pivots);
-                pivotal.extend(left.drain(..pivots));
-            }
+/// All right-hand sides through one front after the other.
+#[inline(always)]
+fn solve_all(fronts: &[Front], size: usize, right: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut pivotal: Vec<Vec<f64>> = right.iter().map(|_| Vec::with_capacity(size)).collect();
+    let mut left: Vec<Vec<f64>> = vec![Vec::new(); right.len()];
+    for front in fronts {
+        let pivots = front.exchanged.len();
+        for ((left, pivotal), right) in left.iter_mut().zip(&mut pivotal).zip(right) {
+            left.extend(front.joining.iter().map(|i| right[*i]));
+            exchange(left, &front.exchanged);
+            substitute(left, &front.eliminated, pivots);
+            pivotal.extend(left.drain(..pivots));
         }
-        let mut all = vec![vec![0.0; self.size]; right.len()];
-        let mut known: Vec<f64> = Vec::new();
-        for front in self.fronts.iter().rev() {
-            let pivots = front.exchanged.len();
-            for (x, pivotal) in all.iter_mut().zip(&mut pivotal) {
-                let before = pivotal.len() - pivots;
-                let own = &mut pivotal[before..];
-                known.clear();
-                known.extend(front.upper.0.iter().map(|j| x[*j]));
-                subtract_product(own, &front.upper.1, &known);
-                for k in (0..pivots).rev() {
-                    let column = &front.eliminated[k * front.height..k * front.height + k + 1];
-                    let value = own[k] / column[k];
-                    own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
-                    x[front.columns[k]] = value;
-                }
-                pivotal.truncate(before);
-            }
-        }
-        all
     }
+    let mut all = vec![vec![0.0; size]; right.len()];
+    let mut known: Vec<f64> = Vec::new();
+    for front in fronts.iter().rev() {
+        let pivots = front.exchanged.len();
+        for (x, pivotal) in all.iter_mut().zip(&mut pivotal) {
+            let before = pivotal.len() - pivots;
+            let own = &mut pivotal[before..];
+            known.clear();
+            known.extend(front.upper.0.iter().map(|j| x[*j]));
+            subtract_product(own, &front.upper.1, &known);
+            for k in (0..pivots).rev() {
+                let column = &front.eliminated[k * front.height..k * front.height + k + 1];
+                let value = own[k] / column[k];
+                own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
+                x[front.columns[k]] = value;
+            }
+            pivotal.truncate(before);
+        }
+    }
+    all
 }
 
 impl Front {
@@ -292,8 +294,10 @@ impl Front {
         }
         rows.add(&joining, place, &mut values, height, left.rows);
         columns.iter().for_each(|j| place[*j] = usize::MAX);
-        // With the vectors of the processor; the order of operations does not depend on them.
-        let exchanged = Arch::new().dispatch(|| eliminate(&mut values, height, pivots));
+        let exchanged = {
+            let values = values.as_mut_slice();
+            with_vectors!('a, eliminate(values: &'a mut [f64], height: usize, pivots: usize) -> Vec<usize>)
+        };
         let rest = height - pivots;
         let others = columns.split_off(pivots);
         let mut upper = (Vec::with_capacity(others.len()), Vec::with_capacity(pivots * others.len()));
