@@ -201,3 +201,9 @@ impl Systems {
         Equations { free, variables, rows, right }.dictionary()
     }
 }
+
+/// The pairs whose multiplier is more than rounding.
+pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
+    let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
+    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
+}

@@ -3,7 +3,7 @@
 use super::vertices::{ADMISSIBLE, Vertices};
 use crate::limit::conic;
 use crate::limit::engine::{Engine, Greatest};
-use crate::limit::systems::{LARGEST, Systems};
+use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
@@ -163,12 +163,6 @@ impl Course {
             self.idle
         )
     }
-}
-
-/// The pairs whose multiplier is more than rounding.
-pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
-    let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
-    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
 }
 
 /// A field at this factor, to the tolerance, in which all moving pairs yield.

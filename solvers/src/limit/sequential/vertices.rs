@@ -3,9 +3,8 @@
 //! They differ in the bounds of rows alone: fictitious cohesion moves with the normal forces. A basis that was the best
 //! stays one that no multiplier contradicts, and a few pivots of the dual simplex method lead to the next vertex.
 
-use super::sequence::greatest_shares;
 use crate::limit::engine::Greatest;
-use crate::limit::systems::{LARGEST, Systems};
+use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
 
