@@ -24,6 +24,7 @@ fn gate(name: &str, solver: &str, tolerance: f64) -> Option<f64> {
         _ if FACTORS.contains(&name) => tolerance,
         "motion_scale" | "associated_motion_scale" => 1e-9,
         "settlement_supports" | "settlement_flow" | "settlement_gap" => 1e-8,
+        "settlement_ray" => 1e-6,
         "path_equilibrium" | "path_ray" => 1e-9,
         "path_kinematics" | "path_strength" | "path_penetration" | "path_complementarity" | "path_law" => 1e-8,
         "path_inner_equilibrium" | "path_yield" | "path_dissipation" => 1e-8,

@@ -56,8 +56,10 @@ pub struct Claim<'a> {
     pub fill: &'a [f64],
     /// Velocity of every body.
     pub motion: Option<&'a [CentroidVelocity]>,
-    /// Contact forces that balance the varying load alone.
+    /// Contact forces that balance the varying load alone, or nothing where `supports` are told.
     pub ray: Option<&'a [ContactForce]>,
+    /// Motion of every held block, `None` of free ones, where the claim is that no motion of the free ones goes with it.
+    pub supports: Option<&'a [Option<CentroidVelocity>]>,
     /// Whether some factor is feasible where the start is not, and the interval.
     pub feasible_interval: Option<[f64; 2]>,
     /// Set where field and motion are claimed to obey the laws' own flow.
@@ -86,6 +88,21 @@ const PRODUCTS: f64 = 1e-6;
 
 /// Least excess of power over dissipation, relative to load times greatest jump, that is no rounding.
 const EXCESS: f64 = 1e-13;
+
+/// Errors of a ray that refutes a settlement, relative to its work on the settlement: about the settlement over the least
+/// motion that might go with it after all.
+const REFUTED: f64 = 1e-6;
+
+/// Which forces of a joint count as admitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Admitted {
+    /// Those within the strengths.
+    Strength,
+    /// Those that may grow without bound.
+    Recession,
+    /// Those that do no positive work against any flow of the law, associated or not.
+    NoWorkOnFlow,
+}
 
 /// The greatest jump of a motion; motions that refute equilibrium at every factor are scaled to 1.
 pub fn largest_jump(jumps: &[Jump]) -> f64 {
@@ -158,7 +175,10 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
             check.field(claim);
             check.ray(claim);
         }
-        Status::NoEquilibrium => check.refutation(claim, gap),
+        Status::NoEquilibrium => match claim.supports {
+            Some(supports) => check.blocked(claim, supports),
+            None => check.refutation(claim, gap),
+        },
         Status::LimitPoint | Status::Stalled => check.fail("not proven"),
     }
     (check.certificate, bounds)
@@ -251,8 +271,9 @@ impl Check<'_> {
         sums.iter().map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size)).fold(0.0, f64::max)
     }
 
-    /// Greatest violation of strength \[N\], of sliding as the distance from its facet; in the recession cone where `strengths` is false.
-    fn violation(&self, forces: &[ContactForce], strengths: bool) -> f64 {
+    /// Greatest violation \[N\] of what the joints admit, of sliding as the distance from its facet.
+    fn violation(&self, forces: &[ContactForce], admitted: Admitted) -> f64 {
+        let strengths = admitted == Admitted::Strength;
         let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for contact in forces {
             let joint = &self.assembly.joints[contact.joint];
@@ -283,8 +304,8 @@ impl Check<'_> {
                 worst = worst.max(arm - block.max(0.0) * (1.0 - depth));
             }
             for facet in self.facets[law].iter().filter(|f| f.normal[1] != 0.0) {
-                let beyond = facet.normal[0] * n + facet.normal[1] * t - facet.bound * scale;
-                worst = worst.max(beyond / facet.normal[0].hypot(facet.normal[1]));
+                let [a, b] = if admitted == Admitted::NoWorkOnFlow { facet.flow } else { facet.normal };
+                worst = worst.max((a * n + b * t - facet.bound * scale) / a.hypot(b));
             }
         }
         worst
@@ -299,7 +320,7 @@ impl Check<'_> {
         let scale = self.residual_scale(at);
         let balanced = self.residual("equilibrium", self.imbalance(field, claim.fill, 1.0, at) / scale, ROUNDING);
         let pressed = self.fill(claim, scale);
-        self.residual("strength", self.violation(field, true) / scale, ROUNDING) && balanced && pressed
+        self.residual("strength", self.violation(field, Admitted::Strength) / scale, ROUNDING) && balanced && pressed
     }
 
     /// Whether the forces of the fill lie between their least and greatest values.
@@ -327,7 +348,37 @@ impl Check<'_> {
         let load = self.load_scale(1.0) - self.load_scale(0.0);
         let scale = load.max(largest).max(f64::MIN_POSITIVE);
         self.residual("ray_equilibrium", self.imbalance(ray, &[], 0.0, 1.0) / scale, ROUNDING);
-        self.residual("ray_strength", self.violation(ray, false) / scale, ROUNDING);
+        self.residual("ray_strength", self.violation(ray, Admitted::Recession) / scale, ROUNDING);
+    }
+
+    /// No motion of the free blocks goes with that of the supports: Farkas' lemma. The ray is in balance without loads and
+    /// does no work against any flow of the joints, so that its work on the gaps of every motion is ≥ 0, and that work is
+    /// what it does on the gaps that the supports alone make: < 0.
+    fn blocked(&mut self, claim: &Claim, supports: &[Option<CentroidVelocity>]) {
+        let Some(ray) = claim.ray else {
+            return self.fail("no ray that refutes the motion of the supports");
+        };
+        let still: Vec<CentroidVelocity> = supports.iter().map(|motion| motion.unwrap_or_default()).collect();
+        let moved = |body: usize, point: Vec2| velocity_at(self.assembly.inertia(body).centroid, still[body], point);
+        let (mut work, mut forces, mut greatest) = (0.0, 0.0, 0.0f64);
+        for contact in ray {
+            let joint = &self.assembly.joints[contact.joint];
+            // Supports may move into each other: what they meet is the ground.
+            if supports[joint.minus].is_some() && supports[joint.plus].is_some() {
+                continue;
+            }
+            let (n, t) = joint.frame();
+            let apart = moved(joint.plus, contact.point) - moved(joint.minus, contact.point);
+            work += contact.force[0] * apart.dot(&n) + contact.force[1] * apart.dot(&t);
+            forces += contact.force[0].hypot(contact.force[1]);
+            greatest = greatest.max(apart.norm());
+        }
+        let errors = self.imbalance(ray, &[], 0.0, 0.0) + self.violation(ray, Admitted::NoWorkOnFlow);
+        let share = -work / (forces * greatest);
+        if share.is_nan() || share <= 0.0 {
+            return self.fail(format!("the ray does no work against the supports: {share:.3e}"));
+        }
+        self.residual("settlement_ray", errors / forces / share, REFUTED);
     }
 
     fn powers(&self, motion: &[CentroidVelocity]) -> Powers {

@@ -19,4 +19,4 @@ pub use self::path::{
     ray_residual, tolerance,
 };
 pub use self::products::{COVERED, proved};
-pub use self::settlement::settlement_residuals;
+pub use self::settlement::{settlement_residuals, support_motions};

@@ -5,7 +5,62 @@
 use super::limit::{ContactForce, largest_jump, support_integral};
 use super::mechanism::{CentroidVelocity, jumps};
 use crate::law::YieldPolygon;
-use crate::model::{Assembly, Bond};
+use crate::model::geometry::{Vec2, turned};
+use crate::model::{Assembly, Bond, Stage, Target};
+
+/// Motion of every held block at its centroid by the end of stage `index`; `None` of free ones.
+///
+/// # Errors
+///
+/// Says which blocks are bonded to supports that move apart.
+pub fn support_motions(
+    assembly: &Assembly,
+    stages: &[Stage],
+    index: usize,
+) -> Result<Vec<Option<CentroidVelocity>>, String> {
+    let groups = assembly.rigid_groups().0;
+    // Motion as a rigid one seen at the origin.
+    let mut own: Vec<Option<[f64; 3]>> = assembly.bodies.iter().map(|body| body.fixed.then_some([0.0; 3])).collect();
+    for stage in &stages[..=index] {
+        let factor = match stage.target {
+            Target::Factor(factor) => factor,
+            Target::Collapse => 1.0,
+        };
+        for settlement in &stage.settlements {
+            let at_origin = settlement.displacement - turned(settlement.about) * settlement.rotation;
+            if let Some(motion) = &mut own[settlement.body] {
+                let moved = [at_origin.x, at_origin.y, settlement.rotation];
+                (0..3).for_each(|i| motion[i] += factor * moved[i]);
+            }
+        }
+    }
+    // What is bonded to a support is part of it.
+    let bonded = || assembly.joints.iter().filter(|joint| joint.bond == Bond::Bonded);
+    loop {
+        let mut changed = false;
+        for joint in bonded().filter(|j| groups[j.minus].is_none() && groups[j.plus].is_none()) {
+            match (own[joint.minus], own[joint.plus]) {
+                (Some(a), None) => (own[joint.plus], changed) = (Some(a), true),
+                (None, Some(b)) => (own[joint.minus], changed) = (Some(b), true),
+                (Some(a), Some(b)) if a != b => {
+                    let [a, b] = [joint.minus, joint.plus].map(|body| &assembly.bodies[body].name);
+                    return Err(format!("\"{a}\" and \"{b}\" are bonded and would be moved apart"));
+                }
+                _ => {}
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    let at_centroid = |(body, motion): (usize, &Option<[f64; 3]>)| {
+        motion.map(|[x, y, theta]| {
+            let v = Vec2::new(x, y) + turned(assembly.inertia(body).centroid) * theta;
+            [v.x, v.y, theta]
+        })
+    };
+    Ok(own.iter().enumerate().map(at_centroid).collect())
+}
 
 /// Residuals by name: `settlement_supports` (how far held blocks are from where they are told to be), `settlement_flow`
 /// (jumps that are no flow), both relative to the greatest displacement and to the greatest jump or a millionth of that, and `settlement_gap` (work of the

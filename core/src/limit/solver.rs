@@ -97,7 +97,10 @@ pub enum SettlementAnswer {
         /// Whether it is the only one.
         unique: Option<bool>,
     },
-    /// Not decided, or impossible, and why.
+    /// No motion goes with that of the supports: forces in balance without loads that do no work against any flow of the
+    /// joints, and do work against the supports. One entry per joint of the problem.
+    Blocked(Vec<JointForce>),
+    /// Not decided, and why.
     Refused(String),
 }
 

@@ -8,7 +8,8 @@
 //! g_s: openings and slip that the supports alone cause, D = A: flow is associated. By complementary slackness the best
 //! motions are those with γ_i = 0 wherever the best field has slack; one is taken in their relative interior, the mean
 //! of those with the greatest γ_i each, which is as symmetric as the scene. Source: Iannuzzo et al. 2018, Meccanica 53
-//! (rigid blocks under settlements by least energy).
+//! (rigid blocks under settlements by least energy). Where the fields have no bound no motion exists: the ray that shows it
+//! is the answer.
 
 use super::systems::{LARGEST, Systems};
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
@@ -50,7 +51,10 @@ fn settled(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> R
             driven[first + k] = if unit > 0.0 { opening[k] / unit } else { 0.0 };
         }
     }
-    let force = field(&systems, &driven)?;
+    let Some(force) = field(&systems, &driven)? else {
+        let ray = ray(&systems, &driven)?;
+        return Ok(SettlementAnswer::Blocked(systems.variables.joint_forces(&ray, systems.force)));
+    };
     let tight = tight(&systems, &force);
     let (multipliers, unique) = multipliers(&systems, &driven, &tight)?;
     let motion = motion(&systems, &driven, &tight, &multipliers)?;
@@ -63,8 +67,8 @@ fn settled(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> R
     })
 }
 
-/// The field on which the supports do most work against the blocks, in units of force.
-fn field(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
+/// The field on which the supports do most work against the blocks, in units of force; `None` where that has no bound.
+fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     let (free, pairs) = (systems.forces, systems.pairs.len());
     // s_i of all pairs, then the two parts of r·g_s.
     let variables = pairs + 2;
@@ -88,9 +92,9 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     if program.feasible() != Feasibility::Point {
         return Err("the loads before the supports move have no admissible field".into());
     }
-    let (least, finished) = program
-        .minimise(&[(pairs, 1.0), (pairs + 1, -1.0)], PIVOTS)
-        .ok_or("rigid blocks cannot follow their supports: forces would grow without bound")?;
+    let Some((least, finished)) = program.minimise(&[(pairs, 1.0), (pairs + 1, -1.0)], PIVOTS) else {
+        return Ok(None);
+    };
     if !finished {
         return Err("the program of the field took too many pivots".into());
     }
@@ -105,7 +109,47 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
         entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
         values[row] = value;
     }
-    least_squares(matrix, &values, "forces")
+    least_squares(matrix, &values, "forces").map(Some)
+}
+
+/// Forces in balance without loads that do no positive work against any flow d of the joints, and negative work on the
+/// gaps of the supports, the greatest force one: E r = 0, D r ≤ 0, r·g_s < 0. By Farkas' lemma no motion goes with the
+/// supports then. The flow is the laws' own: friction that is not associated leaves blocks more motions.
+fn ray(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
+    let (free, pairs) = (systems.forces, systems.pairs.len());
+    let row = |entries: &[(usize, f64)], slack: Option<usize>| {
+        let mut row = vec![0.0; free + pairs];
+        entries.iter().for_each(|&(j, v)| row[j] += v);
+        slack.into_iter().for_each(|i| row[free + i] = 1.0);
+        row
+    };
+    let work: Vec<(usize, f64)> = driven.iter().copied().enumerate().filter(|(_, g)| *g != 0.0).collect();
+    let balance = systems.equilibrium.iter().map(|entries| row(entries, None));
+    let flows = systems.pairs.iter().enumerate().map(|(i, pair)| row(&pair.flow, Some(i)));
+    let rows: Vec<Vec<f64>> = balance.chain(flows).chain([row(&work, None)]).collect();
+    let mut right = vec![0.0; rows.len()];
+    right[rows.len() - 1] = -1.0;
+    let none = "with associated flow rigid blocks cannot follow their supports, and with their laws' own flow they may: \
+                limit analysis does not tell";
+    let mut program = Equations { free, variables: pairs, rows, right }.dictionary().ok_or(none)?;
+    if program.feasible() != Feasibility::Point {
+        return Err(none.into());
+    }
+    // The least slacks: one vertex, with few forces.
+    let slacks: Vec<(usize, f64)> = (0..pairs).map(|i| (i, 1.0)).collect();
+    program.minimise(&slacks, PIVOTS);
+    let mut matrix = DMatrix::zeros(systems.equilibrium.len() + pairs + 1, free);
+    let mut values = DVector::zeros(matrix.nrows());
+    let flows = systems.pairs.iter().enumerate().map(|(i, pair)| (&pair.flow, -program.value(i).max(0.0)));
+    let balance = systems.equilibrium.iter().map(|entries| (entries, 0.0));
+    for (row, (entries, value)) in balance.chain(flows).chain([(&work, -1.0)]).enumerate() {
+        entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
+        values[row] = value;
+    }
+    let mut ray = least_squares(matrix, &values, "ray")?;
+    let greatest = ray.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
+    ray.iter_mut().for_each(|r| *r /= greatest);
+    Ok(ray)
 }
 
 /// The least x of all that solve the equations.

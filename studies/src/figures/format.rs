@@ -91,7 +91,9 @@ pub fn status_meaning(status: Status) -> &'static str {
         Status::Stands => "every stage reached its factor",
         Status::Collapse => "collapses at this load factor",
         Status::Unbounded => "carries any multiple of the load: a strut proves it",
-        Status::NoEquilibrium => "cannot carry the loads present before the stage begins",
+        Status::NoEquilibrium => {
+            "cannot carry the loads present before the stage begins, or cannot follow its supports"
+        }
         Status::LimitPoint => "no equilibrium path with a growing load factor",
         Status::Stalled => "not proven; the notes say why",
     }
@@ -206,6 +208,9 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
             format!("carries at least {}: proved; a collapse was found at {}", load(proved), load(found))
         }
         (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
+        (Status::NoEquilibrium, _) if result.proof.ray.is_some() => {
+            "no equilibrium: no motion of the rigid blocks goes with that of their supports".into()
+        }
         (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),
         (Status::Stands, None) => "stands: every stage reached its factor".into(),
         (status, Some(factor)) => format!("{}, {}", status_word(status).replace('_', " "), load(factor)),

@@ -53,7 +53,7 @@ pub struct ProofFields {
     pub fill: Vec<FillEntry>,
     /// Velocities of the mechanism.
     pub motion: Option<Vec<MotionEntry>>,
-    /// Contact forces that balance the live load alone, for `unbounded`.
+    /// Contact forces that balance the live load alone, for `unbounded`; nothing, for supports that blocks cannot follow.
     pub ray: Option<Vec<FieldEntry>>,
     /// On arches, where the resultant crosses each joint \[m\]; `null` where a joint carries nothing.
     pub thrust_line: Option<Vec<Option<[f64; 2]>>>,

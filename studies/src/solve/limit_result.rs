@@ -43,6 +43,7 @@ pub(super) fn certified(
         fill: &fill,
         motion: motion.as_deref(),
         ray: ray.as_deref(),
+        supports: None,
         feasible_interval: solved.feasible_interval,
         non_associated: own.map(|own| NonAssociatedClaim {
             proved_lower: own.proved_lower,

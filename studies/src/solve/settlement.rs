@@ -7,14 +7,15 @@ use super::case_input::CaseInput;
 use super::limit_result::{body_velocities, contact_forces};
 use crate::results::convert::field_entries;
 use crate::results::thrust_line::thrust_line;
-use crate::results::{CaseResult, DisplacementEntry};
+use crate::results::{CaseResult, DisplacementEntry, ProofFields};
 use voussoir_core::certificate::{
-    CentroidVelocity, Claim, Hinge, certify, jumps, largest_jump, mechanism, settlement_residuals,
+    CentroidVelocity, Claim, ContactForce, Hinge, certify, jumps, largest_jump, mechanism, settlement_residuals,
+    support_motions,
 };
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitProblem, LimitSolver, SettlementAnswer, Status};
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::model::{Assembly, Bond, Stage, StageLoads, Target};
+use voussoir_core::model::{Assembly, Stage, StageLoads};
 
 /// Residual up to which a settlement is proved.
 const PROVED: f64 = 1e-8;
@@ -24,53 +25,6 @@ const RIGID: f64 = 1e-10;
 /// Whether a support has moved by the end of a stage.
 pub(super) fn settles(stages: &[Stage], index: usize) -> bool {
     stages[..=index].iter().flat_map(|stage| &stage.settlements).any(|s| s.displacement.norm() + s.rotation.abs() > 0.0)
-}
-
-/// Motion of every held block at its centroid at the end of a stage; `None` of free ones. An error says which blocks are
-/// bonded to supports that move apart.
-fn supports(assembly: &Assembly, stages: &[Stage], index: usize) -> Result<Vec<Option<CentroidVelocity>>, String> {
-    let groups = assembly.rigid_groups().0;
-    // Motion as a rigid one seen at the origin.
-    let mut own: Vec<Option<[f64; 3]>> = assembly.bodies.iter().map(|body| body.fixed.then_some([0.0; 3])).collect();
-    for stage in &stages[..=index] {
-        let factor = match stage.target {
-            Target::Factor(factor) => factor,
-            Target::Collapse => 1.0,
-        };
-        for settlement in &stage.settlements {
-            let at_origin = settlement.displacement - turned(settlement.about) * settlement.rotation;
-            if let Some(motion) = &mut own[settlement.body] {
-                let moved = [at_origin.x, at_origin.y, settlement.rotation];
-                (0..3).for_each(|i| motion[i] += factor * moved[i]);
-            }
-        }
-    }
-    // What is bonded to a support is part of it.
-    let bonded = || assembly.joints.iter().filter(|joint| joint.bond == Bond::Bonded);
-    loop {
-        let mut changed = false;
-        for joint in bonded().filter(|j| groups[j.minus].is_none() && groups[j.plus].is_none()) {
-            match (own[joint.minus], own[joint.plus]) {
-                (Some(a), None) => (own[joint.plus], changed) = (Some(a), true),
-                (None, Some(b)) => (own[joint.minus], changed) = (Some(b), true),
-                (Some(a), Some(b)) if a != b => {
-                    let [a, b] = [joint.minus, joint.plus].map(|body| &assembly.bodies[body].name);
-                    return Err(format!("\"{a}\" and \"{b}\" are bonded and would be moved apart"));
-                }
-                _ => {}
-            }
-        }
-        if !changed {
-            break;
-        }
-    }
-    let at_centroid = |(body, motion): (usize, &Option<[f64; 3]>)| {
-        motion.map(|[x, y, theta]| {
-            let v = Vec2::new(x, y) + turned(assembly.inertia(body).centroid) * theta;
-            [v.x, v.y, theta]
-        })
-    };
-    Ok(own.iter().enumerate().map(at_centroid).collect())
 }
 
 /// Openings of both ends and slip that the supports alone cause at each joint of the problem.
@@ -112,16 +66,55 @@ pub(super) fn follow_supports(input: &CaseInput, index: usize, asked: Settling, 
     })
 }
 
+/// The result of a stage in which no motion of the blocks goes with that of the supports, certified.
+fn blocked(
+    input: &CaseInput,
+    asked: Settling,
+    ray: &[ContactForce],
+    supports: &[Option<CentroidVelocity>],
+    result: &mut CaseResult,
+) -> Result<(), String> {
+    let claim = Claim {
+        status: Status::NoEquilibrium,
+        factor: None,
+        field_factor: asked.factor,
+        start: asked.factor,
+        field: None,
+        fill: &[],
+        motion: None,
+        ray: Some(ray),
+        supports: Some(supports),
+        feasible_interval: None,
+        non_associated: None,
+    };
+    let (certificate, _) = certify(input.assembly, asked.loads, &claim, input.settings.tolerance);
+    if !certificate.passed {
+        return Err(certificate.failures.join("; "));
+    }
+    result.status = Status::NoEquilibrium;
+    result.certificate = certificate;
+    result.proof = ProofFields { ray: Some(field_entries(ray)), ..ProofFields::default() };
+    result.notes.push(
+        "rigid blocks cannot follow their supports: no motion that their joints allow goes with that of the supports, and \
+             forces would grow without bound; blocks or joints that deform decide what happens"
+            .into(),
+    );
+    Ok(())
+}
+
 fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseResult) -> Result<Vec<Hinge>, String> {
     let (assembly, problem) = (input.assembly, asked.problem);
     if problem.joints.iter().any(|joint| joint.fill.is_some()) {
         return Err("settlements of rigid blocks take no fill that presses: switch its resistance off".into());
     }
-    let supports = supports(assembly, input.stages, index)?;
+    let supports = support_motions(assembly, input.stages, index)?;
     let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + asked.factor * b[i]);
     let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
     let (field, motion, unique) = match asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports)) {
         SettlementAnswer::Follows { field, motion, unique } => (field, motion, unique),
+        SettlementAnswer::Blocked(ray) => {
+            return blocked(input, asked, &contact_forces(problem, &ray), &supports, result).map(|()| Vec::new());
+        }
         SettlementAnswer::Refused(why) => return Err(why),
     };
     let field = contact_forces(problem, &field);
@@ -136,6 +129,7 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
         fill: &[],
         motion: None,
         ray: None,
+        supports: None,
         feasible_interval: None,
         non_associated: None,
     };

@@ -9,7 +9,7 @@ use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, Claim, ContactForce, Hinge, NonAssociatedClaim, certify, mechanism,
+    CentroidVelocity, Certificate, Claim, ContactForce, Hinge, NonAssociatedClaim, certify, mechanism, support_motions,
 };
 use voussoir_core::law::{FlowRule, is_associated};
 use voussoir_core::limit::Status;
@@ -64,6 +64,9 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let associated_factor = result.non_associated.associated_load_factor;
     let own = (non_associated && result.flow_read_as.is_none()) || associated_factor.is_some();
     findings.expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
+    // Without a motion that refutes the loads it is the motion of the supports that is refuted.
+    let blocked = result.status == Status::NoEquilibrium && stored.motion.is_none();
+    let supports = blocked.then(|| support_motions(assembly, &case.stages, last)).transpose()?;
     let infinite = [f64::NEG_INFINITY, f64::INFINITY];
     let claim = Claim {
         status: result.status,
@@ -74,6 +77,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         fill: &fill,
         motion: stored.motion.as_deref(),
         ray: stored.ray.as_deref(),
+        supports: supports.as_deref(),
         feasible_interval: result.feasible_interval.map(|ends| [0, 1].map(|i| ends[i].unwrap_or(infinite[i]))),
         non_associated: own.then_some(NonAssociatedClaim {
             proved_lower: result.bounds.map(|b| b[0]),

@@ -3,19 +3,23 @@
 //!
 //! | class | second route |
 //! |---|---|
+//! | rigid blocks that follow their supports or cannot | a linear program over the motions: the least overlap |
 //! | small displacements, no slip or rigid | limit analysis of the unmoved scene: a settlement changes no limit load (1e-6) |
 //! | small displacements, Coulomb friction | the associated limit load is not passed, and both path solvers agree or name what is not unique |
 //! | finite, compliant joints without slip | the energy program: a peak of one of its branches (1 %) |
 //! | finite, else | the mirror image with half the step (1e-3), or the answer names a bifurcation |
 
+use crate::conic::{Extreme, Rows};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 use voussoir::core::limit::Status;
+use voussoir::core::model::Bond;
+use voussoir::core::model::geometry::Vec2;
 use voussoir::results::CaseResult;
-use voussoir_tests::answered;
 use voussoir_tests::energy::{EnergyScene, TraceLimits, load_path, settle};
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
+use voussoir_tests::{answered, first_case};
 
 /// A case of the family.
 #[derive(Debug, Clone)]
@@ -115,10 +119,83 @@ fn processor_seconds(started: Instant) -> f64 {
     nanoseconds.map_or(started.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
 }
 
-fn classify(k: usize) -> (Stratum, Class) {
+fn scene(k: usize) -> (Stratum, SettledScene) {
     let mut random = Random::new(9000 + k as u64);
     let stratum = stratum(k, &mut random);
     let scene = settled_scene(&mut random, stratum.draw);
+    (stratum, scene)
+}
+
+/// The least overlap (or slip, where joints are stuck) in settlements of any motion of the rigid blocks whose supports move
+/// as the study says: zero where they can follow. Joints slide and open as Coulomb friction without dilatancy lets them.
+/// A linear program in the motions, seen at the origin; nothing is shared with limit analysis but ends and frames of joints.
+fn least_overlap(text: &str) -> Extreme {
+    let case = first_case(text);
+    let stuck = text.contains("tangential = \"stuck\"");
+    let bodies = &case.assembly.bodies;
+    let length = case.assembly.size();
+    let settlements = || case.stages.iter().flat_map(|stage| &stage.settlements);
+    let size = settlements().map(|s| s.displacement.norm() + s.rotation.abs() * length).fold(1e-300, f64::max);
+    // Velocity of a point of a block in a direction: entries over its own motion, and what is told.
+    let along = |body: usize, point: Vec2, direction: Vec2| -> ([f64; 3], f64) {
+        let own = if bodies[body].fixed { 0.0 } else { 1.0 };
+        let lever = (point.x * direction.y - point.y * direction.x) / length;
+        let told = settlements().filter(|s| s.body == body).map(|s| {
+            let from = point - s.about;
+            let turned = Vec2::new(-from.y, from.x) * s.rotation;
+            (s.displacement + turned).dot(&direction) / size
+        });
+        ([own * direction.x, own * direction.y, own * lever], told.sum())
+    };
+    let overlap = 3 * bodies.len();
+    let (mut equations, mut unequal) = (Vec::new(), Vec::new());
+    for joint in &case.assembly.joints {
+        let (n, t) = joint.frame();
+        for end in joint.ends {
+            for direction in [n, t] {
+                let [(plus, a), (minus, b)] = [joint.plus, joint.minus].map(|body| along(body, end, direction));
+                let mut entries = Vec::new();
+                for i in 0..3 {
+                    entries.push((3 * joint.plus + i, plus[i]));
+                    entries.push((3 * joint.minus + i, -minus[i]));
+                }
+                let of = |sign: f64| -> Vec<(usize, f64)> {
+                    entries.iter().map(|&(j, v)| (j, -sign * v)).chain([(overlap, -1.0)]).collect()
+                };
+                match joint.bond {
+                    Bond::Bonded => equations.push((entries, b - a)),
+                    Bond::Law(_) if direction == n => unequal.push((of(1.0), a - b)),
+                    Bond::Law(_) if stuck => unequal.extend([(of(1.0), a - b), (of(-1.0), b - a)]),
+                    Bond::Law(_) => {}
+                }
+            }
+        }
+    }
+    let mut rows = Rows::new(overlap + 1);
+    equations.iter().for_each(|(entries, right)| rows.row(entries, *right));
+    rows.linear_from = equations.len();
+    unequal.iter().for_each(|(entries, right)| rows.row(entries, *right));
+    rows.row(&[(overlap, -1.0)], 0.0);
+    rows.extreme(overlap, -1.0)
+}
+
+/// What is wrong with an answer to whether rigid blocks follow their supports.
+fn wrongly_followed(text: &str, result: &CaseResult) -> Option<String> {
+    let blocked = match result.status {
+        Status::NoEquilibrium if result.proof.ray.is_some() => true,
+        Status::NoEquilibrium | Status::Stalled => return None,
+        _ => false,
+    };
+    let least = least_overlap(text);
+    let fits = match least {
+        Extreme::Value(least) => blocked == (least > 1e-6),
+        _ => false,
+    };
+    (!fits).then(|| format!("{:?}, and blocks overlap by {least:?} settlements", result.status))
+}
+
+fn classify(k: usize) -> (Stratum, Class) {
+    let (stratum, scene) = scene(k);
     let text = scene.study(&keys(&stratum, ""));
     let now = Instant::now();
     let before = processor_seconds(now);
@@ -127,6 +204,12 @@ fn classify(k: usize) -> (Stratum, Class) {
     let class = match &result {
         None => Class::Crashed,
         Some(_) if seconds > 60.0 => Class::Slow,
+        Some(result)
+            if stratum.draw.deforming == Deforming::Rigid
+                && let Some(why) = wrongly_followed(&text, result) =>
+        {
+            Class::Wrong(why)
+        }
         // Dead load alone, or the settlement itself, may leave nothing that stands.
         Some(result) if matches!(result.status, Status::NoEquilibrium | Status::Unbounded | Status::LimitPoint) => {
             Class::Agrees
@@ -201,6 +284,25 @@ fn a_hundred_supports_that_move() {
         .filter(|tally| *tally != [10, 0, 0, 0, 0])
         .collect();
     assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// Rigid blocks that no motion lets follow their supports, and one scene in which they do: the ray, and the program over
+/// the motions.
+#[test]
+fn supports_that_rigid_blocks_cannot_follow() {
+    for k in [1312, 2030, 2837] {
+        let (stratum, scene) = scene(k);
+        let text = scene.study(&keys(&stratum, ""));
+        let result = answered(&text);
+        assert_eq!((result.status, result.proof.ray.is_some()), (Status::NoEquilibrium, true), "{k}");
+        assert_eq!(wrongly_followed(&text, &result), None, "{k}");
+        if stratum.draw.settling == Settling::In {
+            let outwards = text.replace("displacement = [0", "displacement = [-0");
+            let result = answered(&outwards);
+            assert!(result.certificate.passed && result.status != Status::NoEquilibrium, "{k}: {:?}", result.status);
+            assert_eq!(wrongly_followed(&outwards, &result), None, "{k}");
+        }
+    }
 }
 
 /// CASES=N tries N cases from FIRST on.

@@ -19,7 +19,9 @@ use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir::study::{Case, SelectedSolver};
 use voussoir::verify::case::verify_case;
-use voussoir_tests::{Arch, as_blocks, changed, compliant, crushing, elastic, first_case, small_displacements};
+use voussoir_tests::{
+    Arch, answered, as_blocks, changed, compliant, crushing, elastic, first_case, small_displacements,
+};
 
 type Lie = fn(&mut LimitAnswer);
 type FollowLie = fn(&dyn LimitSolver, &LimitProblem, &mut Vec<JointForce>, &mut [Velocity]);
@@ -161,6 +163,33 @@ fn own(answer: &mut LimitAnswer) -> &mut voussoir::core::limit::NonAssociated {
 
 fn associated(answer: &mut LimitAnswer) -> &mut Vec<Velocity> {
     own(answer).associated_motion.as_mut().expect("a motion")
+}
+
+/// Rigid blocks that cannot follow: a ray that is forged is found by the proof, without solving again.
+#[test]
+fn a_forged_ray_of_a_settlement_is_found() {
+    let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"left\", displacement = [0.01, 0.0] }]\n";
+    let low = Arch { span: 8.65, rise: 1.44, thickness: 0.887, voussoirs: 5, ends: "bonded", ..arch() };
+    let text = low.study();
+    let text = text.replace("[[stages]]\nname = \"live\"", &format!("{settle}[[stages]]\nname = \"live\""));
+    let (case, honest) = (first_case(&text), answered(&text));
+    assert_eq!(honest.status, Status::NoEquilibrium);
+    assert_eq!(verify_case(&case, &honest), Vec::<String>::new());
+    let forgeries: [(&str, Forgery); 4] = [
+        ("settlement_ray:", |r| r.proof.ray.as_mut().expect("a ray")[2].force[0] *= 1.001),
+        ("the ray does no work", |r| {
+            let ray = r.proof.ray.as_mut().expect("a ray");
+            ray.iter_mut().flat_map(|entry| &mut entry.force).for_each(|v| *v *= -1.0);
+        }),
+        ("no ray", |r| r.proof.ray = None),
+        ("stored residuals", |r| _ = r.certificate.residuals.insert("settlement_ray".into(), 1e-7)),
+    ];
+    for (what, forge) in forgeries {
+        let mut forged = honest.clone();
+        forge(&mut forged);
+        let said = verify_case(&case, &forged).join("; ");
+        assert!(said.contains(what), "{what}: {said}");
+    }
 }
 
 /// A support that is not where it is told to be.
