@@ -72,6 +72,40 @@ fn substitute(column: &mut [f64], lower: &[f64], pivots: usize) {
     }
 }
 
+/// The same of two columns that begin with as many zeros, so that L is read once.
+#[inline(always)]
+fn substitute_two(columns: &mut [f64], lower: &[f64], (first, pivots): (usize, usize)) {
+    let height = columns.len() / 2;
+    let (one, two) = columns.split_at_mut(height);
+    let mut k = first;
+    while k + 4 <= pivots {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| &lower[(k + i) * height..(k + i + 1) * height]);
+        let (u, one) = one[k..].split_at_mut(4);
+        let (v, two) = two[k..].split_at_mut(4);
+        for u in [&mut *u, &mut *v] {
+            u[1] -= a[k + 1] * u[0];
+            u[2] -= a[k + 2] * u[0] + b[k + 2] * u[1];
+            u[3] -= a[k + 3] * u[0] + b[k + 3] * u[1] + c[k + 3] * u[2];
+        }
+        let n = one.len();
+        let two = &mut two[..n];
+        let [a, b, c, d] = [&a[k + 4..][..n], &b[k + 4..][..n], &c[k + 4..][..n], &d[k + 4..][..n]];
+        let ([p, q, r, s], [w, x, y, z]) = ([u[0], u[1], u[2], u[3]], [v[0], v[1], v[2], v[3]]);
+        for i in 0..n {
+            one[i] -= (a[i] * p + b[i] * q) + (c[i] * r + d[i] * s);
+            two[i] -= (a[i] * w + b[i] * x) + (c[i] * y + d[i] * z);
+        }
+        k += 4;
+    }
+    for k in k..pivots {
+        let lower = &lower[k * height + k + 1..(k + 1) * height];
+        for column in [&mut *one, &mut *two] {
+            let u = column[k];
+            column[k + 1..].iter_mut().zip(lower).for_each(|(rest, l)| *rest -= l * u);
+        }
+    }
+}
+
 /// out −= A x, A column by column, four columns at a time.
 #[inline(always)]
 fn subtract_product(out: &mut [f64], a: &[f64], x: &[f64]) {
@@ -119,9 +153,14 @@ fn eliminate(values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
         exchanged.push(greatest);
     }
     let (lower, rest) = values.split_at_mut(pivots * height);
-    for column in rest.chunks_exact_mut(height.max(1)) {
-        exchange(column, &exchanged);
-        substitute(column, lower, pivots);
+    let begins = |column: &[f64]| column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots);
+    for columns in rest.chunks_mut(2 * height.max(1)) {
+        columns.chunks_exact_mut(height).for_each(|column| exchange(column, &exchanged));
+        let mut firsts = columns.chunks_exact(height).map(begins);
+        match (firsts.next(), firsts.next()) {
+            (Some(first), Some(other)) if first == other => substitute_two(columns, lower, (first, pivots)),
+            _ => columns.chunks_exact_mut(height).for_each(|column| substitute(column, lower, pivots)),
+        }
     }
     exchanged
 }
