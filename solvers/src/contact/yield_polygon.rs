@@ -205,12 +205,15 @@ impl YieldPolygon {
         best.0
     }
 
-    /// Irreversible gap after Δg in a mode, opening left out, and the opening's own multiplier.
+    /// Irreversible gap after Δg in a mode, opening left out, and the opening's own multiplier. It lies along the flow: what
+    /// of Δg does not is the error of a solution, and would add up from step to step.
     pub fn irreversible(&self, mode: ContactMode, gap: [f64; 2]) -> ([f64; 2], f64) {
         if let ContactMode::Facet(i) = mode {
-            return match self.facets[i as usize].mode {
+            let f = &self.facets[i as usize];
+            let multiplier = -dot(f.flow, gap) / dot(f.flow, f.flow);
+            return match f.mode {
                 FacetMode::Opening => ([0.0; 2], norm(gap)),
-                _ => (gap, 0.0),
+                _ => ([-multiplier * f.flow[0], -multiplier * f.flow[1]], 0.0),
             };
         }
         let (mut kept, mut opening) = ([0.0; 2], 0.0);

@@ -25,10 +25,11 @@ pub fn format_number(x: f64, digits: usize) -> String {
 /// `x` in the shortest form that has at most so many significant digits.
 pub fn format_short(x: f64, digits: usize) -> String {
     let text = format_number(x, digits);
-    if text.contains('e') || !text.contains('.') {
+    let (decimals, power) = text.find('e').map_or((text.as_str(), ""), |at| text.split_at(at));
+    if !decimals.contains('.') {
         return text;
     }
-    text.trim_end_matches('0').trim_end_matches('.').to_string()
+    format!("{}{power}", decimals.trim_end_matches('0').trim_end_matches('.'))
 }
 
 fn scaled(x: f64, steps: &[(f64, &str)]) -> String {
@@ -63,8 +64,7 @@ pub fn format_seconds(seconds: f64) -> String {
 pub fn format_value(value: &serde_json::Value) -> String {
     match value {
         serde_json::Value::String(text) => text.clone(),
-        serde_json::Value::Number(number) => number.to_string(),
-        other => other.to_string(),
+        other => other.as_f64().map_or_else(|| other.to_string(), |x| format_short(x, 7)),
     }
 }
 

@@ -22,6 +22,6 @@ pub use entries::{
 };
 pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
-pub use rank::load_rank;
+pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
 pub use study_results::StudyResults;

@@ -1,6 +1,6 @@
 //! Pieces of the report's page: style, tables, standing texts.
 
-use crate::figures::format::{escape, format_short, format_value};
+use crate::figures::format::escape;
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 
@@ -67,11 +67,6 @@ pub(crate) fn table(header: &[String], rows: impl Iterator<Item = Vec<String>>) 
         })
         .collect();
     format!("<div class=\"wide\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n")
-}
-
-/// A swept value in a cell.
-pub(crate) fn value(value: &Json) -> String {
-    value.as_f64().map_or_else(|| format_value(value), |x| format_short(x, 7))
 }
 
 /// The drawing with ids of its own, since ids are shared by all drawings of a page.

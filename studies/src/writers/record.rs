@@ -147,13 +147,12 @@ fn varied(study: &Study) -> Vec<(String, String)> {
             }
         }
         let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
-        let plain = |value: &Json| value.as_f64().map_or_else(|| format_value(value), |x| format_short(x, 7));
         let words = match values.as_slice() {
             [] => continue,
             [first, .., last] if values.len() > LISTED => {
-                format!("{} … {}{unit} ({} values)", plain(first), plain(last), values.len())
+                format!("{} … {}{unit} ({} values)", format_value(first), format_value(last), values.len())
             }
-            few => format!("{}{unit}", few.iter().map(|value| plain(value)).collect::<Vec<_>>().join(", ")),
+            few => format!("{}{unit}", few.iter().map(|value| format_value(value)).collect::<Vec<_>>().join(", ")),
         };
         rows.push((words_of_key(key), words));
     }

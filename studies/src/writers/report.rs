@@ -10,15 +10,15 @@ use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
-    case_title, escape, format_force, format_number, format_seconds, format_short, headline, hinge_list, kind_words,
-    open_bounds, parameters_text, status_meaning, status_word, unit_load,
+    case_title, escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list,
+    kind_words, open_bounds, parameters_text, status_meaning, status_word, unit_load,
 };
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
 use crate::figures::words::title_of_key;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
-use crate::results::CaseResult;
+use crate::results::{CaseResult, least_of};
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
@@ -161,14 +161,15 @@ fn summary(study: &StudyOutput) -> String {
 
 /// The least load factor with the case it belongs to: `382.1 kN at rise = 5.69 m`.
 fn least(study: &StudyOutput) -> Option<String> {
-    let cases = study.results.cases.iter().enumerate().filter(|(_, case)| case.status == Status::Collapse);
-    let factors = cases.filter_map(|(place, case)| Some((place, case, case.load_factor?)));
-    let (place, case, factor) = factors.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    let cases = &study.results.cases;
+    let case = least_of(cases.iter().filter(|case| case.status == Status::Collapse))?;
+    let factor = case.load_factor?;
+    let place = cases.iter().position(|other| other.label.id == case.label.id)?;
     let unit = study.scene(place).and_then(|(_, stages)| unit_load(stages));
     let load = unit.map_or_else(|| format!("λ = {}", format_number(factor, 4)), |unit| format_force(factor * unit));
     let where_found: Vec<String> =
         case.label.variant.iter().cloned().chain([parameters_text(case)]).filter(|words| !words.is_empty()).collect();
-    Some(if where_found.is_empty() { load } else { format!("{load} at {}", where_found.join(", ")) })
+    Some(if where_found.is_empty() { load } else { format!("{load}, where {}", where_found.join(", ")) })
 }
 
 /// What the certificates of these cases have checked, no more.
@@ -207,7 +208,7 @@ fn case_table(study: &StudyOutput) -> String {
         row.extend(variants.then(|| case.label.variant.clone().unwrap_or_default()));
         row.extend(scenes.then(|| case.label.scene.clone().unwrap_or_default()));
         row.extend(
-            study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(page::value).unwrap_or_default()),
+            study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(format_value).unwrap_or_default()),
         );
         row.push(status_word(case.status).replace('_', " "));
         row.push(case.load_factor.map_or("–".into(), |factor| match open_bounds(case) {

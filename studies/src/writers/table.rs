@@ -28,7 +28,10 @@ pub fn results_table(study: &StudyOutput) -> String {
         .iter()
         .map(|key| {
             aligned(
-                &cases.iter().map(|c| c.label.parameters.get(key).map(cell).unwrap_or_default()).collect::<Vec<_>>(),
+                &cases
+                    .iter()
+                    .map(|c| c.label.parameters.get(key).map(format_value).unwrap_or_default())
+                    .collect::<Vec<_>>(),
             )
         })
         .collect();
@@ -61,10 +64,6 @@ pub fn results_table(study: &StudyOutput) -> String {
         text.push_str(&format!("[{}] {note} ({})\n", i + 1, id_list(ids, cases.len())));
     }
     text
-}
-
-fn cell(value: &serde_json::Value) -> String {
-    value.as_f64().map_or_else(|| format_value(value), |x| crate::figures::format::format_short(x, 7))
 }
 
 fn factor(case: &CaseResult) -> String {

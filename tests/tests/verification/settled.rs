@@ -197,3 +197,20 @@ fn peaks_that_steps_passed_over() {
         assert!(right.iter().any(|peak| near(factor, *peak)), "{k}: {factor} is none of {right:?}");
     }
 }
+
+/// A branch beyond a peak with a fold that steps by arc length do not pass: where the study names no strategy another one
+/// answers, and says so; the one that is named is the one that is used.
+#[test]
+fn where_the_usual_strategy_stalls_another_one_follows() {
+    let scene = include_str!("settled/sharp_fold.toml");
+    let of = |strategy: &str| {
+        let named = format!("kinematics = \"finite\"\ncontinuation = {{ strategy = \"{strategy}\" }}");
+        answered(&scene.replace("kinematics = \"finite\"", &named))
+    };
+    let [usual, named] = [answered(scene), of("displacement_control")];
+    assert_eq!(usual.status, Status::Collapse, "{:?}", usual.notes);
+    assert!(usual.certificate.passed && usual.load_factor == named.load_factor, "{:?}", usual.load_factor);
+    let followed = |result: &CaseResult| result.notes.iter().any(|note| note.starts_with("followed by"));
+    assert!(followed(&usual) && !followed(&named), "{:?}\n{:?}", usual.notes, named.notes);
+    assert_eq!(of("arc_length").status, Status::Stalled);
+}

@@ -79,7 +79,10 @@ pub(super) fn iterate(
         let settled = norm <= SETTLED + rounding || (norm <= STAYS + 30.0 * rounding && stays);
         // Rounding of positions excuses gaps, not equilibrium.
         let balanced = !system.finite() || (inner <= INNER && unbalanced_share(system, &residual, &state) <= BALANCED);
-        if iteration > 0 && !changes.changed && settled && balanced && traction_error(system, &state) <= LAW_HOLDS {
+        let (gap, force) = gap_error(system, &residual, &state);
+        let held = gap <= STAYS + rounding / largest_unknown(system, &state) && (stays || force <= STAYS);
+        let converged = settled && balanced && held && traction_error(system, &state) <= LAW_HOLDS;
+        if iteration > 0 && !changes.changed && converged {
             return Ok((state, iteration));
         }
         last_norm = norm;
@@ -226,20 +229,38 @@ pub(super) fn relative_residual(system: &StepSystem, residual: &[f64], state: &S
     let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
     let whole = largest_unknown(system, state);
     let by_row = |(i, x): (usize, &f64)| {
-        let of_forces = if i < 2 * points && system.laws.responses.is(i / 2) {
-            traction_row(system, state, i / 2).0[i % 2] > 0.5
-        } else if i < 2 * points {
-            match state.mode[i / 2] {
-                ContactMode::Stick => false,
-                ContactMode::Facet(_) => i % 2 == 0,
-                ContactMode::Corner(..) | ContactMode::Open => true,
-            }
-        } else {
-            i + 1 < residual.len()
-        };
+        let of_forces = if i < 2 * points { !is_gap_row(system, state, i) } else { i + 1 < residual.len() };
         x.abs() / if of_forces { force } else { whole }
     };
     residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
+}
+
+/// Whether a contact point's row is an equation of gaps, not of forces.
+fn is_gap_row(system: &StepSystem, state: &State, row: usize) -> bool {
+    let (point, k) = (row / 2, row % 2);
+    if system.laws.responses.is(point) {
+        return traction_row(system, state, point).0[k] <= 0.5;
+    }
+    match state.mode[point] {
+        ContactMode::Stick => true,
+        ContactMode::Facet(_) => k == 1,
+        ContactMode::Corner(..) | ContactMode::Open => false,
+    }
+}
+
+/// Greatest residual of the equations of gaps, relative to the greatest unknown (rounding of positions, which excuses as
+/// much in units of a displacement, is no share of what has moved much further), and the force that the joint would make
+/// of it, relative to the greatest one.
+fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64) {
+    let u = system.units();
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * u.force, f64::max);
+    let (mut greatest, mut force) = (0.0_f64, 0.0_f64);
+    for row in (0..2 * state.gap.len()).filter(|row| is_gap_row(system, state, *row)) {
+        let [a, b] = system.stiffness(row / 2);
+        greatest = greatest.max(residual[row].abs());
+        force = force.max(residual[row].abs() * u.displacement * a.max(b) / largest);
+    }
+    (greatest / largest_unknown(system, state), force)
 }
 
 /// Greatest residual of equilibrium, relative to the greatest force.

@@ -13,6 +13,8 @@ use std::rc::Rc;
 /// the forces themselves, and the least that they are.
 const FROM_NOTHING: f64 = 1e-3;
 const LEAST: f64 = 1e-12;
+/// Greatest tolerance of a mode relative to the greatest force, of which a certificate allows 1e-8.
+const ALLOWED: f64 = 3e-9;
 
 pub(super) fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);
@@ -66,11 +68,13 @@ pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State
         .map(|c| match system.law(c) {
             None => ContactMode::Stick,
             Some(law) => {
-                let rho = system.stiffness(c);
+                // Any ρ > 0 asks for the same modes of a solution; one that makes forces of a gap's rounding does not.
+                let stiffness = system.stiffness(c);
+                let noise = rounding * stiffness[0].max(stiffness[1]);
+                let rho = stiffness.map(|k| k * (ALLOWED * largest / noise).min(1.0));
                 let gap = system.step_gap(start, state, c);
                 let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
-                // A certificate allows 1e-8 of the greatest force.
-                let tolerance = (rounding * rho[0].max(rho[1])).clamp(1e-11 * largest, 3e-9 * largest);
+                let tolerance = noise.clamp(1e-11 * largest, ALLOWED * largest);
                 let area = system.problem.contacts[c].area;
                 let mode = law.mode(state.mode[c], z, rho, area, tolerance);
                 holds &= mode != state.mode[c] || law.violation(mode, z, rho, area) <= tolerance;

@@ -2,7 +2,7 @@
 
 use super::request::{Request, value_at};
 use crate::kinds::search::intervals;
-use crate::results::{CaseResult, load_rank};
+use crate::results::{CaseResult, least_of};
 use crate::study::Study;
 use serde_json::{Map, Value as Json, json};
 
@@ -57,8 +57,8 @@ fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
 
 /// The entry of the least factor.
 fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Option<Json> {
-    let ranked = places.iter().filter_map(|place| Some((load_rank(place.result)?, place)));
-    let (_, place) = ranked.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let least = least_of(places.iter().map(|place| place.result))?;
+    let place = places.iter().find(|place| place.result.label.id == least.label.id)?;
     let own = places.iter().filter(|p| p.vehicle == place.vehicle && p.direction == place.direction);
     let own: Vec<(f64, Json)> = own.map(|place| (place.value, json!(place.result.status))).collect();
     Some(json!({
