@@ -1,6 +1,7 @@
 //! Products of small dense matrices with few columns, with the vectors of the processor.
 
 use nalgebra::DMatrix;
+use voussoir_core::linear::vectors::{Simd, add_four};
 use voussoir_core::with_vectors;
 
 /// out += A x over the first rows and columns of A, four columns at a time; zeros of x cost nothing.
@@ -27,7 +28,7 @@ pub fn add_block_and_sizes((out, sizes): (&mut [f64], &mut [f64]), a: &[f64], x:
 }
 
 #[inline(always)]
-fn add_columns_and_sizes(out: &mut [f64], sizes: &mut [f64], a: &[f64], x: &[f64]) {
+fn add_columns_and_sizes<S: Simd>(_: S, out: &mut [f64], sizes: &mut [f64], a: &[f64], x: &[f64]) {
     let height = out.len();
     let sizes = &mut sizes[..height];
     let (a2, x2) = (a.chunks_exact(2 * height), x.chunks_exact(2));
@@ -56,7 +57,7 @@ pub fn add_row_block(out: &mut [f64], w: &[f64], a: &[f64]) {
 }
 
 #[inline(always)]
-fn add_row_columns(out: &mut [f64], w: &[f64], a: &[f64]) {
+fn add_row_columns<S: Simd>(_: S, out: &mut [f64], w: &[f64], a: &[f64]) {
     for (out, column) in out.iter_mut().zip(a.chunks_exact(w.len())) {
         *out += dot(w, column);
     }
@@ -64,18 +65,14 @@ fn add_row_columns(out: &mut [f64], w: &[f64], a: &[f64]) {
 
 /// out += A x for code with the vectors of the processor; the order of operations does not depend on them.
 #[inline(always)]
-fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
-    let height = out.len();
+fn add_columns<S: Simd>(simd: S, out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
     let (a4, x4) = (a.chunks_exact(4 * rows), x.chunks_exact(4));
     let whole = (a.len() / (4 * rows)).min(x.len() / 4);
     let (a1, x1) = (&a[4 * rows * whole..], &x[4 * whole..]);
     for (a, x) in a4.zip(x4).filter(|(_, x)| **x != [0.0; 4]) {
         let (a, b) = a.split_at(2 * rows);
         let ((a, b), (c, d)) = (a.split_at(rows), b.split_at(rows));
-        let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-        for (i, out) in out.iter_mut().enumerate() {
-            *out += (a[i] * x[0] + b[i] * x[1]) + (c[i] * x[2] + d[i] * x[3]);
-        }
+        add_four(simd, out, [a, b, c, d], [x[0], x[1], x[2], x[3]]);
     }
     for (a, x) in a1.chunks_exact(rows).zip(x1).filter(|(_, x)| **x != 0.0) {
         out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
@@ -84,18 +81,16 @@ fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
 
 /// A times two columns added to two: each number of A is read once.
 #[inline(always)]
-fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
+fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
     let height = first.len();
     let second = &mut second[..height];
     let mut columns = a.chunks_exact(height).zip(x.iter().zip(y)).filter(|(_, (x, y))| **x != 0.0 || **y != 0.0);
     loop {
         let next: [_; 4] = std::array::from_fn(|_| columns.next());
         if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
-            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-            for (i, (first, second)) in first.iter_mut().zip(second.iter_mut()).enumerate() {
-                *first += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
-                *second += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
-            }
+            let columns = [a, b, c, d];
+            add_four(simd, first, columns, [*p.0, *q.0, *r.0, *s.0]);
+            add_four(simd, second, columns, [*p.1, *q.1, *r.1, *s.1]);
             continue;
         }
         for (a, (x, y)) in next.into_iter().flatten() {
@@ -131,14 +126,14 @@ pub fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 #[inline(always)]
-fn add_matrix(out: &mut DMatrix<f64>, a: &DMatrix<f64>, columns: &DMatrix<f64>) {
+fn add_matrix<S: Simd>(simd: S, out: &mut DMatrix<f64>, a: &DMatrix<f64>, columns: &DMatrix<f64>) {
     let (rows, entries) = (a.nrows(), columns.nrows());
     let pairs = out.as_mut_slice().chunks_mut(2 * rows).zip(columns.as_slice().chunks(2 * entries));
     for (out, x) in pairs {
         if x.len() == 2 * entries {
-            add_to_two(out.split_at_mut(rows), a.as_slice(), x.split_at(entries));
+            add_to_two(simd, out.split_at_mut(rows), a.as_slice(), x.split_at(entries));
         } else {
-            add_columns(out, rows, a.as_slice(), x);
+            add_columns(simd, out, rows, a.as_slice(), x);
         }
     }
 }
@@ -152,7 +147,7 @@ pub fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 #[inline(always)]
-fn set_row_product(out: &mut DMatrix<f64>, rows: &DMatrix<f64>, a: &DMatrix<f64>) {
+fn set_row_product<S: Simd>(_: S, out: &mut DMatrix<f64>, rows: &DMatrix<f64>, a: &DMatrix<f64>) {
     let each = out.as_mut_slice().chunks_exact_mut(a.ncols()).zip(rows.as_slice().chunks_exact(rows.nrows()));
     for (out, row) in each {
         for (out, column) in out.iter_mut().zip(a.as_slice().chunks_exact(a.nrows())) {
@@ -167,7 +162,7 @@ pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) 
 }
 
 #[inline(always)]
-fn add_dyads(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+fn add_dyads<S: Simd>(simd: S, target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
     let (height, rows) = (target.nrows(), a.nrows());
     let mut factors = vec![0.0; a.ncols()];
     for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
@@ -179,7 +174,7 @@ fn add_dyads(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
                 let (a, b) = a.as_slice().split_at(height);
                 column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);
             }
-            _ => add_columns(column, rows, a.as_slice(), &factors),
+            _ => add_columns(simd, column, rows, a.as_slice(), &factors),
         }
     }
 }

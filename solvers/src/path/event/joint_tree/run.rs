@@ -161,7 +161,7 @@ fn visit(
     run.seen.push(m);
     let outer = std::mem::take(&mut run.tree.moved[m].rates);
     run.tree.tables[m].answer(&outer, &mut run.out[m]);
-    let mut forces = std::mem::take(&mut run.forces);
+    let mut forces = std::mem::take(&mut run.memory.forces);
     run.tree.tables[m].forces(&run.out[m], &mut forces);
     for (side, child) in run.tree.places[m].children.into_iter().enumerate() {
         let Some(child) = child else { continue };
@@ -177,7 +177,7 @@ fn visit(
         }
     }
     run.tree.moved[m].rates = outer;
-    run.forces = forces;
+    run.memory.forces = forces;
     let own = &run.quiet.own[m];
     let left = || {
         let rates = run.out[m].iter().zip(&own.reference).zip(&own.room);

@@ -49,8 +49,16 @@ pub struct Run {
     pub fresh: Vec<usize>,
     /// Modes before the present event.
     pub before: Vec<(usize, ContactMode)>,
-    /// Room for forces and rates of a joint.
+    /// Memory that is used again and again.
+    pub memory: Memory,
+}
+
+/// Of one joint.
+#[derive(Default)]
+pub struct Memory {
+    /// Forces of its points.
     pub forces: Vec<f64>,
+    /// What it did.
     gained: Vec<f64>,
 }
 
@@ -88,8 +96,7 @@ impl Run {
             stale: (0..count).collect(),
             fresh: Vec::new(),
             before: Vec::new(),
-            forces: Vec::new(),
-            gained: Vec::new(),
+            memory: Memory::default(),
         })
     }
 
@@ -129,7 +136,7 @@ impl Run {
             return Vec::new();
         }
         let mut pending = std::mem::take(&mut self.tree.moved[m].pending);
-        let (mut out, mut forces) = (std::mem::take(&mut self.gained), std::mem::take(&mut self.forces));
+        let (mut out, mut forces) = (std::mem::take(&mut self.memory.gained), std::mem::take(&mut self.memory.forces));
         self.tree.tables[m].answer(&pending, &mut out);
         self.balance(trace, m, &mut out, &mut forces);
         let (table, joint) = (&self.tree.tables[m], &self.tree.joints[m]);
@@ -172,7 +179,7 @@ impl Run {
             }
             (self.tree.moved[child].pending, self.tree.moved[child].any) = (below, true);
         }
-        (self.gained, self.forces) = (out, forces);
+        (self.memory.gained, self.memory.forces) = (out, forces);
         pending.fill(0.0);
         self.tree.moved[m].pending = pending;
         openings
