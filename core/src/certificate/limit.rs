@@ -408,9 +408,7 @@ impl Check<'_> {
             };
             let polygon = &self.polygons[law];
             for open in jump.open {
-                for ray in &polygon.rays {
-                    impossible = impossible.max(-(ray[0] * open + ray[1] * jump.slip));
-                }
+                impossible = impossible.max(polygon.impossible([open, jump.slip]));
             }
             let area = joint.height() * self.assembly.width;
             dissipated += support_integral(&polygon.vertices, jump) * area;

@@ -102,10 +102,8 @@ pub fn settlement_residuals(
             continue;
         }
         let polygon = &polygons[law];
-        for ray in &polygon.rays {
-            for open in jump.open {
-                impossible = impossible.max(-(ray[0] * open + ray[1] * jump.slip));
-            }
+        for open in jump.open {
+            impossible = impossible.max(polygon.impossible([open, jump.slip]));
         }
         let dissipated = support_integral(&polygon.vertices, jump) * joint.height() * assembly.width;
         gap += (work + dissipated).abs();

@@ -68,6 +68,25 @@ impl YieldPolygon {
         YieldPolygon { vertices, rays }
     }
 
+    /// How far a jump \[opening, slip\] is from those that cost no more than some finite work: its distance from the polar of the cone
+    /// of recession, which is the length of what is nearest to −jump in that cone (Moreau). The greatest product with a ray is less
+    /// where the cone is wide: with friction 1e6 it calls an overlap of 1e-6 one of 1e-12.
+    pub fn impossible(&self, jump: [f64; 2]) -> f64 {
+        let back = jump.map(|x| -x);
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let inside = self.rays.iter().enumerate().any(|(i, a)| {
+            self.rays[..i].iter().any(|b| {
+                let turn = cross(*a, *b).signum();
+                // Opposite ones are the edge of a half plane, whose third ray says on which side it lies.
+                dot(*a, *b) > -1.0 + 1e-12 && turn * cross(*a, back) > 0.0 && turn * cross(back, *b) > 0.0
+            })
+        });
+        match inside {
+            true => jump[0].hypot(jump[1]),
+            false => self.rays.iter().map(|ray| dot(*ray, back)).fold(0.0, f64::max),
+        }
+    }
+
     /// The least t_n \[Pa\], −∞ where unbounded.
     pub fn least_normal(&self) -> f64 {
         if self.rays.iter().any(|ray| ray[0] < -1e-12) {
@@ -82,5 +101,28 @@ impl YieldPolygon {
             return f64::INFINITY;
         }
         self.vertices.iter().map(|v| v[0]).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::FacetMode;
+
+    /// The greatest power of a unit traction in the cone, of ten thousand directions.
+    #[test]
+    fn an_impossible_jump_is_as_far_off_as_its_greatest_power() {
+        for friction in [0.5, 1.0, 1e3, 1e6, 1e9] {
+            let sliding = [1.0, -1.0].map(|sense| Facet::associated(FacetMode::Sliding, [-friction, sense], 0.0));
+            let polygon = YieldPolygon::of(&sliding);
+            for angle in (0..360).map(|k| f64::from(k).to_radians()) {
+                let jump = [angle.cos(), angle.sin()];
+                let widest = friction.atan();
+                let tried = (0..=10_000).map(|k| widest * (f64::from(k) / 5e3 - 1.0));
+                let power = tried.map(|a| -(a.cos() * jump[0] + a.sin() * jump[1])).fold(0.0, f64::max);
+                let found = polygon.impossible(jump);
+                assert!((found - power).abs() < 1e-6, "friction {friction}, {angle}: {found}, not {power}");
+            }
+        }
     }
 }

@@ -8,7 +8,8 @@
 //! Sources: Irons 1970, Int. J. Numer. Meth. Engng 2, 5-32; Hood 1976, Int. J. Numer. Meth. Engng 10, 379-399.
 
 use super::entries::Entries;
-use faer::traits::pulp::Arch;
+use super::vectors::{Simd, add_four};
+use crate::with_vectors;
 
 /// The elimination of the unknowns of one rank.
 struct Front {
@@ -46,7 +47,7 @@ struct Left {
 /// Takes L times the first `pivots` entries of a column out of the others, in place. L stands column by column, as high
 /// as the column.
 #[inline(always)]
-fn substitute(column: &mut [f64], lower: &[f64], pivots: usize) {
+fn substitute<S: Simd>(simd: S, column: &mut [f64], lower: &[f64], pivots: usize) {
     let height = column.len();
     let first = column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots);
     let mut k = first;
@@ -57,12 +58,8 @@ fn substitute(column: &mut [f64], lower: &[f64], pivots: usize) {
         u[1] -= a[k + 1] * u[0];
         u[2] -= a[k + 2] * u[0] + b[k + 2] * u[1];
         u[3] -= a[k + 3] * u[0] + b[k + 3] * u[1] + c[k + 3] * u[2];
-        let n = rest.len();
-        let [a, b, c, d] = [&a[k + 4..][..n], &b[k + 4..][..n], &c[k + 4..][..n], &d[k + 4..][..n]];
-        let [w, x, y, z] = [u[0], u[1], u[2], u[3]];
-        for (i, rest) in rest.iter_mut().enumerate() {
-            *rest -= (a[i] * w + b[i] * x) + (c[i] * y + d[i] * z);
-        }
+        let below = [&a[k + 4..], &b[k + 4..], &c[k + 4..], &d[k + 4..]];
+        add_four(simd, rest, below, [-u[0], -u[1], -u[2], -u[3]]);
         k += 4;
     }
     for k in k..pivots {
@@ -72,9 +69,38 @@ fn substitute(column: &mut [f64], lower: &[f64], pivots: usize) {
     }
 }
 
+/// The same of two columns that begin with as many zeros, so that L is read once.
+#[inline(always)]
+fn substitute_two<S: Simd>(simd: S, columns: &mut [f64], lower: &[f64], (first, pivots): (usize, usize)) {
+    let height = columns.len() / 2;
+    let (one, two) = columns.split_at_mut(height);
+    let mut k = first;
+    while k + 4 <= pivots {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| &lower[(k + i) * height..(k + i + 1) * height]);
+        let (u, one) = one[k..].split_at_mut(4);
+        let (v, two) = two[k..].split_at_mut(4);
+        for u in [&mut *u, &mut *v] {
+            u[1] -= a[k + 1] * u[0];
+            u[2] -= a[k + 2] * u[0] + b[k + 2] * u[1];
+            u[3] -= a[k + 3] * u[0] + b[k + 3] * u[1] + c[k + 3] * u[2];
+        }
+        let below = [&a[k + 4..], &b[k + 4..], &c[k + 4..], &d[k + 4..]];
+        add_four(simd, one, below, [-u[0], -u[1], -u[2], -u[3]]);
+        add_four(simd, two, below, [-v[0], -v[1], -v[2], -v[3]]);
+        k += 4;
+    }
+    for k in k..pivots {
+        let lower = &lower[k * height + k + 1..(k + 1) * height];
+        for column in [&mut *one, &mut *two] {
+            let u = column[k];
+            column[k + 1..].iter_mut().zip(lower).for_each(|(rest, l)| *rest -= l * u);
+        }
+    }
+}
+
 /// out −= A x, A column by column, four columns at a time.
 #[inline(always)]
-fn subtract_product(out: &mut [f64], a: &[f64], x: &[f64]) {
+fn subtract_product<S: Simd>(simd: S, out: &mut [f64], a: &[f64], x: &[f64]) {
     let height = out.len();
     if height == 0 {
         return;
@@ -83,9 +109,7 @@ fn subtract_product(out: &mut [f64], a: &[f64], x: &[f64]) {
         if let [w, x, y, z] = *x {
             let (a, b) = a.split_at(2 * height);
             let ((a, b), (c, d)) = (a.split_at(height), b.split_at(height));
-            for (i, out) in out.iter_mut().enumerate() {
-                *out -= (a[i] * w + b[i] * x) + (c[i] * y + d[i] * z);
-            }
+            add_four(simd, out, [a, b, c, d], [-w, -x, -y, -z]);
         } else {
             for (a, x) in a.chunks_exact(height).zip(x) {
                 out.iter_mut().zip(a).for_each(|(out, a)| *out -= a * x);
@@ -104,13 +128,13 @@ fn exchange(column: &mut [f64], exchanged: &[usize]) {
 /// Eliminates the first columns of a front with partial pivoting; the rows that were exchanged. A pivot of zero leaves no
 /// numbers, which solutions tell.
 #[inline(always)]
-fn eliminate(values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
+fn eliminate<S: Simd>(simd: S, values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
     let mut exchanged = Vec::with_capacity(pivots);
     for j in 0..pivots {
         let (before, rest) = values.split_at_mut(j * height);
         let column = &mut rest[..height];
         exchange(column, &exchanged);
-        substitute(column, before, j);
+        substitute(simd, column, before, j);
         let greatest = (j..height).fold(j, |best, i| if column[i].abs() > column[best].abs() { i } else { best });
         let pivot = column[greatest];
         column.swap(j, greatest);
@@ -119,9 +143,14 @@ fn eliminate(values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
         exchanged.push(greatest);
     }
     let (lower, rest) = values.split_at_mut(pivots * height);
-    for column in rest.chunks_exact_mut(height.max(1)) {
-        exchange(column, &exchanged);
-        substitute(column, lower, pivots);
+    let begins = |column: &[f64]| column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots);
+    for columns in rest.chunks_mut(2 * height.max(1)) {
+        columns.chunks_exact_mut(height).for_each(|column| exchange(column, &exchanged));
+        let mut firsts = columns.chunks_exact(height).map(begins);
+        match (firsts.next(), firsts.next()) {
+            (Some(first), Some(other)) if first == other => substitute_two(simd, columns, lower, (first, pivots)),
+            _ => columns.chunks_exact_mut(height).for_each(|column| substitute(simd, column, lower, pivots)),
+        }
     }
     exchanged
 }
@@ -221,45 +250,47 @@ impl FrontalLu {
 
     /// Solves for several right-hand sides. `None` where the matrix is singular to rounding.
     pub fn solve(&self, right: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-        let all: Vec<Vec<f64>> = Arch::new().dispatch(|| self.solve_all(right));
+        let (fronts, size) = (self.fronts.as_slice(), self.size);
+        let all =
+            with_vectors!('a, solve_all(fronts: &'a [Front], size: usize, right: &'a [Vec<f64>]) -> Vec<Vec<f64>>);
         all.iter().flatten().all(|v| v.is_finite()).then_some(all)
     }
+}
 
-    /// All right-hand sides through one front after the other.
-    #[inline(always)]
-    fn solve_all(&self, right: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let mut pivotal: Vec<Vec<f64>> = right.iter().map(|_| Vec::with_capacity(self.size)).collect();
-        let mut left: Vec<Vec<f64>> = vec![Vec::new(); right.len()];
-        for front in &self.fronts {
-            let pivots = front.exchanged.len();
-            for ((left, pivotal), right) in left.iter_mut().zip(&mut pivotal).zip(right) {
-                left.extend(front.joining.iter().map(|i| right[*i]));
-                exchange(left, &front.exchanged);
-                substitute(left, &front.eliminated, pivots);
-                pivotal.extend(left.drain(..pivots));
-            }
+/// All right-hand sides through one front after the other.
+#[inline(always)]
+fn solve_all<S: Simd>(simd: S, fronts: &[Front], size: usize, right: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut pivotal: Vec<Vec<f64>> = right.iter().map(|_| Vec::with_capacity(size)).collect();
+    let mut left: Vec<Vec<f64>> = vec![Vec::new(); right.len()];
+    for front in fronts {
+        let pivots = front.exchanged.len();
+        for ((left, pivotal), right) in left.iter_mut().zip(&mut pivotal).zip(right) {
+            left.extend(front.joining.iter().map(|i| right[*i]));
+            exchange(left, &front.exchanged);
+            substitute(simd, left, &front.eliminated, pivots);
+            pivotal.extend(left.drain(..pivots));
         }
-        let mut all = vec![vec![0.0; self.size]; right.len()];
-        let mut known: Vec<f64> = Vec::new();
-        for front in self.fronts.iter().rev() {
-            let pivots = front.exchanged.len();
-            for (x, pivotal) in all.iter_mut().zip(&mut pivotal) {
-                let before = pivotal.len() - pivots;
-                let own = &mut pivotal[before..];
-                known.clear();
-                known.extend(front.upper.0.iter().map(|j| x[*j]));
-                subtract_product(own, &front.upper.1, &known);
-                for k in (0..pivots).rev() {
-                    let column = &front.eliminated[k * front.height..k * front.height + k + 1];
-                    let value = own[k] / column[k];
-                    own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
-                    x[front.columns[k]] = value;
-                }
-                pivotal.truncate(before);
-            }
-        }
-        all
     }
+    let mut all = vec![vec![0.0; size]; right.len()];
+    let mut known: Vec<f64> = Vec::new();
+    for front in fronts.iter().rev() {
+        let pivots = front.exchanged.len();
+        for (x, pivotal) in all.iter_mut().zip(&mut pivotal) {
+            let before = pivotal.len() - pivots;
+            let own = &mut pivotal[before..];
+            known.clear();
+            known.extend(front.upper.0.iter().map(|j| x[*j]));
+            subtract_product(simd, own, &front.upper.1, &known);
+            for k in (0..pivots).rev() {
+                let column = &front.eliminated[k * front.height..k * front.height + k + 1];
+                let value = own[k] / column[k];
+                own[..k].iter_mut().zip(column).for_each(|(own, u)| *own -= u * value);
+                x[front.columns[k]] = value;
+            }
+            pivotal.truncate(before);
+        }
+    }
+    all
 }
 
 impl Front {
@@ -292,8 +323,10 @@ impl Front {
         }
         rows.add(&joining, place, &mut values, height, left.rows);
         columns.iter().for_each(|j| place[*j] = usize::MAX);
-        // With the vectors of the processor; the order of operations does not depend on them.
-        let exchanged = Arch::new().dispatch(|| eliminate(&mut values, height, pivots));
+        let exchanged = {
+            let values = values.as_mut_slice();
+            with_vectors!('a, eliminate(values: &'a mut [f64], height: usize, pivots: usize) -> Vec<usize>)
+        };
         let rest = height - pivots;
         let others = columns.split_off(pivots);
         let mut upper = (Vec::with_capacity(others.len()), Vec::with_capacity(pivots * others.len()));

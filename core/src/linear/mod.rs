@@ -5,6 +5,8 @@ mod entries;
 mod frontal;
 mod ldlt;
 mod lu;
+#[doc(hidden)]
+pub mod vectors;
 
 pub use self::cholesky::{SparseCholesky, elimination_order};
 pub use self::entries::Entries;

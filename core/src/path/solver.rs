@@ -112,6 +112,11 @@ pub trait PathSolver: Debug + Send + Sync {
     /// Why this solver cannot take this problem, if so.
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String>;
 
+    /// Strategies to follow the path by, one after another, where the solver's own stalls and the study names none.
+    fn further_strategies(&self, _settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
+        Vec::new()
+    }
+
     /// How much of the energy of a stage its steps may lose.
     fn energy_tolerance(&self) -> f64 {
         1e-3

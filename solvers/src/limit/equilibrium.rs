@@ -1,5 +1,6 @@
 //! Equilibrium of groups over the joints' force variables, scaled: forces in units of F, moments in F × length.
 
+use voussoir_core::law::StressBlock;
 use voussoir_core::limit::{JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
@@ -57,7 +58,7 @@ impl ForceVariables {
     }
 }
 
-/// What joint forces leave of loads on any group, and by how much they exceed a linear row, as a share of the loads.
+/// What joint forces leave of loads on any group, and by how much they exceed a row or a stress block, as a share of the loads.
 pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
     let (mut left, mut worst) = (loads.clone(), 0.0f64);
     for (joint, force) in problem.joints.iter().zip(forces) {
@@ -72,7 +73,16 @@ pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForc
             let reached: f64 = row.normal.iter().zip(components).map(|(normal, component)| normal * component).sum();
             worst = worst.max(reached - row.bound);
         }
+        if let Some(block) = joint.strength.block {
+            worst = worst.max(excess(block, force));
+        }
     }
     let unbalanced = left.iter().map(|w| w[0].abs().max(w[1].abs()).max(w[2].abs() / problem.length));
     unbalanced.fold(worst, f64::max) / problem.magnitude(loads).max(f64::MIN_POSITIVE)
+}
+
+/// By how much a joint's forces exceed its stress block \[N\], at the end that is pressed less.
+pub fn excess(block: StressBlock, force: &JointForce) -> f64 {
+    let pressed = force.normal[0] + force.normal[1] + block.tension;
+    pressed / block.total * pressed - (2.0 * force.normal[0].min(force.normal[1]) + block.tension)
 }

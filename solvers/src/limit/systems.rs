@@ -17,6 +17,8 @@ pub const LARGEST: usize = 1_500_000;
 /// One row of one joint.
 #[derive(Debug, Clone)]
 pub struct Pair {
+    /// The joint among those of the problem.
+    pub joint: usize,
     /// What happens when it yields.
     pub mode: FacetMode,
     /// Entries of a over the force variables.
@@ -76,7 +78,7 @@ impl Systems {
         let variables = ForceVariables::new(problem);
         let equilibrium = variables.equilibrium(problem);
         let mut pairs = Vec::new();
-        for (joint, &(first, count)) in problem.joints.iter().zip(&variables.joints) {
+        for (index, (joint, &(first, count))) in problem.joints.iter().zip(&variables.joints).enumerate() {
             let (opens, before) = (|mode| mode == FacetMode::Opening, pairs.len());
             for row in &joint.strength.rows {
                 let entries = |a: &[f64; 3]| -> Vec<(usize, f64)> {
@@ -91,6 +93,7 @@ impl Systems {
                         (0..kept.len()).filter(|&k| opens(kept[k].mode)).map(|k| before + k).collect()
                     };
                     pairs.push(Pair {
+                        joint: index,
                         mode: row.mode,
                         normal,
                         flow: entries(&row.flow),
@@ -197,4 +200,10 @@ impl Systems {
         }
         Equations { free, variables, rows, right }.dictionary()
     }
+}
+
+/// The pairs whose multiplier is more than rounding.
+pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
+    let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
+    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
 }

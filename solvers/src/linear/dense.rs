@@ -1,31 +1,34 @@
 //! Products of small dense matrices with few columns, with the vectors of the processor.
 
-use faer::traits::pulp::Arch;
 use nalgebra::DMatrix;
+use voussoir_core::linear::vectors::{Simd, add_four};
+use voussoir_core::with_vectors;
 
 /// out += A x over the first rows and columns of A, four columns at a time; zeros of x cost nothing.
 pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
     if !out.is_empty() {
-        Arch::new().dispatch(|| add_columns(out, a.nrows(), a.as_slice(), x));
+        let (rows, a) = (a.nrows(), a.as_slice());
+        with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());
     }
 }
 
 /// out += A x, A column by column.
 pub fn add_block(out: &mut [f64], a: &[f64], x: &[f64]) {
     if !out.is_empty() {
-        Arch::new().dispatch(|| add_columns(out, out.len(), a, x));
+        let rows = out.len();
+        with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());
     }
 }
 
 /// out += A x, A column by column, and the sizes of what adds up.
 pub fn add_block_and_sizes((out, sizes): (&mut [f64], &mut [f64]), a: &[f64], x: &[f64]) {
     if !out.is_empty() {
-        Arch::new().dispatch(|| add_columns_and_sizes(out, sizes, a, x));
+        with_vectors!('a, add_columns_and_sizes(out: &'a mut [f64], sizes: &'a mut [f64], a: &'a [f64], x: &'a [f64]) -> ());
     }
 }
 
 #[inline(always)]
-fn add_columns_and_sizes(out: &mut [f64], sizes: &mut [f64], a: &[f64], x: &[f64]) {
+fn add_columns_and_sizes<S: Simd>(_: S, out: &mut [f64], sizes: &mut [f64], a: &[f64], x: &[f64]) {
     let height = out.len();
     let sizes = &mut sizes[..height];
     let (a2, x2) = (a.chunks_exact(2 * height), x.chunks_exact(2));
@@ -49,12 +52,12 @@ fn add_columns_and_sizes(out: &mut [f64], sizes: &mut [f64], a: &[f64], x: &[f64
 /// out += wᵀ A, A column by column.
 pub fn add_row_block(out: &mut [f64], w: &[f64], a: &[f64]) {
     if !w.is_empty() {
-        Arch::new().dispatch(|| add_row_columns(out, w, a));
+        with_vectors!('a, add_row_columns(out: &'a mut [f64], w: &'a [f64], a: &'a [f64]) -> ());
     }
 }
 
 #[inline(always)]
-fn add_row_columns(out: &mut [f64], w: &[f64], a: &[f64]) {
+fn add_row_columns<S: Simd>(_: S, out: &mut [f64], w: &[f64], a: &[f64]) {
     for (out, column) in out.iter_mut().zip(a.chunks_exact(w.len())) {
         *out += dot(w, column);
     }
@@ -62,39 +65,32 @@ fn add_row_columns(out: &mut [f64], w: &[f64], a: &[f64]) {
 
 /// out += A x for code with the vectors of the processor; the order of operations does not depend on them.
 #[inline(always)]
-fn add_columns(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
-    let height = out.len();
-    let mut columns = a.chunks_exact(rows).zip(x).filter(|(_, x)| **x != 0.0);
-    loop {
-        let next: [Option<(&[f64], &f64)>; 4] = std::array::from_fn(|_| columns.next());
-        if let [Some((a, w)), Some((b, x)), Some((c, y)), Some((d, z))] = next {
-            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-            for (i, out) in out.iter_mut().enumerate() {
-                *out += (a[i] * w + b[i] * x) + (c[i] * y + d[i] * z);
-            }
-            continue;
-        }
-        for (a, x) in next.into_iter().flatten() {
-            out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
-        }
-        return;
+fn add_columns<S: Simd>(simd: S, out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
+    let (a4, x4) = (a.chunks_exact(4 * rows), x.chunks_exact(4));
+    let whole = (a.len() / (4 * rows)).min(x.len() / 4);
+    let (a1, x1) = (&a[4 * rows * whole..], &x[4 * whole..]);
+    for (a, x) in a4.zip(x4).filter(|(_, x)| **x != [0.0; 4]) {
+        let (a, b) = a.split_at(2 * rows);
+        let ((a, b), (c, d)) = (a.split_at(rows), b.split_at(rows));
+        add_four(simd, out, [a, b, c, d], [x[0], x[1], x[2], x[3]]);
+    }
+    for (a, x) in a1.chunks_exact(rows).zip(x1).filter(|(_, x)| **x != 0.0) {
+        out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
     }
 }
 
 /// A times two columns added to two: each number of A is read once.
 #[inline(always)]
-fn add_to_two((first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
+fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
     let height = first.len();
     let second = &mut second[..height];
     let mut columns = a.chunks_exact(height).zip(x.iter().zip(y)).filter(|(_, (x, y))| **x != 0.0 || **y != 0.0);
     loop {
         let next: [_; 4] = std::array::from_fn(|_| columns.next());
         if let [Some((a, p)), Some((b, q)), Some((c, r)), Some((d, s))] = next {
-            let (a, b, c, d) = (&a[..height], &b[..height], &c[..height], &d[..height]);
-            for (i, (first, second)) in first.iter_mut().zip(second.iter_mut()).enumerate() {
-                *first += (a[i] * p.0 + b[i] * q.0) + (c[i] * r.0 + d[i] * s.0);
-                *second += (a[i] * p.1 + b[i] * q.1) + (c[i] * r.1 + d[i] * s.1);
-            }
+            let columns = [a, b, c, d];
+            add_four(simd, first, columns, [*p.0, *q.0, *r.0, *s.0]);
+            add_four(simd, second, columns, [*p.1, *q.1, *r.1, *s.1]);
             continue;
         }
         for (a, (x, y)) in next.into_iter().flatten() {
@@ -123,53 +119,64 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// A times columns, of which the first entries count.
 pub fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(a.nrows(), columns.ncols());
+    let mut all = DMatrix::zeros(a.nrows(), columns.ncols());
+    let out = &mut all;
+    with_vectors!('a, add_matrix(out: &'a mut DMatrix<f64>, a: &'a DMatrix<f64>, columns: &'a DMatrix<f64>) -> ());
+    all
+}
+
+#[inline(always)]
+fn add_matrix<S: Simd>(simd: S, out: &mut DMatrix<f64>, a: &DMatrix<f64>, columns: &DMatrix<f64>) {
     let (rows, entries) = (a.nrows(), columns.nrows());
-    Arch::new().dispatch(|| {
-        let pairs = out.as_mut_slice().chunks_mut(2 * rows).zip(columns.as_slice().chunks(2 * entries));
-        for (out, x) in pairs {
-            if x.len() == 2 * entries {
-                add_to_two(out.split_at_mut(rows), a.as_slice(), x.split_at(entries));
-            } else {
-                add_columns(out, rows, a.as_slice(), x);
-            }
+    let pairs = out.as_mut_slice().chunks_mut(2 * rows).zip(columns.as_slice().chunks(2 * entries));
+    for (out, x) in pairs {
+        if x.len() == 2 * entries {
+            add_to_two(simd, out.split_at_mut(rows), a.as_slice(), x.split_at(entries));
+        } else {
+            add_columns(simd, out, rows, a.as_slice(), x);
         }
-    });
-    out
+    }
 }
 
 /// Rows, given as columns, times A, again as columns: of A's rows as many count as they have entries.
 pub fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(a.ncols(), rows.ncols());
-    Arch::new().dispatch(|| {
-        let each = out.as_mut_slice().chunks_exact_mut(a.ncols()).zip(rows.as_slice().chunks_exact(rows.nrows()));
-        for (out, row) in each {
-            for (out, column) in out.iter_mut().zip(a.as_slice().chunks_exact(a.nrows())) {
-                *out = dot(row, &column[..row.len()]);
-            }
+    let mut all = DMatrix::zeros(a.ncols(), rows.ncols());
+    let out = &mut all;
+    with_vectors!('a, set_row_product(out: &'a mut DMatrix<f64>, rows: &'a DMatrix<f64>, a: &'a DMatrix<f64>) -> ());
+    all
+}
+
+#[inline(always)]
+fn set_row_product<S: Simd>(_: S, out: &mut DMatrix<f64>, rows: &DMatrix<f64>, a: &DMatrix<f64>) {
+    let each = out.as_mut_slice().chunks_exact_mut(a.ncols()).zip(rows.as_slice().chunks_exact(rows.nrows()));
+    for (out, row) in each {
+        for (out, column) in out.iter_mut().zip(a.as_slice().chunks_exact(a.nrows())) {
+            *out = dot(row, &column[..row.len()]);
         }
-    });
-    out
+    }
 }
 
 /// A += a bᵀ.
 pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+    with_vectors!('a, add_dyads(target: &'a mut DMatrix<f64>, a: &'a DMatrix<f64>, b: &'a DMatrix<f64>) -> ());
+}
+
+#[inline(always)]
+fn add_dyads<S: Simd>(simd: S, target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
     let (height, rows) = (target.nrows(), a.nrows());
-    Arch::new().dispatch(|| {
-        let mut factors = vec![0.0; a.ncols()];
-        for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
-            factors.iter_mut().enumerate().for_each(|(i, f)| *f = b[(j, i)]);
-            match factors.as_slice() {
-                [0.0] | [0.0, 0.0] => {}
-                [f] => column.iter_mut().zip(a.as_slice()).for_each(|(t, a)| *t += a * f),
-                [f, g] => {
-                    let (a, b) = a.as_slice().split_at(height);
-                    column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);
-                }
-                _ => add_columns(column, rows, a.as_slice(), &factors),
+    let mut factors = vec![0.0; a.ncols()];
+    for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
+        factors.iter_mut().enumerate().for_each(|(i, f)| *f = b[(j, i)]);
+        match factors.as_slice() {
+            [0.0] | [0.0, 0.0] => {}
+            [f] => column.iter_mut().zip(a.as_slice()).for_each(|(t, a)| *t += a * f),
+            [f, g] => {
+                let (a, b) = a.as_slice().split_at(height);
+                column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);
             }
+            _ => add_columns(simd, column, rows, a.as_slice(), &factors),
         }
-    });
+    }
 }
 
 #[cfg(test)]

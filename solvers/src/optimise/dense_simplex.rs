@@ -154,6 +154,15 @@ fn irregular(index: usize) -> f64 {
     ((index as f64 + 1.0) * 0.618_033_988_749_894_9).fract()
 }
 
+/// β after a variable's bound has moved: x_B = x'_B + by, or x_N = x'_N − by in every row that contains it.
+fn move_bound(beta: &mut [f64], matrix: &[f64], columns: usize, place: Place, by: f64) {
+    match place {
+        Place::Row(i) => beta[i] += by,
+        Place::Column(j) => beta.iter_mut().enumerate().for_each(|(i, beta)| *beta -= by * matrix[i * columns + j]),
+        Place::Absent => {}
+    }
+}
+
 impl Dictionary {
     /// x_B = β + M x_N, M row by row; variables in neither list are zero.
     pub fn new(variables: usize, basic: Vec<usize>, nonbasic: Vec<usize>, beta: Vec<f64>, matrix: Vec<f64>) -> Self {
@@ -216,21 +225,26 @@ impl Dictionary {
         self.fixed[variable] = fixed;
     }
 
-    /// Adds `by` to a variable as a function of the others: its bound moves.
+    /// Adds `by` to a variable as a function of the others: its bound moves. The basis is computed afresh.
     pub fn shift(&mut self, variable: usize, by: f64) {
-        let Some(i) = self.original.basic.iter().position(|&x| x == variable) else {
-            // x_N = x'_N − by: every row that contains it moves.
-            if let Some(j) = self.original.nonbasic.iter().position(|&x| x == variable) {
-                let columns = self.columns;
-                for i in 0..self.rows {
-                    self.original.beta[i] -= by * self.original.matrix[i * columns + j];
-                }
-            }
-            self.restore();
-            return;
-        };
-        self.original.beta[i] += by;
+        let original = &mut self.original;
+        let at = |list: &[usize], in_list: fn(usize) -> Place| list.iter().position(|&x| x == variable).map(in_list);
+        let place = at(&original.basic, Place::Row).or(at(&original.nonbasic, Place::Column)).unwrap_or(Place::Absent);
+        move_bound(&mut original.beta, &original.matrix, self.columns, place, by);
         self.restore();
+    }
+
+    /// The same for several variables, in the present basis as well as in the original, so that a few pivots of the dual
+    /// simplex method repair what has moved.
+    pub fn relax(&mut self, shifts: &[(usize, f64)]) {
+        let mut places = vec![Place::Absent; self.place.len()];
+        self.original.basic.iter().enumerate().for_each(|(i, &x)| places[x] = Place::Row(i));
+        self.original.nonbasic.iter().enumerate().for_each(|(j, &x)| places[x] = Place::Column(j));
+        let original = &mut self.original;
+        for &(variable, by) in shifts {
+            move_bound(&mut original.beta, &original.matrix, self.columns, places[variable], by);
+            move_bound(&mut self.beta, &self.matrix, self.columns, self.place[variable], by);
+        }
     }
 
     fn row(&self, i: usize) -> &[f64] {

@@ -120,7 +120,8 @@ fn each_is_found(name: &str, original: &Value, find: &dyn Fn(&Value) -> Vec<Stri
     }
 }
 
-fn forged(name: &str, text: &str) {
+/// Every change of the results of a study is found.
+pub fn forged(name: &str, text: &str) {
     let (study, original): (Study, Value) = results(text);
     each_is_found(name, &original, &|changed| findings(&study, changed));
 }
@@ -129,7 +130,7 @@ const ELASTIC: &str = "[scene.mesh]\nelements = [1, 2]\n[materials.stone]\nlaw =
                        poisson_ratio = 0.2\ndensity = 2200.0\n";
 
 /// A ring of seven voussoirs on a path, with or without a support that moves first.
-fn path(solver: &str, kinematics: &str, settled: bool) -> String {
+pub fn path(solver: &str, kinematics: &str, settled: bool) -> String {
     let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"right\", displacement = [0.005, 0.0] }]\n";
     format!(
         "name = \"path\"\n[scene]\nscene = \"arch\"\nprofile = {{ shape = \"segmental\", span = 4.0, rise = 1.0 }}\n\

@@ -152,3 +152,27 @@ fn figures_show_all_stages_and_the_peak() {
     };
     assert!((highest(&fallen) - highest(&stopped)).abs() < 1.0, "{} {}", highest(&fallen), highest(&stopped));
 }
+
+/// Of a tower whose weight stands over its edge, far from the origin, what lies between the bounds of the factor 0 is rounding: no
+/// bracket is said of it.
+#[test]
+fn rounding_of_a_zero_factor_is_no_bracket() {
+    let at = |[x, y]: [f64; 2]| format!("[{:?}, {:?}]", x + 612.3, y + 347.1);
+    let block = |points: [[f64; 2]; 4]| points.map(at).join(", ");
+    let tower = format!(
+        "name = \"tower\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
+         blocks = [{{ name = \"ground\", vertices = [{}], fixed = true }}, {{ name = \"tower\", vertices = [{}] }}]\n\
+         [materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\nlaw = \"coulomb_associated\"\n\
+         friction = 0.7\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\n\
+         until = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = [9.81, 0.0] }}]\n",
+        block([[-5.0, -1.0], [5.0, -1.0], [5.0, 0.0], [-5.0, 0.0]]),
+        block([[0.0, 0.0], [0.3, 0.0], [0.6, 1.7], [0.3, 1.7]]),
+    );
+    let case = first_case(&tower);
+    let mut result = voussoir::solve_case(&case);
+    assert!(result.certificate.passed && result.load_factor.is_some_and(|factor| factor.abs() < 1e-10), "{result:?}");
+    // As another machine may round.
+    (result.load_factor, result.bounds) = (Some(0.0), Some([-1.48e-11, 0.0]));
+    let line = headline(&result, &case.stages);
+    assert!(line.starts_with("collapse, λ = 0"), "{line}");
+}

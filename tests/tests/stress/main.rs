@@ -3,6 +3,7 @@
 mod bridges;
 mod cap;
 mod conic;
+mod extremes;
 mod limit;
 mod limit_scenes;
 mod nonassociated;

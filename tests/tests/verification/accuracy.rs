@@ -71,7 +71,7 @@ fn limit(scene: &Scene) -> f64 {
 
 /// Elastic voussoirs whose joints crush: coarse meshes miss the toes of hinges.
 fn that_crush() -> Vec<Scene> {
-    let rings = [(9, 2.99), (7, 2.59), (11, 1.79), (8, 3.29), (12, 2.29)];
+    let rings = [(9, 2.99), (10, 3.19), (9, 1.99), (12, 3.59), (7, 3.09)];
     let both = rings.into_iter().flat_map(|ring| [[1, 2], [2, 6]].map(|elements| (ring, elements)));
     both.map(|((voussoirs, rise), elements)| Scene {
         name: format!("crushing, {voussoirs} voussoirs, rise {rise}, {elements:?}"),
@@ -84,8 +84,8 @@ fn that_crush() -> Vec<Scene> {
 
 /// Elastic voussoirs whose load has a peak with finite displacements.
 fn with_peaks() -> Vec<Scene> {
-    let rings = [(7, 2.59, 0.6), (5, 1.79, 0.6), (8, 2.29, 0.7), (9, 3.29, 0.55), (6, 3.89, 0.75)];
-    let both = rings.into_iter().flat_map(|ring| [[2, 2], [2, 4]].map(|elements| (ring, elements)));
+    let rings = [(6, 2.29, 0.65), (8, 3.09, 0.6), (7, 1.99, 0.55), (10, 2.69, 0.6), (5, 3.39, 0.7), (9, 3.79, 0.65)];
+    let both = rings.into_iter().flat_map(|ring| [[1, 1], [2, 3]].map(|elements| (ring, elements)));
     both.map(|((voussoirs, rise, thickness), elements)| Scene {
         name: format!("finite, {voussoirs} voussoirs, rise {rise}, thickness {thickness}, {elements:?}"),
         arch: arch(voussoirs, rise, thickness, &elastic(5e9, 0.3), &friction(0.6)),
@@ -106,9 +106,9 @@ fn on_compliant_joints() -> Vec<Scene> {
             4.0 * energy
         )
     };
-    let rings = [(7, 2.59, 2), (9, 1.79, 2), (11, 1.19, 3), (8, 3.29, 4), (13, 2.29, 3)];
+    let rings = [(8, 2.39, 2), (10, 1.69, 3), (12, 2.99, 3), (7, 3.49, 4), (9, 2.09, 4), (14, 2.49, 2)];
     let finite = rings.into_iter().map(|(voussoirs, rise, across)| (voussoirs, rise, across, dry.clone(), FINITE));
-    let bonds = [(7, 2.59, 4), (9, 3.29, 4), (8, 1.79, 6), (10, 2.29, 5), (9, 3.89, 8)];
+    let bonds = [(8, 2.69, 4), (10, 3.19, 4), (7, 2.09, 5), (9, 2.49, 6), (11, 3.49, 5), (8, 3.79, 8)];
     let broken =
         bonds.into_iter().map(|(voussoirs, rise, across)| (voussoirs, rise, across, bonded(2e5, 300.0), SMALL));
     finite
@@ -171,6 +171,6 @@ fn estimates_cover_true_errors() {
     let [peaks, rigid] = [covered(&with_peaks(), graded), covered(&on_compliant_joints(), finer)];
     let others = [peaks[0] + rigid[0], peaks[1] + rigid[1]];
     println!("{crushing:?} {others:?}");
-    assert!(crushing[0] == 10 && others[0] >= 18, "{crushing:?} {others:?}");
+    assert!(crushing[0] == 10 && others[0] >= 20, "{crushing:?} {others:?}");
     assert!(10 * crushing[1] >= 9 * crushing[0] && 10 * others[1] >= 9 * others[0], "{crushing:?} {others:?}");
 }

@@ -36,7 +36,7 @@ const BEYOND: f64 = 0.2;
 const SOONEST: f64 = 1e-2;
 /// Gap below which nothing is to be gained.
 const ROUNDING: f64 = 5e-14;
-/// Iterations in which the gap was not halved, after which nothing is hoped for.
+/// Iterations in which neither the gap nor what equilibrium misses was halved, after which nothing is hoped for.
 const IDLE: u32 = 8;
 /// Factor in its unit below which it is as good as zero.
 const LEAST: f64 = 1e-6;
@@ -126,7 +126,7 @@ impl Method<'_> {
     fn greatest(&mut self) -> Option<Solution> {
         let mut best: Option<(f64, Solution)> = None;
         let mut nearest: Option<(f64, State)> = None;
-        let (mut least, mut idle, mut polished) = (f64::INFINITY, 0, f64::INFINITY);
+        let (mut least, mut idle, mut polished) = ([f64::INFINITY; 2], 0, f64::INFINITY);
         for _ in 0..MOST {
             let residuals = Residuals::new(self.program, &self.state);
             let [statics, kinematics] = residuals.greatest();
@@ -134,8 +134,10 @@ impl Method<'_> {
             if !(gap.is_finite() && statics.is_finite() && kinematics.is_finite()) || self.state.theta.abs() > FAR {
                 break;
             }
-            idle = if gap < 0.5 * least { 0 } else { idle + 1 };
-            least = if idle == 0 { gap } else { least };
+            let missing = [gap, statics];
+            let halved: [bool; 2] = std::array::from_fn(|i| missing[i] < 0.5 * least[i]);
+            (0..2).filter(|i| halved[*i]).for_each(|i| least[i] = missing[i]);
+            idle = if halved.contains(&true) { 0 } else { idle + 1 };
             let error = self.error(statics, &residuals);
             // Below the gap that is asked for, rounding of the motion is all that is left.
             let last = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);

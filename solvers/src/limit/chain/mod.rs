@@ -8,10 +8,12 @@
 //! (the tangents of their stress block); the last digits come from Newton's method on the active
 //! stress blocks.
 
+mod engine;
 mod layout;
 mod optimum;
 mod simplex;
 mod small_lu;
 mod solver;
 
+pub use self::engine::ChainEngine;
 pub use self::solver::LimitChain;

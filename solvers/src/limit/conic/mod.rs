@@ -4,5 +4,6 @@ mod interior_point;
 mod polish;
 mod solver;
 mod system;
+mod tangents;
 
 pub use self::solver::{LimitConic, engine};

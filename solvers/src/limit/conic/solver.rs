@@ -3,7 +3,9 @@
 use super::interior_point::{Pair, Word, solve};
 use super::polish::{balanced, polish};
 use super::system::{Loads, System};
+use super::tangents::by_tangents;
 use crate::limit::block_program::{self, Program, Solution, Solved};
+use crate::limit::chain::ChainEngine;
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
 use crate::limit::equilibrium::field_error;
 use crate::limit::question::answer_by;
@@ -160,11 +162,15 @@ impl ConicEngine<'_> {
     fn by_blocks(&mut self, loads: block_program::Loads, solve: impl Fn(&Program) -> Solved) -> Option<Solved> {
         let program = Program::new(self.problem, loads)?;
         let solved = solve(&program);
+        self.counted(&solved);
+        Some(solved)
+    }
+
+    fn counted(&mut self, solved: &Solved) {
         self.count("programs", 1);
         self.count("interior_point_iterations", solved.iterations);
         self.count("factorisations", solved.factorisations);
         self.count("newton_iterations", solved.corrections);
-        Some(solved)
     }
 
     /// Whether the field of a program by blocks is one of the scene: in its own units errors may look smaller than they are.
@@ -236,6 +242,31 @@ impl ConicEngine<'_> {
         Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique }
     }
 
+    /// The greatest factor by exchanges of single rows over the redundants, where few joints close the bodies to rings:
+    /// next to a hinge of N voussoirs slacks are 1/N² of the load, and no interior point tells from afar which of them carry.
+    fn by_redundants(&mut self, (fixed, varying, cap): (&Wrenches, &Wrenches, f64)) -> Option<Greatest> {
+        let mut engine = ChainEngine::new(self.problem)?;
+        let greatest = engine.greatest(fixed, varying, cap);
+        engine.counters().iter().for_each(|(name, by)| self.count(name, *by));
+        let right = match &greatest {
+            Greatest::Failed(_) => false,
+            Greatest::Collapse { factor, field, .. } => {
+                field_error(self.problem, &combined(fixed, varying, *factor), field) <= FIELD
+            }
+            Greatest::Capped(_) | Greatest::Unbounded(_) => true,
+        };
+        right.then_some(greatest)
+    }
+
+    /// The greatest factor with tangents for stress blocks, from what was found without them.
+    fn by_tangents(&mut self, question: (&Wrenches, &Wrenches, f64), tried: &Tried) -> Option<Greatest> {
+        let start = tried.best.as_ref().map(|best| &best.1).or(tried.unsettled.as_ref());
+        let (Greatest::Collapse { field, .. } | Greatest::Capped(field)) = start? else { return None };
+        let solved = by_tangents(self.problem, question, field, FIELD);
+        solved.iter().for_each(|solved| self.counted(solved));
+        Some(greatest_of(solved.into_iter().last()?.solution?, question.1))
+    }
+
     /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
     fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Equilibrium {
         if free.is_none()
@@ -288,6 +319,7 @@ impl Engine for ConicEngine<'_> {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let again = self.unsolved.take_if(|(known, _)| known == fixed).is_some_and(|(_, known)| known == *varying);
         let solved = if again { None } else { self.by_blocks(loads, |program| block_program::solve(program, false)) };
+        let linear = again || solved.is_some();
         let solution = solved.and_then(|solved| solved.solution);
         if let Some(solution) = solution.filter(|solution| self.holds(fixed, varying, solution)) {
             return greatest_of(solution, varying);
@@ -295,6 +327,9 @@ impl Engine for ConicEngine<'_> {
         let mut tried = Tried::default();
         let force = force_scale(self.problem, fixed, varying);
         let question = (fixed, varying, cap);
+        if linear && let Some(greatest) = self.by_redundants(question) {
+            return greatest;
+        }
         self.attempt(question, force, &mut tried);
         // Where strengths alone hold the load, as in flat arches of strong stone, it is as great as they are: in the unit of
         // the loads that stand it would be too great for the interior point.
@@ -307,6 +342,12 @@ impl Engine for ConicEngine<'_> {
             if tried.may_gain() {
                 self.attempt(question, force * scale, &mut tried);
             }
+        }
+        if !linear
+            && tried.best.is_none()
+            && let Some(greatest) = self.by_redundants(question).or_else(|| self.by_tangents(question, &tried))
+        {
+            return greatest;
         }
         if let Some((_, greatest)) = tried.best {
             return greatest;

@@ -5,9 +5,9 @@ use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
-use crate::limit::sequential::{FlowState, Sequence, greatest_shares, sequence};
+use crate::limit::sequential::{FlowState, Sequence, sequence};
 use crate::limit::settlement::settle;
-use crate::limit::systems::{LARGEST, Systems};
+use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::{

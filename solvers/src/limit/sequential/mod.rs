@@ -3,6 +3,7 @@
 
 mod sequence;
 mod solver;
+mod vertices;
 
-pub use self::sequence::{FlowState, Sequence, greatest_shares, sequence};
+pub use self::sequence::{FlowState, Sequence, sequence};
 pub use self::solver::LimitSequential;

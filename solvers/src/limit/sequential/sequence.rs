@@ -1,8 +1,9 @@
 //! The sequence of linear programs with fictitious cohesion that ends at a state of the laws' own flow.
 
+use super::vertices::{ADMISSIBLE, Vertices};
 use crate::limit::conic;
 use crate::limit::engine::{Engine, Greatest};
-use crate::limit::systems::{LARGEST, Systems};
+use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
@@ -10,10 +11,16 @@ use voussoir_core::model::Wrenches;
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
 pub const TOLERANCE: f64 = 1e-6;
+/// The same for the first programs: a sequence that converges is followed to its limit, which does not depend on where it
+/// was left.
+const CLOSE: f64 = 1e-10;
+/// The first programs.
+const CLOSELY: usize = 36;
 /// Greatest number of programs.
 const PROGRAMS: usize = 120;
-/// A field moved onto the yield surface is admissible to this.
-const ADMISSIBLE: f64 = 1e-12;
+/// Programs solved at vertices before fields are taken from the middle of those that carry the factor: vertices may jump
+/// where fields are many, the middle moves with the bounds.
+const CENTRES: usize = 48;
 
 /// A state that obeys the laws' own flow.
 #[derive(Debug, Clone)]
@@ -49,56 +56,37 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
     replaced
 }
 
-/// The program by the simplex method, which ends at a vertex of the fields; `None` in scenes too
-/// large for it, with joints that crush, or where rounding spoils it.
-fn at_vertex(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Option<Greatest> {
-    let systems = Systems::new(problem, base);
-    if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
-        return None;
+/// The greatest factor of associated flow by the conic engine: a field in the middle of those that carry it.
+fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Greatest {
+    let mut engine = conic::engine(problem);
+    let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+    for (name, count) in engine.counters() {
+        *counters.entry(name).or_default() += count;
     }
-    let mut statics = systems.statics(None)?;
-    if statics.feasible() != Feasibility::Point {
-        return None;
-    }
-    let optimum = statics.minimise(&[(systems.theta(), -1.0)], 20_000);
-    *counters.entry("pivots".into()).or_default() += statics.pivots;
-    let (_, true) = optimum? else { return None };
-    let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
-    let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
-    let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
-    let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
-    let (motion, wrong) = systems.motion(problem, &moving)?;
-    (violation <= ADMISSIBLE && wrong <= 1e-11).then(|| Greatest::Collapse {
-        factor: z[systems.forces] * systems.unit,
-        field: systems.joint_forces(&z),
-        motion,
-        unique: false,
-    })
+    greatest
 }
 
 /// Runs the sequence from a field, that of associated flow by default.
 pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
     let systems = Systems::new(problem, base);
     let mut reference = from.to_vec();
+    let mut vertices = Vertices::new(problem, &systems);
     let mut last = f64::NAN;
     let mut course = Course::default();
     for step in 0..PROGRAMS {
-        let replaced = fictitious(problem, &reference);
         *counters.entry("linear_programs".into()).or_default() += 1;
-        let greatest = at_vertex(&replaced, base, counters).unwrap_or_else(|| {
-            let mut engine = conic::engine(&replaced);
-            let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
-            for (name, count) in engine.counters() {
-                *counters.entry(name).or_default() += count;
-            }
-            greatest
-        });
+        if step == CENTRES {
+            vertices = None;
+        }
+        let vertex = vertices.as_mut().and_then(|vertices| vertices.greatest(problem, &systems, &reference, counters));
+        let greatest = vertex.unwrap_or_else(|| by_engine(&fictitious(problem, &reference), base, counters));
         let (factor, field, motion) = match greatest {
             Greatest::Collapse { factor, field, motion, .. } => (factor, field, motion),
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
-        let steady = (factor - last).abs() <= TOLERANCE * factor.abs().max(TOLERANCE * systems.unit);
+        let asked = if step < CLOSELY { CLOSE } else { TOLERANCE };
+        let steady = (factor - last).abs() <= asked * factor.abs().max(TOLERANCE * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);
         let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
@@ -106,7 +94,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
         course.take(factor, worst, idle);
-        if worst.max(idle) <= TOLERANCE
+        if worst.max(idle) <= asked
             && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
             return Sequence::Converged(state);
@@ -121,20 +109,23 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         {
             return Sequence::Converged(FlowState { factor, field, motion });
         }
-        // Half way where full steps have not settled, then a quarter and ever less: vertices between which the programs
-        // jump then pull on one place.
-        let share = match step {
-            0..12 => 1.0,
-            12..40 => 0.5,
-            40..60 => 0.25,
-            _ => 0.25 * 0.95f64.powf((step - 60) as f64),
-        };
+        let share = share(if step < CENTRES { step } else { step - CENTRES });
         for (old, new) in reference.iter_mut().zip(&field) {
             (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
             old.shear += share * (new.shear - old.shear);
         }
     }
     Sequence::Open(course.verdict())
+}
+
+/// Share of the way from a reference to the field of its program: half where full steps have not settled, then a quarter and
+/// ever less, so that fields between which the programs jump pull on one place.
+fn share(step: usize) -> f64 {
+    match step {
+        0..12 => 1.0,
+        12..36 => 0.5,
+        _ => 0.25 * 0.95f64.powf((step - 36) as f64),
+    }
 }
 
 /// Programs whose factors are told where the sequence does not converge.
@@ -172,12 +163,6 @@ impl Course {
             self.idle
         )
     }
-}
-
-/// The pairs whose multiplier is more than rounding.
-pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
-    let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
-    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
 }
 
 /// A field at this factor, to the tolerance, in which all moving pairs yield.
@@ -233,12 +218,7 @@ fn field_yielding(
             pair += 1;
         }
     }
-    let mut engine = conic::engine(&yielding);
-    let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
-    for (name, count) in engine.counters() {
-        *counters.entry(name).or_default() += count;
-    }
-    let Greatest::Collapse { factor, field, .. } = greatest else { return None };
+    let Greatest::Collapse { factor, field, .. } = by_engine(&yielding, base, counters) else { return None };
     let mut z = systems.force_variables(&field);
     z.push(factor / systems.unit);
     let (z, violation) = systems.field(moving, z)?;

@@ -419,6 +419,8 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
     // The same share of the joints, whatever their number.
     let changes = changes * ORDINARY / next.mode.len().max(ORDINARY);
     let softening = branch_changes(&tracer.system, &tracer.state, &next);
+    let (whole, moves) = (next.mode == tracer.state.mode, following.length > CORNER * following.limits.first);
+    following.tried.note(&next, &tangent, whole, moves);
     if !commit(tracer, next) {
         return Some(LoadStepEnding::Ended);
     }

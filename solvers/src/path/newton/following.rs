@@ -20,6 +20,9 @@ use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
 /// Length of the first step on another branch, relative to that of the load step.
 const BRANCH: f64 = 0.1;
 
+/// Cosine of the angle between a step and the rate of arrival below which it takes the way back.
+const BACK: f64 = -1.0 + 1e-3;
+
 /// Length of the first step of all, relative to the strategy's, where friction that is not associated may slide at once:
 /// from nothing a load has no scale, and what slides first may come to rest within any step that is not short.
 const FROM_NOTHING: f64 = 1e-3;
@@ -42,13 +45,38 @@ pub(super) struct Branch {
     pub modes: Option<Vec<ContactMode>>,
 }
 
-/// Numbers of steps at which something was tried last.
+/// What has been tried near the present state.
 #[derive(Default)]
 pub(super) struct Tried {
-    /// Another branch.
+    /// Number of the step at which another branch was looked for last.
     pub branch: Option<u64>,
-    /// A search for a rate with growing λ.
+    /// The same of a search for a rate with growing λ.
     pub search: Option<u64>,
+    /// Modes and rate of the last step on which no point changed its mode, while the path has hardly moved since: the way
+    /// on which it came here, over however many changes of mode at one place.
+    pub arrived: Option<(Vec<ContactMode>, Tangent)>,
+}
+
+impl Tried {
+    /// Takes note of a step that is taken; `whole` where no point changes its mode, `moves` where it is more than a corner.
+    pub fn note(&mut self, next: &State, tangent: &Tangent, whole: bool, moves: bool) {
+        if whole {
+            self.arrived = Some((next.mode.clone(), tangent.clone()));
+        } else if moves {
+            self.arrived = None;
+        }
+    }
+
+    /// Whether a step from one state to the next takes the way back on which the path came here.
+    pub fn leads_back(&self, state: &State, next: &State) -> bool {
+        self.arrived.as_ref().is_some_and(|(modes, rate)| {
+            let from = state.motion.iter().flatten();
+            let moved = || next.motion.iter().flatten().zip(from.clone()).map(|(after, before)| after - before);
+            let along: f64 = moved().zip(rate.motion.iter().flatten()).map(|(moved, rate)| moved * rate).sum();
+            let sizes = moved().map(|x| x * x).sum::<f64>() * rate.motion.iter().flatten().map(|x| x * x).sum::<f64>();
+            next.mode == *modes && along < BACK * sizes.sqrt()
+        })
+    }
 }
 
 /// A place within the next steps at which a point comes to rest.

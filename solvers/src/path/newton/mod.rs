@@ -54,10 +54,16 @@ mod updated_equations;
 
 use self::monitors::resolve;
 use super::outcome::stalled;
+use crate::path::continuation::arc_length::ArcLength;
+use crate::path::continuation::displacement_control::DisplacementControl;
 use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
-use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
+use std::sync::Arc;
+use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
+
+/// First step of the last strategy that is tried: a tenth of the usual one.
+const SHORT: f64 = 0.003;
 
 /// Steps with Newton's method.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -86,6 +92,15 @@ impl PathSolver for NewtonPath {
             return Some(why.into());
         }
         settings.strategies().find_map(|strategy| resolve(problem, &strategy.monitors()).err())
+    }
+
+    /// With finite displacements a step may fall short of a sharp fold by one strategy and pass it by another.
+    fn further_strategies(&self, settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
+        if !settings.finite || settings.strategies().next().is_some() {
+            return Vec::new();
+        }
+        let short = ArcLength { first_step: SHORT, ..ArcLength::default() };
+        vec![Arc::new(DisplacementControl::default()), Arc::new(short)]
     }
 }
 

@@ -106,7 +106,8 @@ pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPla
         found = by_homotopy(&mut tracer.system, &tracer.state, &guess, &control);
     }
     let found = found.and_then(|(next, iterations)| {
-        if modes.is_some() && next.mode == tracer.state.mode {
+        let back = following.tried.leads_back(&tracer.state, &next);
+        if back || (modes.is_some() && next.mode == tracer.state.mode) {
             return Err(StepFailure::new("the step went back the way it came"));
         }
         judge(tracer, following, plan.step, &next, reaches)?;

@@ -195,6 +195,7 @@ impl Joint {
 
     /// A component of the resultant of its forces.
     pub fn resultant(&self, i: usize, forces: &[f64]) -> f64 {
-        self.by_twist.column(i).iter().zip(forces).map(|(h, r)| h * r).sum()
+        let rows = self.by_twist.nrows();
+        dot(&self.by_twist.as_slice()[i * rows..(i + 1) * rows], &forces[..rows])
     }
 }

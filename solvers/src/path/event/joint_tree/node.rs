@@ -354,20 +354,31 @@ impl Table {
     }
 
     /// What the joint does for outer unknowns.
-    pub fn answer(&self, outer: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; self.free.len()];
-        add_product(&mut out, &self.by_outer, outer);
-        out
+    pub fn answer(&self, outer: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        out.resize(self.free.len(), 0.0);
+        add_product(out, &self.by_outer, outer);
     }
 
     /// Force and gap of a point from what the joint does.
     pub fn point(&self, k: usize, out: &[f64]) -> [[f64; 2]; 2] {
-        let of = |free: bool| [0, 1].map(|i| if self.free[2 * k + i] == free { out[2 * k + i] } else { 0.0 });
-        [of(true), of(false)].map(|own| out_of_axes(self.axes[k], own))
+        let (u, v, axis) = (out[2 * k], out[2 * k + 1], self.axes[k]);
+        match (self.free[2 * k], self.free[2 * k + 1]) {
+            (true, true) => [out_of_axes(axis, [u, v]), [0.0; 2]],
+            (true, false) => [out_of_axes(axis, [u, 0.0]), out_of_axes(axis, [0.0, v])],
+            (false, true) => [out_of_axes(axis, [0.0, v]), out_of_axes(axis, [u, 0.0])],
+            (false, false) => [[0.0; 2], out_of_axes(axis, [u, v])],
+        }
     }
 
     /// Forces of all points over (n, t).
-    pub fn forces(&self, out: &[f64]) -> Vec<f64> {
-        (0..self.axes.len()).flat_map(|k| self.point(k, out)[0]).collect()
+    pub fn forces(&self, out: &[f64], forces: &mut Vec<f64>) {
+        forces.clear();
+        let own = out[..2 * self.axes.len()].iter().zip(&self.free);
+        forces.extend(own.map(|(value, free)| if *free { *value } else { 0.0 }));
+        for (axis, force) in self.axes.iter().zip(forces.chunks_exact_mut(2)).filter(|(axis, _)| **axis != [1.0, 0.0]) {
+            let turned = out_of_axes(*axis, [force[0], force[1]]);
+            force.copy_from_slice(&turned);
+        }
     }
 }

@@ -8,7 +8,6 @@
 use super::node::Table;
 use super::tree::Tree;
 use crate::contact::mode::ContactMode;
-use crate::linear::dense::add_product;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use voussoir_core::path::PathProblem;
 
@@ -58,8 +57,9 @@ pub struct Below {
 struct Span {
     /// An orthonormal basis of H.
     basis: DMatrix<f64>,
-    /// Area of each point.
+    /// Area of each point, and one by it for each of its rows.
     areas: Vec<f64>,
+    by_area: Vec<f64>,
     /// E⁻¹.
     to_origin: Matrix3<f64>,
     /// E.
@@ -76,6 +76,9 @@ pub struct Quiet {
     pub own: Vec<Own>,
     /// Of every node.
     pub below: Vec<Below>,
+    /// Share of every node's room that is used up at the rates last seen.
+    used: Vec<f64>,
+    change: Vec<f64>,
 }
 
 /// Norms of the maps from outside to what a joint does.
@@ -99,6 +102,8 @@ struct Norms {
     shapes: [DMatrix<f64>; 2],
     /// Whether there are such forces.
     known: bool,
+    /// For each side: version of the norms below, and the greatest stress in this joint apart from those.
+    apart: [(u64, Vec<f64>); 2],
 }
 
 /// The greatest stress, at most, of forces of a joint that are at most these in its axes.
@@ -109,6 +114,11 @@ fn stress(table: &Table, areas: &[f64], forces: &[f64]) -> f64 {
         force / area
     };
     areas.iter().enumerate().map(of).fold(0.0, f64::max)
+}
+
+/// The greatest product of an absolute value and a weight.
+fn greatest(values: &[f64], weights: &[f64]) -> f64 {
+    values.iter().zip(weights).fold(0.0, |most: f64, (value, weight)| most.max(value.abs() * weight))
 }
 
 /// The greatest share of what is left of the room.
@@ -122,9 +132,11 @@ impl Quiet {
         let mut spans = Vec::with_capacity(tree.joints.len());
         for joint in &tree.joints {
             let to_centre = tree.sections.all[joint.section].to_centre;
+            let areas: Vec<f64> = joint.contacts.iter().map(|c| problem.contacts[*c].area).collect();
             spans.push(Span {
                 basis: joint.by_twist.clone().qr().q(),
-                areas: joint.contacts.iter().map(|c| problem.contacts[*c].area).collect(),
+                by_area: areas.iter().flat_map(|area| [1.0 / area; 2]).collect(),
+                areas,
                 to_origin: to_centre.try_inverse()?,
                 to_centre,
             });
@@ -138,37 +150,45 @@ impl Quiet {
             norms: vec![Norms::default(); count],
             own: vec![own; count],
             below: vec![below; count],
+            used: vec![f64::INFINITY; count],
+            change: Vec::new(),
         })
     }
 
     /// Which share of all room below a node is used up at most by its present rates from outside.
-    pub fn used(&self, tree: &Tree, m: usize) -> f64 {
+    pub fn use_up(&mut self, tree: &Tree, m: usize) -> f64 {
+        let mut change = std::mem::take(&mut self.change);
+        self.used[m] = match self.below[m].always || tree.dirty[m] {
+            true => f64::INFINITY,
+            false => self.find_used(tree, m, &mut change),
+        };
+        self.change = change;
+        self.used[m]
+    }
+
+    fn find_used(&self, tree: &Tree, m: usize, change: &mut Vec<f64>) -> f64 {
         let below = &self.below[m];
-        if below.always || tree.dirty[m] {
-            return f64::INFINITY;
-        }
-        let change: Vec<f64> = tree.moved[m].rates.iter().zip(&below.reference).map(|(now, then)| now - then).collect();
+        change.clear();
+        change.extend(tree.moved[m].rates.iter().zip(&below.reference).map(|(now, then)| now - then));
         let [a, b] = tree.outer(m);
         let n = tree.redundants();
-        let forces = [&change[..a], &change[a..a + b]];
+        let (forces, others) = change.split_at_mut(a + b);
         let mut used = 0.0;
-        for (side, forces) in forces.into_iter().enumerate() {
-            if let Some(e) = tree.places[m].outer[side] {
-                let mut rest = forces.to_vec();
-                let redundants: Vec<f64> = change[a + b..a + b + n].iter().map(|v| -v).collect();
-                add_product(&mut rest, &self.norms[m].shapes[side], &redundants);
-                let areas = self.spans[e].areas.iter().flat_map(|area| [area, area]);
-                let stress = rest.iter().zip(areas).map(|(force, area)| force.abs() / area).fold(0.0, f64::max);
-                used += below.by_force[side] * stress;
+        for (side, own) in [(0, 0..a), (1, a..a + b)] {
+            let Some(e) = tree.places[m].outer[side] else { continue };
+            let own = &mut forces[own];
+            let shape = self.norms[m].shapes[side].as_slice().chunks_exact(own.len());
+            for (shape, redundant) in shape.zip(&others[..n]) {
+                own.iter_mut().zip(shape).for_each(|(own, shape)| *own -= shape * redundant);
             }
+            used += below.by_force[side] * greatest(own, &self.spans[e].by_area);
         }
         for k in 0..n / 3 {
-            let at = a + b + 3 * k;
-            let change = self.spans[m].to_centre * Vector3::new(change[at], change[at + 1], change[at + 2]);
+            let own = &others[3 * k..3 * k + 3];
+            let change = self.spans[m].to_centre * Vector3::new(own[0], own[1], own[2]);
             used += (0..3).map(|i| below.by_resultant[3 * k + i] * change[i].abs()).sum::<f64>();
         }
-        let twists = &change[a + b + n + 1..];
-        used + twists.iter().zip(&below.by_twist).map(|(change, by)| change.abs() * by).sum::<f64>()
+        used + others[n + 1..].iter().zip(&below.by_twist).map(|(change, by)| change.abs() * by).sum::<f64>()
     }
 
     /// Norms of a node's equations, which have changed.
@@ -219,11 +239,14 @@ impl Quiet {
                 n,
                 by_redundants.column_iter().flat_map(|column| {
                     let column: Vec<f64> = column.iter().copied().collect();
-                    table.forces(&column)
+                    let mut forces = Vec::with_capacity(height);
+                    table.forces(&column, &mut forces);
+                    forces
                 }),
             ),
             shapes,
             known,
+            apart: Default::default(),
         }
     }
 
@@ -255,13 +278,19 @@ impl Quiet {
             self.bound_shares(tree, m, out, &mut below);
         }
         tree.dirty[m] = false;
+        self.used[m] = 0.0;
         self.below[m] = below;
     }
 
     fn bound_shares(&mut self, tree: &Tree, m: usize, out: &[f64], below: &mut Below) {
-        let (table, n) = (&tree.tables[m], tree.redundants());
+        let table = &tree.tables[m];
         if self.norms[m].version != table.version {
             self.norms[m] = self.find_norms(tree, m);
+        }
+        for (side, child) in tree.places[m].children.into_iter().enumerate() {
+            if let Some(child) = child.filter(|child| self.norms[m].apart[side].0 != self.norms[*child].version) {
+                self.norms[m].apart[side] = (self.norms[child].version, self.find_apart((m, side), child));
+            }
         }
         let (own, norms) = (&self.own[m], &self.norms[m]);
         let rooms = own.room.iter().zip(out.iter().zip(&own.reference));
@@ -272,7 +301,7 @@ impl Quiet {
         below.by_twist = norms.by_twist.iter().map(|by| most(by, &rest)).collect();
         for (side, child) in tree.places[m].children.into_iter().enumerate() {
             let Some(child) = child else { continue };
-            let used = self.used(tree, child);
+            let used = self.used[child];
             below.always |= used.is_nan() || used >= 1.0;
             let rest = 1.0 / (1.0 - used);
             let by = &self.below[child];
@@ -281,13 +310,9 @@ impl Quiet {
             more(&mut below.by_force[side], outside + inside * norms.across[side]);
             more(&mut below.by_force[1 - side], inside * norms.across[1 - side]);
             let moved = self.spans[child].to_centre * self.spans[m].to_origin;
-            let apart = &norms.forces - &self.norms[child].shapes[1 - side];
-            for j in 0..n {
+            for (j, apart) in norms.apart[side].1.iter().enumerate() {
                 let own = |i: usize| by.by_resultant[3 * (j / 3) + i] * moved[(i, j % 3)].abs();
                 let own = (0..3).map(own).sum::<f64>() * rest;
-                let apart = apart.columns(3 * (j / 3), 3) * self.spans[m].to_origin.column(j % 3);
-                let areas = self.spans[m].areas.iter().flat_map(|area| [area, area]);
-                let apart = apart.iter().zip(areas).map(|(force, area)| force.abs() / area).fold(0.0, f64::max);
                 more(&mut below.by_resultant[j], own + inside * apart);
             }
             let start = if side == 0 { 0 } else { 3 * tree.places[m].below[0] };
@@ -296,6 +321,17 @@ impl Quiet {
                 more(&mut below.by_twist[j], own + inside * across);
             }
         }
+    }
+
+    /// The greatest stress in the joint of a node beside those of the shape that the node below takes for them, for each
+    /// component of the redundants about its centre.
+    fn find_apart(&self, (m, side): (usize, usize), child: usize) -> Vec<f64> {
+        let apart = &self.norms[m].forces - &self.norms[child].shapes[1 - side];
+        let of = |j: usize| {
+            let own = apart.columns(3 * (j / 3), 3) * self.spans[m].to_origin.column(j % 3);
+            greatest(own.as_slice(), &self.spans[m].by_area)
+        };
+        (0..apart.ncols()).map(of).collect()
     }
 
     /// Forces of a joint from redundants with stresses that vary linearly over the points that are not open. `None`

@@ -160,14 +160,16 @@ fn visit(
 ) -> f64 {
     run.seen.push(m);
     let outer = std::mem::take(&mut run.tree.moved[m].rates);
-    run.out[m] = run.tree.tables[m].answer(&outer);
-    let forces = run.tree.tables[m].forces(&run.out[m]);
+    run.tree.tables[m].answer(&outer, &mut run.out[m]);
+    let mut forces = std::mem::take(&mut run.memory.forces);
+    run.tree.tables[m].forces(&run.out[m], &mut forces);
     for (side, child) in run.tree.places[m].children.into_iter().enumerate() {
         let Some(child) = child else { continue };
         let mut below = std::mem::take(&mut run.tree.moved[child].rates);
-        run.tree.hand_down((m, side), &outer, &forces, |i, value| below[i] = value);
+        below.clear();
+        run.tree.hand_down((m, side), &outer, &forces).into_iter().for_each(|part| below.extend_from_slice(part));
         run.tree.moved[child].rates = below;
-        let used = run.quiet.used(&run.tree, child);
+        let used = run.quiet.use_up(&run.tree, child);
         if used.is_nan() || used > USED {
             open.push(child);
         } else {
@@ -175,10 +177,11 @@ fn visit(
         }
     }
     run.tree.moved[m].rates = outer;
+    run.memory.forces = forces;
     let own = &run.quiet.own[m];
     let left = || {
-        let change = run.out[m].iter().zip(&own.reference).map(|(now, then)| (now - then).abs());
-        change.zip(&own.room).any(|(change, room)| change > USED * room)
+        let rates = run.out[m].iter().zip(&own.reference).zip(&own.room);
+        rates.fold(false, |left, ((now, then), room)| left | ((now - then).abs() > USED * room))
     };
     if own.always || left() {
         return examine(run, trace, m, changes);

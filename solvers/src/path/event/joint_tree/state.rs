@@ -49,6 +49,17 @@ pub struct Run {
     pub fresh: Vec<usize>,
     /// Modes before the present event.
     pub before: Vec<(usize, ContactMode)>,
+    /// Memory that is used again and again.
+    pub memory: Memory,
+}
+
+/// Of one joint.
+#[derive(Default)]
+pub struct Memory {
+    /// Forces of its points.
+    pub forces: Vec<f64>,
+    /// What it did.
+    gained: Vec<f64>,
 }
 
 impl Run {
@@ -85,6 +96,7 @@ impl Run {
             stale: (0..count).collect(),
             fresh: Vec::new(),
             before: Vec::new(),
+            memory: Memory::default(),
         })
     }
 
@@ -124,10 +136,12 @@ impl Run {
             return Vec::new();
         }
         let mut pending = std::mem::take(&mut self.tree.moved[m].pending);
-        let mut out = self.tree.tables[m].answer(&pending);
-        self.balance(trace, m, &mut out);
+        let (mut out, mut forces) = (std::mem::take(&mut self.memory.gained), std::mem::take(&mut self.memory.forces));
+        self.tree.tables[m].answer(&pending, &mut out);
+        self.balance(trace, m, &mut out, &mut forces);
         let (table, joint) = (&self.tree.tables[m], &self.tree.joints[m]);
-        let (forces, n) = (table.forces(&out), out.len());
+        table.forces(&out, &mut forces);
+        let n = out.len();
         let mut openings = vec![0.0; joint.contacts.len()];
         let mut dissipated = 0.0;
         for (k, &c) in joint.contacts.iter().enumerate() {
@@ -139,13 +153,13 @@ impl Run {
             let [_, gap] = table.point(k, &out);
             openings[k] = dot(mode.opening(facets, self.senses[c]), gap);
             let flows = match mode {
-                ContactMode::Facet(f) => vec![f],
-                ContactMode::Corner(i, j) => vec![i, j],
-                _ => Vec::new(),
+                ContactMode::Facet(f) => [Some(f), None],
+                ContactMode::Corner(i, j) => [Some(i), Some(j)],
+                _ => continue,
             };
             // Flow is associated: its work is its rate by the bound. Opening is reversible.
-            for (f, rate) in flows.iter().zip(mode.unknowns(facets, gap)) {
-                let facet = &facets[*f as usize];
+            for (f, rate) in flows.into_iter().flatten().zip(mode.unknowns(facets, gap)) {
+                let facet = &facets[f as usize];
                 if facet.mode != FacetMode::Opening {
                     dissipated += rate * facet.bound;
                 }
@@ -156,30 +170,38 @@ impl Run {
         for (side, child) in self.tree.places[m].children.into_iter().enumerate() {
             let Some(child) = child else { continue };
             let mut below = std::mem::take(&mut self.tree.moved[child].pending);
-            self.tree.hand_down((m, side), &pending, &forces, |i, value| below[i] += value);
+            let parts = self.tree.hand_down((m, side), &pending, &forces);
+            let mut rest = below.as_mut_slice();
+            for part in parts {
+                let (own, after) = rest.split_at_mut(part.len());
+                own.iter_mut().zip(part).for_each(|(own, value)| *own += value);
+                rest = after;
+            }
             (self.tree.moved[child].pending, self.tree.moved[child].any) = (below, true);
         }
+        (self.memory.gained, self.memory.forces) = (out, forces);
         pending.fill(0.0);
         self.tree.moved[m].pending = pending;
         openings
     }
 
     /// Takes out what increments leave of the joint's resultant.
-    fn balance(&self, trace: &Trace, m: usize, out: &mut [f64]) {
+    fn balance(&self, trace: &Trace, m: usize, out: &mut [f64], forces: &mut Vec<f64>) {
         if self.tree.places[m].weak.last() == Some(&m) {
             return;
         }
         let (table, joint, statics) = (&self.tree.tables[m], &self.tree.joints[m], &self.tree.statics[m]);
-        let mut forces = table.forces(out);
-        for (k, &c) in joint.contacts.iter().enumerate() {
+        table.forces(out, forces);
+        for (own, &c) in forces.chunks_exact_mut(2).zip(&joint.contacts) {
             let force = trace.state.force(c);
-            (0..2).for_each(|i| forces[2 * k + i] += force[i]);
+            (own[0], own[1]) = (own[0] + force[0], own[1] + force[1]);
         }
-        let first = out.len() - 3;
+        let (first, n) = (out.len() - 3, out.len());
         for i in 0..3 {
             let given: f64 = (0..statics.ncols()).map(|j| statics[(i, j)] * self.progress.place[j]).sum();
-            let left = self.progress.resultants[m][i] + given - joint.resultant(i, &forces);
-            out.iter_mut().zip(table.local.column(first + i).iter()).for_each(|(out, by)| *out += by * left);
+            let left = self.progress.resultants[m][i] + given - joint.resultant(i, forces);
+            let by = &table.local.as_slice()[n * (first + i)..n * (first + i + 1)];
+            out.iter_mut().zip(by).for_each(|(out, by)| *out += by * left);
         }
     }
 

@@ -264,15 +264,14 @@ impl Tree {
         Some((all, displacement))
     }
 
-    /// Outer unknowns of a node on a side below, from those of this one and the forces of its joint.
-    pub fn hand_down(&self, (m, side): (usize, usize), outer: &[f64], forces: &[f64], mut add: impl FnMut(usize, f64)) {
+    /// Outer unknowns of a node on a side below, part by part, from those of this one and the forces of its joint.
+    pub fn hand_down<'a>(&self, (m, side): (usize, usize), outer: &'a [f64], forces: &'a [f64]) -> [&'a [f64]; 4] {
         let [a, b] = self.outer(m);
         let base = self.redundants() + 1;
         let [first, second] = if side == 0 { [&outer[..a], forces] } else { [forces, &outer[a..a + b]] };
         let twists = a + b + base + if side == 0 { 0 } else { 3 * self.places[m].below[0] };
         let twists = &outer[twists..twists + 3 * self.places[m].below[side]];
-        let all = first.iter().chain(second).chain(&outer[a + b..a + b + base]).chain(twists);
-        all.enumerate().for_each(|(i, v)| add(i, *v));
+        [first, second, &outer[a + b..a + b + base], twists]
     }
 
     /// The nodes from the root to that of a joint.

@@ -1,0 +1,171 @@
+"""Scenes that Voussoir and other programs are measured on: a study file, and the same polygons as a linear program."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+STUDY = """name = "{name}"
+[scene]
+{scene}
+width = 1.0
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = {density}
+[joints.dry]
+law = "{law}"
+friction = {friction}
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{load}]
+[solver]
+solver = "{solver}"
+[output]
+figures = "none"
+[[variants]]
+name = "voussoir"
+set = {{}}
+"""
+
+RING = dict(span=9.42, rise=2.99, thickness=0.60, density=2200.0, friction=0.6)
+BRICK = (0.4, 0.175)
+WALLS = {
+    "wall 1": [[0.5, 1, 1, 1, 1, 0.5], [1] * 5] * 3,
+    "wall 2": [[0.5, 1, 1, 1, 1, 0.5], [1] * 5] * 5,
+    "wall 3": [[1] * 4, [0.5, 1, 1, 1, 0.5], [1] * 4]
+    + [[0.5, 1, -1, 1, 0.5], [1, 0.5, -1, 0.5, 1]] * 2
+    + [[0.5, 1, -1, 1, 0.5], [1] * 4, [0.5, 1, 1, 1, 0.5], [1] * 4],
+    "wall 4": [[0.5, 1, 1, 1, 1, 0.5], [1] * 5, [0.5, 1, 1, 1, 1, 0.5]]
+    + [[1, -1, 1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5, -1, 0.5, 0.5]] * 2
+    + [[1, -1, 1, -1, 1], [0.5, 1, 1, 1, 1, 0.5], [1] * 5, [0.5, 1, 1, 1, 1, 0.5]],
+}
+
+
+@dataclass
+class Scene:
+    """A scene as a study and as data of linear programs, forces in units of the greatest weight."""
+
+    name: str
+    study: str
+    equilibrium: sp.csc_matrix  # E r + w + λ p = 0, three rows a block; r = (N0, N1, T) of each joint, N > 0 presses
+    fixed: np.ndarray
+    varying: np.ndarray
+    friction: float
+    unit: float  # what λ = 1 of `varying` is in the study's factor
+
+
+def program(polygons, joints, fixed, varying):
+    """Matrices from polygons, joints (minus, plus, end 0, end 1, normal from minus to plus) and wrenches of blocks."""
+    rows, columns, values = [], [], []
+    for index, (minus, plus, ends, normal) in enumerate(joints):
+        tangent = (-normal[1], normal[0])
+        forces = [(ends[0], normal), (ends[1], normal), (ends[0], tangent)]
+        for k, (at, force) in enumerate(forces):
+            wrench = (force[0], force[1], at[0] * force[1] - at[1] * force[0])
+            for block, sign in ((plus, 1.0), (minus, -1.0)):
+                if block is not None:
+                    for i in range(3):
+                        rows.append(3 * block + i)
+                        columns.append(3 * index + k)
+                        values.append(sign * wrench[i])
+    shape = (3 * len(polygons), 3 * len(joints))
+    return sp.csc_matrix((values, (rows, columns)), shape=shape), np.array(fixed).ravel(), np.array(varying).ravel()
+
+
+def area_and_centre(polygon):
+    """Of a simple polygon, anticlockwise."""
+    twice, x, y = 0.0, 0.0, 0.0
+    for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]):
+        cross = ax * by - bx * ay
+        twice, x, y = twice + cross, x + cross * (ax + bx), y + cross * (ay + by)
+    return twice / 2, (x / (3 * twice), y / (3 * twice))
+
+
+def ring(count):
+    """A segmental ring of equal voussoirs with straight sides, jointed to its abutments; a load above quarter span."""
+    s, r, t = RING["span"], RING["rise"], RING["thickness"]
+    radius = (s * s / 4 + r * r) / (2 * r)
+    half = math.asin(s / 2 / radius) if r <= s / 2 else math.pi - math.asin(s / 2 / radius)
+    angles = [-half + 2 * half * k / count for k in range(count + 1)]
+    inside = [(radius * math.sin(a), radius * math.cos(a) - radius + r) for a in angles]
+    outside = [((radius + t) * math.sin(a), (radius + t) * math.cos(a) - radius + r) for a in angles]
+    polygons = [[inside[k + 1], outside[k + 1], outside[k], inside[k]] for k in range(count)]
+    weights, load_x = [], -s / 4
+    for polygon in polygons:
+        area, centre = area_and_centre(polygon)
+        weights.append((area * RING["density"] * 9.81, centre))
+    unit = max(w for w, _ in weights)
+    fixed = [(0.0, -w / unit, -w / unit * c[0]) for w, c in weights]
+    loaded = next(k for k in range(count) if outside[k][0] <= load_x < outside[k + 1][0])
+    varying = [(0.0, -1.0, -load_x) if k == loaded else (0.0, 0.0, 0.0) for k in range(count)]
+    joints = []
+    for k, a in enumerate(angles):
+        normal = (math.cos(a), -math.sin(a))
+        joints.append((k - 1 if k > 0 else None, k if k < count else None, (inside[k], outside[k]), normal))
+    scene = f'scene = "arch"\nprofile = {{ shape = "segmental", span = {s}, rise = {r} }}\n'
+    scene += f'thickness = {t}\nvoussoirs = {count}\nends = "jointed"'
+    load = '{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }'
+    law = "coulomb_associated"
+    text = STUDY.format(name=f"ring {count}", scene=scene, load=load, law=law, solver="auto", **pick(RING))
+    matrices = program(polygons, joints, fixed, varying)
+    return Scene(f"ring of {count}", text, *matrices, RING["friction"], unit / 1000.0)
+
+
+def pick(data):
+    """Density and friction alone."""
+    return {key: data[key] for key in ("density", "friction")}
+
+
+def wall(rows, name, law="coulomb_associated", solver="auto"):
+    """A wall of courses from below, lengths in bricks, an opening where negative; pushed sideways by its weight."""
+    data = dict(density=2000.0, friction=0.65)
+    length, height = BRICK
+    polygons, courses = [], []
+    for level, row in enumerate(rows):
+        left, course = 0.0, []
+        for part in row:
+            right = left + abs(part) * length
+            if part > 0:
+                course.append((left, right, len(polygons)))
+                low, high = level * height, (level + 1) * height
+                polygons.append([(left, low), (right, low), (right, high), (left, high)])
+            left = right
+        courses.append(course)
+    joints = []
+    for level, course in enumerate(courses):
+        low, high = level * height, (level + 1) * height
+        for (_, x, a), (start, _, b) in zip(course, course[1:]):
+            if abs(x - start) < 1e-9:
+                joints.append((a, b, ((x, low), (x, high)), (1.0, 0.0)))
+        for left, right, block in course:
+            below = courses[level - 1] if level else [(left, right, None)]
+            for start, end, under in below:
+                a, b = max(left, start), min(right, end)
+                if b - a > 1e-9:
+                    joints.append((under, block, ((a, low), (b, low)), (0.0, 1.0)))
+    measured = [area_and_centre(polygon) for polygon in polygons]
+    unit = max(area for area, _ in measured)
+    fixed = [(0.0, -a / unit, -a / unit * c[0]) for a, c in measured]
+    varying = [(a / unit, 0.0, -a / unit * c[1]) for a, c in measured]
+    scene = f'scene = "wall"\nbrick = [{length}, {height}]\nrows = {rows}'
+    load = '{ kind = "body", acceleration = [9.81, 0.0] }'
+    text = STUDY.format(name=name, scene=scene, load=load, law=law, solver=solver, **data)
+    return Scene(name, text, *program(polygons, joints, fixed, varying), data["friction"], 1.0)
+
+
+def running_bond(side):
+    """Courses of a wall of side × side bricks."""
+    return [[1] * side if level % 2 == 0 else [0.5] + [1] * (side - 1) + [0.5] for level in range(side)]
+
+
+def friction_rows(count, friction):
+    """±T − μ (N0 + N1) ≤ 0 for each joint."""
+    one = sp.csc_matrix([[-friction, -friction, 1.0], [-friction, -friction, -1.0]])
+    return sp.kron(sp.identity(count), one, format="csc")

@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+"""How run time and memory grow, and what each reduction is worth: whole processes of `voussoir run`.
+
+    cargo build --release -p voussoir
+    python3 benches/scaling.py [--voussoir target/release/voussoir] [--most 1e5] [--runs 2]
+
+writes docs/scaling.csv and docs/scaling.svg, and from the CSV the part of docs/performance.md between its two marks. With
+`--page` nothing is measured: the page is written from the CSV as it is. Processor time is user + system of the process; least of
+`--runs`. Needs nothing but Python.
+"""
+
+import argparse
+import csv
+import json
+import math
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from datetime import date
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+TABLE, FIGURE, PAGE = ROOT / "docs/scaling.csv", ROOT / "docs/scaling.svg", ROOT / "docs/performance.md"
+MARKS = "<!-- from scaling.csv: benches/scaling.py -->", "<!-- end of scaling.csv -->"
+KEYS = ["part", "name", "size", "seconds", "memory_mb", "factor", "status", "date", "machine", "commit"]
+
+STAGES = """
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{load}]
+[output]
+writers = []
+"""
+
+
+def arch(voussoirs=13, joint='law = "coulomb_associated"\nfriction = 0.6', material='law = "rigid"', ends="jointed", solver="auto", mesh="", sweep=""):
+    load = '{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }'
+    return f"""name = "arch"
+[scene]
+scene = "arch"
+profile = {{ shape = "segmental", span = 9.42, rise = 2.99 }}
+thickness = 0.6
+width = 5.81
+voussoirs = {voussoirs}
+ends = "{ends}"
+material = "stone"
+joint = "dry"
+{mesh}
+[materials.stone]
+{material}
+density = 2200.0
+[joints.dry]
+{joint}
+[solver]
+solver = "{solver}"
+{STAGES.format(load=load)}{sweep}"""
+
+
+def wall(side, friction=0.65):
+    return f"""name = "wall"
+[scene]
+scene = "wall"
+width = 1.0
+brick = [0.4, 0.175]
+courses = {side}
+bricks = {side}
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+law = "coulomb_associated"
+friction = {friction}
+{STAGES.format(load='{ kind = "body", acceleration = [9.81, 0.0] }')}"""
+
+
+ELASTIC = 'law = "elastic"\nyoung_modulus = 5e9\npoisson_ratio = 0.3'
+COMPLIANT = 'law = "coulomb_associated"\nfriction = 0.6\nnormal_stiffness = 2e10\nshear_stiffness = 8e9'
+SIZES = {
+    "voussoirs, `limit_chain`": ([10, 100, 1000, 10_000, 100_000], lambda n: arch(n)),
+    "voussoirs, `limit_conic`": ([10, 100, 1000, 10_000, 100_000], lambda n: arch(n, solver="limit_conic")),
+    "bricks, `limit_conic`": ([100, 400, 1024, 2500, 10_000], lambda n: wall(math.isqrt(n))),
+    "compliant joints, `event_path`": ([10, 30, 100, 300], lambda n: arch(n, COMPLIANT, solver="event_path")),
+    "compliant joints, `newton_path`": ([10, 30, 100, 300], lambda n: arch(n, COMPLIANT, solver="newton_path")),
+    "elastic voussoirs, `event_path`": ([10, 30, 100], lambda n: arch(n, material=ELASTIC, solver="event_path")),
+    "elastic voussoirs, `newton_path`": ([10, 30, 100], lambda n: arch(n, material=ELASTIC, solver="newton_path")),
+}
+
+
+def sweep(count):
+    return f'[sweep]\n"scene.profile.rise" = {{ from = 2.6, to = 4.0, count = {count} }}\n'
+
+
+# What a study may be spared, and the same question with it: name, spared, not spared.
+REDUCTIONS = [
+    ("an arch is a chain: `limit_chain`, not `limit_conic`, 1000 voussoirs", arch(1000), arch(1000, solver="limit_conic")),
+    ("blocks are rigid where the load does not depend on their stiffness", arch(), arch(material=ELASTIC, solver="event_path")),
+    ("no sliding rows where friction is never reached", arch(1000, 'law = "unilateral"', solver="limit_conic"), arch(1000, 'law = "coulomb_associated"\nfriction = 1e3', solver="limit_conic")),
+    ("a mesh of 2 × 3 elements where any gives the same load", arch(material=ELASTIC, mesh="mesh = { elements = [2, 3], order = 2 }", solver="event_path"), arch(material=ELASTIC, mesh="mesh = { elements = [4, 6], order = 2 }", solver="event_path")),
+]
+
+
+def run(program, text, runs, jobs=1):
+    """Least processor time, memory and answer of a study."""
+    best = None
+    with tempfile.TemporaryDirectory() as folder:
+        study = Path(folder, "study.toml")
+        study.write_text(text)
+        for turn in range(runs):
+            out = Path(folder, str(turn))
+            command = [program, "run", study, "--out", out, "--quiet", "--jobs", str(jobs)]
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            _, _, used = os.wait4(process.pid, 0)
+            seconds = used.ru_utime + used.ru_stime
+            if best is None or seconds < best[0]:
+                best = seconds, used.ru_maxrss / 1024
+        # By another process: what this one has in memory counts for those that it starts.
+        read = "import json, sys; case = json.load(open(sys.argv[1]))['cases'][0]; print(json.dumps([case.get('load_factor'), case['status']]))"
+        said = subprocess.run([sys.executable, "-c", read, out / "results.json"], capture_output=True, check=True)
+    return *best, *json.loads(said.stdout)
+
+
+def measured(program, most, runs):
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    load = ", ".join(f"{x:.0f}" for x in os.getloadavg()[:1])
+    machine = f"{platform.machine()}, {os.cpu_count()} cores, load {load}"
+    said = {"date": date.today().isoformat(), "machine": machine, "commit": commit}
+
+    def row(part, name, size, answer):
+        seconds, memory, factor, status = answer
+        print(part, name, size, f"{seconds:.3f} s", f"{memory:.0f} MB", factor, status, flush=True)
+        return dict(zip(KEYS, [part, name, size, f"{seconds:.4f}", f"{memory:.1f}", repr(factor), status])) | said
+
+    for name, (sizes, text) in SIZES.items():
+        for size in sizes:
+            if size <= most:
+                yield row("growth", name, size, run(program, text(size), 1 if size >= 1e4 else runs))
+    for name, with_it, without in REDUCTIONS:
+        for size, text in [("with", with_it), ("without", without)]:
+            yield row("reduction", name, size, run(program, text, runs))
+    for count in [10, 100, 1000, 10_000]:
+        for jobs in [1, 2]:
+            answer = run(program, arch(sweep=sweep(count)), 1, jobs)
+            yield row("cases", f"cases, {jobs} job{'s' * (jobs > 1)}", count, answer)
+
+
+def exponent(rows):
+    """Of the three greatest sizes, by least squares on logarithms."""
+    rows = rows[-3:]
+    x, y = [math.log(float(r["size"])) for r in rows], [math.log(float(r["seconds"])) for r in rows]
+    mx, my = sum(x) / len(x), sum(y) / len(y)
+    return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+
+
+def by_name(rows, part):
+    names = dict.fromkeys(r["name"] for r in rows if r["part"] == part)
+    return {name: [r for r in rows if r["part"] == part and r["name"] == name] for name in names}
+
+
+def short(x):
+    return f"{float(x):.2g}" if float(x) < 10 else f"{float(x):.0f}"
+
+
+def tables(rows):
+    first = rows[0]
+    yield f"Made by `benches/scaling.py`. Whole processes of `voussoir run`, processor time (user and system), {first['date']}, commit {first['commit']},"
+    yield f"{first['machine']} (one of several at work). Every answer but those of cases is certified. Raw: [scaling.csv](scaling.csv).\n"
+    yield "| | size: seconds (MB) | exponent |\n|---|---|---|"
+    for part in ["growth", "cases"]:
+        for name, own in by_name(rows, part).items():
+            sizes = "; ".join(f"{int(r['size']):,}: {short(r['seconds'])} ({short(r['memory_mb'])})".replace(",", " ") for r in own)
+            yield f"| {name} | {sizes} | {exponent(own):.2f} |"
+    yield "\nExponents are fitted to the three greatest sizes.\n\n![Processor time over size](scaling.svg)\n"
+    yield "What a study is spared, against the same question with it:\n"
+    yield "| reduction | with [s] | without [s] | worth | factors differ by |\n|---|---|---|---|---|"
+    for name, own in by_name(rows, "reduction").items():
+        a, b = own
+        apart = abs(float(a["factor"]) / float(b["factor"]) - 1)
+        yield f"| {name} | {short(a['seconds'])} | {short(b['seconds'])} | {float(b['seconds']) / float(a['seconds']):.1f} × | {apart:.0e} |"
+
+
+def figure(rows):
+    """Seconds over size, both logarithmic."""
+    lines = {name: own for part in ["growth", "cases"] for name, own in by_name(rows, part).items()}
+    points = [(float(r["size"]), float(r["seconds"])) for own in lines.values() for r in own]
+    x0, x1 = 0.9, math.log10(max(p[0] for p in points)) + 0.1
+    y0, y1 = math.floor(math.log10(min(p[1] for p in points))), math.ceil(math.log10(max(p[1] for p in points)))
+    at = lambda size, seconds: (60 + 440 * (math.log10(size) - x0) / (x1 - x0), 330 - 310 * (math.log10(seconds) - y0) / (y1 - y0))
+    colours = ["#1b6ca8", "#c8553d", "#2a9d8f", "#8e5ea2", "#e09f3e", "#555555", "#7fb069", "#d1495b", "#30638e"]
+    yield '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 380" font-family="sans-serif" font-size="12">'
+    yield '<rect width="760" height="380" fill="white"/>'
+    for power in range(1, int(x1) + 1):
+        x = at(10**power, 1)[0]
+        yield f'<path d="M{x:.1f} 20V330" stroke="#ddd"/><text x="{x:.1f}" y="347" text-anchor="middle">1e{power}</text>'
+    for power in range(y0, y1 + 1):
+        y = at(10, 10**power)[1]
+        yield f'<path d="M60 {y:.1f}H500" stroke="#ddd"/><text x="54" y="{y + 4:.1f}" text-anchor="end">1e{power}</text>'
+    yield '<text x="280" y="368" text-anchor="middle">number</text>'
+    yield '<text x="16" y="175" text-anchor="middle" transform="rotate(-90 16 175)">processor time [s]</text>'
+    for (name, own), colour, row in zip(lines.items(), colours, range(20)):
+        path = [at(float(r["size"]), float(r["seconds"])) for r in own]
+        yield f'<polyline fill="none" stroke="{colour}" stroke-width="2" points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in path)}"/>'
+        yield from (f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>' for x, y in path)
+        yield f'<path d="M515 {36 + 22 * row}h18" stroke="{colour}" stroke-width="2"/><text x="538" y="{40 + 22 * row}">{name.replace("`", "")}</text>'
+    yield "</svg>"
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    options.add_argument("--voussoir", default=str(ROOT / "target/release/voussoir"))
+    options.add_argument("--most", type=float, default=1e5, help="no greater sizes")
+    options.add_argument("--runs", type=int, default=2)
+    options.add_argument("--page", action="store_true", help="only write the page from the CSV")
+    given = options.parse_args()
+    if not given.page:
+        rows = list(measured(given.voussoir, given.most, given.runs))
+        with TABLE.open("w", newline="") as file:
+            writer = csv.DictWriter(file, KEYS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+    with TABLE.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    FIGURE.write_text("\n".join(figure(rows)) + "\n")
+    before, rest = PAGE.read_text().split(MARKS[0])
+    after = rest.split(MARKS[1])[1]
+    PAGE.write_text(before + MARKS[0] + "\n" + "\n".join(tables(rows)) + "\n" + MARKS[1] + after)
+
+
+if __name__ == "__main__":
+    main()

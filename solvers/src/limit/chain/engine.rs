@@ -1,0 +1,109 @@
+//! The engine of `limit_chain`, to which `limit_conic` turns where its programs do not settle.
+
+use super::layout::{Forms, Trees, trees};
+use super::optimum::centre;
+use super::simplex::{Outcome, Program, Solved};
+use crate::limit::engine::{Engine, Equilibrium, Greatest};
+use crate::limit::scale::{force_scale, force_unit, with_unit_power};
+use voussoir_core::limit::{Counters, JointForce, LimitProblem};
+use voussoir_core::model::Wrenches;
+
+/// The three optimisations over redundants.
+pub struct ChainEngine<'a> {
+    problem: &'a LimitProblem,
+    trees: Trees,
+    pivots: u64,
+    newton_iterations: u64,
+    programs: u64,
+}
+
+impl<'a> ChainEngine<'a> {
+    /// Of a problem, if few joints close its bodies to rings.
+    pub fn new(problem: &'a LimitProblem) -> Option<Self> {
+        Some(ChainEngine { problem, trees: trees(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
+    }
+
+    /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given.
+    fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>) -> Equilibrium {
+        let force = force_unit(self.problem, fixed);
+        let columns: Vec<_> = varying.iter().map(|v| (*v, force / force_unit(self.problem, v))).collect();
+        let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &columns, force);
+        let program = Program::new(self.problem, &forms, force).with_margin();
+        match self.run(&program) {
+            Outcome::Optimal(solved) if solved.value >= -1e-12 => Equilibrium::Field(program.forces(&solved.point)),
+            Outcome::Optimal(solved) => {
+                let (columns, _) = centre(&program, &solved.point, solved.columns);
+                Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns))
+            }
+            // Rows that pin T to zero have no margin: they alone may refute equilibrium.
+            Outcome::Infeasible(columns) => Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns)),
+            Outcome::Unbounded(_) => Equilibrium::Failed("the margin program has no optimum".into()),
+            Outcome::Failed(why) => Equilibrium::Failed(why),
+        }
+    }
+
+    fn run(&mut self, program: &Program) -> Outcome {
+        self.programs += 1;
+        let (outcome, work) = program.solve();
+        self.pivots += work.pivots;
+        self.newton_iterations += work.newton_iterations;
+        outcome
+    }
+}
+
+impl Engine for ChainEngine<'_> {
+    fn admissible(&mut self, loads: &Wrenches) -> Equilibrium {
+        self.margin(loads, None)
+    }
+
+    fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium {
+        self.margin(fixed, Some(varying))
+    }
+
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+        let force = force_scale(self.problem, fixed, varying);
+        let factor_unit = force / force_unit(self.problem, varying);
+        let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &[(varying, factor_unit)], force);
+        let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
+        match self.run(&program) {
+            Outcome::Optimal(Solved { columns, capped: false, .. }) if columns.is_empty() => {
+                Greatest::Failed("the optimum of the simplex has no mechanism".into())
+            }
+            Outcome::Optimal(Solved { value, point, columns, capped: false }) => {
+                let (columns, unique) = centre(&program, &point, columns);
+                let motion = program.motion(self.problem, &self.trees, &columns);
+                Greatest::Collapse {
+                    factor: value * factor_unit,
+                    field: program.forces(&point),
+                    motion: with_unit_power(varying, motion),
+                    unique,
+                }
+            }
+            Outcome::Optimal(Solved { point, .. }) => Greatest::Capped(program.forces(&point)),
+            Outcome::Unbounded(direction) => {
+                let forces = program.directions(&direction);
+                Greatest::Unbounded(
+                    forces
+                        .into_iter()
+                        .map(|f| JointForce { normal: f.normal.map(|n| n / factor_unit), shear: f.shear / factor_unit })
+                        .collect(),
+                )
+            }
+            Outcome::Infeasible(_) => {
+                Greatest::Failed("no admissible field: the start is on the verge of collapse".into())
+            }
+            Outcome::Failed(why) => Greatest::Failed(why),
+        }
+    }
+
+    fn counters(&self) -> Counters {
+        [
+            ("programs", self.programs),
+            ("pivots", self.pivots),
+            ("newton_iterations", self.newton_iterations),
+            ("factorisations", 0),
+        ]
+        .map(|(name, count)| (name.to_string(), count))
+        .into()
+    }
+}

@@ -1,0 +1,111 @@
+//! The programs of a sequence by the simplex method, each from the basis of the one before.
+//!
+//! They differ in the bounds of rows alone: fictitious cohesion moves with the normal forces. A basis that was the best
+//! stays one that no multiplier contradicts, and a few pivots of the dual simplex method lead to the next vertex.
+
+use crate::limit::engine::Greatest;
+use crate::limit::systems::{LARGEST, Systems, greatest_shares};
+use crate::optimise::dense_simplex::{Dictionary, Feasibility};
+use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
+
+/// A field moved onto the yield surface is admissible to this.
+pub const ADMISSIBLE: f64 = 1e-12;
+/// A mechanism flows to this.
+const FLOWS: f64 = 1e-11;
+/// Multiplier from which a row costs something.
+const COSTLY: f64 = 1e-9;
+/// Pivots of one program at the most.
+const PIVOTS: u64 = 20_000;
+
+/// Programs with associated rows that differ in their bounds.
+pub struct Vertices {
+    statics: Dictionary,
+    /// The rows of the present program: those that flow otherwise stand with their flow as normal.
+    systems: Systems,
+    /// What a unit of each slack adds to the weighted sum of fictitious cohesion.
+    weights: Vec<(usize, f64)>,
+}
+
+impl Vertices {
+    /// With the bounds of the laws themselves. `None` in scenes too large for dense dictionaries and with joints that crush.
+    pub fn new(problem: &LimitProblem, systems: &Systems) -> Option<Self> {
+        if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
+            return None;
+        }
+        let mut systems = systems.clone();
+        systems.pairs.iter_mut().for_each(|pair| pair.normal.clone_from(&pair.flow));
+        let weights = cohesion_weights(problem, &systems);
+        Some(Vertices { statics: systems.statics(None)?, systems, weights })
+    }
+
+    /// The greatest factor with fictitious cohesion d·r ≤ b + (d − a)·r̄, rows of `own` being the laws': a vertex of its
+    /// fields. `None` where rounding spoils it.
+    pub fn greatest(
+        &mut self,
+        problem: &LimitProblem,
+        own: &Systems,
+        reference: &[JointForce],
+        counters: &mut Counters,
+    ) -> Option<Greatest> {
+        let z = own.force_variables(reference);
+        let along = |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(j, v)| v * z[j]).sum() };
+        let mut moved = Vec::new();
+        for (i, (pair, law)) in self.systems.pairs.iter_mut().zip(&own.pairs).enumerate() {
+            if law.non_associated() {
+                let bound = law.bound + (along(&law.flow) - along(&law.normal)).max(0.0);
+                moved.push((i, bound - pair.bound));
+                pair.bound = bound;
+            }
+        }
+        self.statics.relax(&moved);
+        let before = self.statics.pivots;
+        let greatest = self.vertex(problem);
+        *counters.entry("pivots".into()).or_default() += self.statics.pivots - before;
+        greatest
+    }
+
+    fn vertex(&mut self, problem: &LimitProblem) -> Option<Greatest> {
+        let (statics, systems) = (&mut self.statics, &self.systems);
+        if statics.feasible() != Feasibility::Point {
+            return None;
+        }
+        let primary = [(systems.theta(), -1.0)];
+        let (_, true) = statics.minimise(&primary, PIVOTS)? else { return None };
+        let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
+        least_cohesion(statics, &gamma, &self.weights);
+        let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
+        // The costs of the factor again, from which the next program goes on.
+        statics.minimise(&primary, 0);
+        let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
+        let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
+        let (motion, wrong) = systems.motion(problem, &moving)?;
+        (violation <= ADMISSIBLE && wrong <= FLOWS).then(|| Greatest::Collapse {
+            factor: z[systems.forces] * systems.unit,
+            field: systems.joint_forces(&z),
+            motion,
+            unique: false,
+        })
+    }
+}
+
+/// From a vertex with the greatest factor to the one where normal forces give the least cohesion to the next program: where
+/// fields are many, which vertex the pivots meet depends on how joints are numbered, and this one does not.
+fn least_cohesion(statics: &mut Dictionary, gamma: &[f64], weights: &[(usize, f64)]) {
+    let costly: Vec<usize> = (0..gamma.len()).filter(|&i| gamma[i] > COSTLY).collect();
+    costly.iter().for_each(|&i| statics.fix(i, true));
+    statics.minimise(weights, PIVOTS);
+    costly.iter().for_each(|&i| statics.fix(i, false));
+}
+
+/// (d − a)·r of all rows that flow otherwise, as weights of the slacks of openings, s_k = b_k + N_k. Joints far from the middle
+/// of the scene count more: with equal weights fields are many again.
+fn cohesion_weights(problem: &LimitProblem, systems: &Systems) -> Vec<(usize, f64)> {
+    let far = |joint: &LimitJoint| (joint.ends[0] + joint.ends[1] - 2.0 * problem.pole).norm();
+    let mean = problem.joints.iter().map(far).sum::<f64>() / problem.joints.len() as f64;
+    let mut weights = vec![0.0; systems.pairs.len()];
+    for pair in systems.pairs.iter().filter(|pair| pair.relief > 0.0) {
+        let weight = if mean > 0.0 { 1.0 + far(&problem.joints[pair.joint]) / mean } else { 1.0 };
+        pair.openings.iter().for_each(|&k| weights[k] += pair.relief * weight);
+    }
+    weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0).collect()
+}
