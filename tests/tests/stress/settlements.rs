@@ -305,6 +305,24 @@ fn supports_that_rigid_blocks_cannot_follow() {
     }
 }
 
+/// A path that folds sharply does not go back the way it came: half the step gives 11 709.692.
+#[test]
+fn a_sharp_fold_is_passed_in_the_right_sense() {
+    let (stratum, scene) = scene(1463);
+    let result = answered(&scene.study(&keys(&stratum, "")));
+    let found = factor(&result).expect("an answer");
+    assert!((found - 11_709.692).abs() <= 1e-4 * found, "{found} {:?}", result.notes);
+}
+
+/// A settlement that goes no further by itself at a corner snaps, and goes on to where it is told.
+#[test]
+fn a_settlement_that_turns_back_at_a_corner_snaps() {
+    let (stratum, scene) = scene(1904);
+    let result = answered(&scene.settlement_only(&keys(&stratum, "")));
+    assert_eq!((result.status, result.certificate.passed), (Status::Stands, true), "{:?}", result.notes);
+    assert!(result.notes.iter().any(|note| note.contains("snaps")), "{:?}", result.notes);
+}
+
 /// CASES=N tries N cases from FIRST on.
 #[test]
 #[ignore = "long; 6 of the first 400 cases are refused"]

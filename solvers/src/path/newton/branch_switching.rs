@@ -76,6 +76,16 @@ pub(super) fn branch_beyond_fold(
         tracer.system.count("branches", 1);
         return Ok(Some(found));
     }
+    if let Some((other, modes)) = &own
+        && !continues(tracer, following, other, modes)
+    {
+        // At a sharp fold the modes beyond it are right and the sense is not: that of the factor tells it.
+        let reversed = other.scaled(-1.0);
+        if agrees(tracer, &reversed, modes, share) && continues(tracer, following, &reversed, modes) {
+            tracer.system.count("sharp_folds", 1);
+            return Ok(Some((reversed, modes.clone())));
+        }
+    }
     let state = tracer.state.clone();
     match limit_point_test(&mut tracer.system, &state, rate.factor.signum()) {
         // Where the load falls anyway, unloading is a rate of the same sense: one of several, and none that is wanted.

@@ -7,7 +7,7 @@ use super::limit_point::{above_all, falling_branch, not_followed, rising_branch}
 use super::peak::note_peak;
 use super::state::Tangent;
 use super::system::StepFailure;
-use super::termination::no_step;
+use super::termination::{no_step, snaps};
 use super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::trial::{StepPlan, first_slip};
 use voussoir_core::limit::Status;
@@ -30,6 +30,8 @@ pub(super) enum AfterFailure {
     CutBack(f64),
     /// A corner of the path: another branch.
     Corner(Branch),
+    /// A snap: a settlement goes no further by itself, on this rate it goes back.
+    Snap(Tangent),
     /// Nothing.
     Ended(LoadStepEnding),
 }
@@ -112,6 +114,9 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
         return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
     }
     let grew = following.slope > 0.0;
+    if falls && grew && following.orientation.is_some() && snaps(tracer, following.load_step) {
+        return Some(AfterFailure::Snap(tangent));
+    }
     if falls
         && grew
         && let Some(falling) = falling_branch(tracer, &state, direction)

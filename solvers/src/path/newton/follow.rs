@@ -13,16 +13,15 @@ use super::response::branch_changes;
 use super::slip_history::missed_slip;
 use super::softening::{dissipating_sense, softening_peak};
 use super::stable_branch::{Departure, leave_unstable};
-use super::state::{State, Tangent};
+use super::state::Tangent;
 use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
 use super::tangent::{modes_ahead, tangent_at};
-use super::termination::{ends_in_ray, no_step, stops};
+use super::termination::{ends_in_ray, no_step, snaps, stops};
 use super::tracer::{LoadStepEnding, Tracer, after_peak, commit, end_path, moved};
 use super::trial::{StepPlan, Trial, attempt, plan};
-use crate::path::energy::load_size;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Branching, LoadStep, LoadStepEnd};
+use voussoir_core::path::{Branching, LoadStep};
 
 /// Greatest number of steps of a load step.
 const MOST_STEPS: u64 = 5000;
@@ -66,6 +65,8 @@ enum StepEnd {
     CutBack(f64),
     /// The path goes on along another branch.
     Corner(Branch),
+    /// A settlement goes no further by itself.
+    Snap(Tangent),
     Ended(LoadStepEnding),
 }
 
@@ -98,6 +99,10 @@ fn go_on(tracer: &mut Tracer, following: &mut Following, end: StepEnd) -> Option
             following.switch_to(&mut tracer.system, &here, branch);
             None
         }
+        StepEnd::Snap(beyond) => {
+            let orientation = Orientation::of(&mut tracer.system, &tracer.state.clone(), true);
+            snap(tracer, following, orientation, &beyond)
+        }
         StepEnd::Unstable(step) => leave(tracer, following, step),
         StepEnd::Ended(outcome) => Some(outcome),
     }
@@ -117,6 +122,7 @@ fn failed(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, failu
     match after_failure(tracer, following, plan, failure) {
         AfterFailure::CutBack(length) => StepEnd::CutBack(length),
         AfterFailure::Corner(branch) => StepEnd::Corner(branch),
+        AfterFailure::Snap(beyond) => StepEnd::Snap(beyond),
         AfterFailure::Ended(outcome) => StepEnd::Ended(outcome),
     }
 }
@@ -322,7 +328,7 @@ fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangen
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
     // What an unstable branch carries is no peak of the path under its loads.
     let stable = following.orientation.as_ref().is_none_or(|before| !before.unstable);
-    if step.folded && !snaps(tracer, following) {
+    if step.folded && !snaps(tracer, following.load_step) {
         if stable {
             note_peak(tracer, &step.tangent, following.direction);
         }
@@ -345,6 +351,13 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
         following.switch_to(&mut tracer.system, &here, Branch { tangent, modes: Some(modes) });
         return None;
     }
+    if snaps(tracer, following.load_step) && step.orientation.is_some() {
+        let orientation = Orientation::of(&mut tracer.system, &state, true);
+        if !commit(tracer, state) {
+            return Some(LoadStepEnding::Ended);
+        }
+        return snap(tracer, following, orientation, &beyond);
+    }
     if let Some((tangent, modes)) = falling_branch(tracer, &state, following.direction) {
         let peak = peak_at(tracer, state.clone(), &tangent);
         note_proven_peak(tracer, peak, following.direction);
@@ -355,9 +368,6 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
         following.switch_to(&mut tracer.system, &here, Branch { tangent, modes: Some(modes) });
         return None;
     }
-    if snaps(tracer, following) && step.orientation.is_some() {
-        return snap(tracer, following, state, &beyond);
-    }
     if stable {
         let peak = peak_at(tracer, state, &beyond);
         note_proven_peak(tracer, peak, following.direction);
@@ -365,18 +375,13 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
     accept(tracer, following, step)
 }
 
-/// Whether what grows is a settlement that is to go to a factor: beyond a limit point it goes on by a snap.
-fn snaps(tracer: &Tracer, following: &Following) -> bool {
-    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
-    tracer.system.finite() && settles && matches!(following.load_step.end, LoadStepEnd::Factor(_))
-}
-
-/// Beyond a limit point of a settlement: to the equilibrium that damped descent reaches.
-fn snap(tracer: &mut Tracer, following: &mut Following, state: State, beyond: &Tangent) -> Option<LoadStepEnding> {
-    let orientation = Orientation::of(&mut tracer.system, &state, true);
-    if !commit(tracer, state) {
-        return Some(LoadStepEnding::Ended);
-    }
+/// Beyond a limit point of a settlement, the present state: to the equilibrium that damped descent reaches.
+fn snap(
+    tracer: &mut Tracer,
+    following: &mut Following,
+    orientation: Option<Orientation>,
+    beyond: &Tangent,
+) -> Option<LoadStepEnding> {
     let mut pushed = tracer.state.clone();
     pushed.factor += SNAP * (following.target - following.load_step.start);
     let departure = match &orientation {

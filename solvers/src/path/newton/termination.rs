@@ -16,7 +16,7 @@ use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, LoadStep};
+use voussoir_core::path::{Continuation, LoadStep, LoadStepEnd};
 
 /// Share of its fall by which the load must rise for the least one to be that of a snap-through.
 const RISES: f64 = 0.1;
@@ -225,6 +225,16 @@ fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> boo
     done
 }
 
+/// Whether what grows is a settlement.
+fn settles(tracer: &Tracer) -> bool {
+    load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0
+}
+
+/// Whether what grows is a settlement that is to go to a factor: beyond a limit point it goes on by a snap.
+pub(super) fn snaps(tracer: &Tracer, load_step: &LoadStep) -> bool {
+    tracer.system.finite() && settles(tracer) && matches!(load_step.end, LoadStepEnd::Factor(_))
+}
+
 /// With finite displacements: after the last proven peak. By default where the load has fallen to half of it and its
 /// point has moved on, at the latest at [`FURTHEST`].
 fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
@@ -234,7 +244,7 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
         return false;
     };
     let last = tracer.limit.proven_peaks.last();
-    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+    let settles = settles(tracer);
     let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));
     let beyond = (displacement - from).abs();
     let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
