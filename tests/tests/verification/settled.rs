@@ -198,11 +198,11 @@ fn peaks_that_steps_passed_over() {
     }
 }
 
-/// A branch beyond a peak with a fold that steps by arc length do not pass: where the study names no strategy another one
+/// A branch beyond a peak on which the modes of a joint keep changing and no step by arc length converges: where the study names no strategy another one
 /// answers, and says so; the one that is named is the one that is used.
 #[test]
 fn where_the_usual_strategy_stalls_another_one_follows() {
-    let scene = include_str!("settled/sharp_fold.toml");
+    let scene = include_str!("settled/changing_modes.toml");
     let of = |strategy: &str| {
         let named = format!("kinematics = \"finite\"\ncontinuation = {{ strategy = \"{strategy}\" }}");
         answered(&scene.replace("kinematics = \"finite\"", &named))
