@@ -79,8 +79,10 @@ pub(super) fn iterate(
         let settled = norm <= SETTLED + rounding || (norm <= STAYS + 30.0 * rounding && stays);
         // Rounding of positions excuses gaps, not equilibrium.
         let balanced = !system.finite() || (inner <= INNER && unbalanced_share(system, &residual, &state) <= BALANCED);
-        let (gap, force) = gap_error(system, &residual, &state);
-        let held = gap <= STAYS + rounding / largest_unknown(system, &state) && (stays || force <= STAYS);
+        let held = !system.finite() || {
+            let (gap, force) = gap_error(system, &residual, &state);
+            gap <= STAYS + rounding / largest_unknown(system, &state) && (stays || force <= STAYS)
+        };
         let converged = settled && balanced && held && traction_error(system, &state) <= LAW_HOLDS;
         if iteration > 0 && !changes.changed && converged {
             return Ok((state, iteration));
@@ -248,14 +250,15 @@ fn is_gap_row(system: &StepSystem, state: &State, row: usize) -> bool {
     }
 }
 
-/// Greatest residual of the equations of gaps, relative to the greatest unknown (rounding of positions, which excuses as
+/// Greatest residual of the gaps of facets, relative to the greatest unknown (rounding of positions, which excuses as
 /// much in units of a displacement, is no share of what has moved much further), and the force that the joint would make
-/// of it, relative to the greatest one.
+/// of it, relative to the greatest one. Laws of tractions have an error of their own.
 fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64) {
     let u = system.units();
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * u.force, f64::max);
     let (mut greatest, mut force) = (0.0_f64, 0.0_f64);
-    for row in (0..2 * state.gap.len()).filter(|row| is_gap_row(system, state, *row)) {
+    let of_facets = |row: &usize| !system.laws.responses.is(row / 2) && is_gap_row(system, state, *row);
+    for row in (0..2 * state.gap.len()).filter(of_facets) {
         let [a, b] = system.stiffness(row / 2);
         greatest = greatest.max(residual[row].abs());
         force = force.max(residual[row].abs() * u.displacement * a.max(b) / largest);
