@@ -8,7 +8,7 @@ use super::peak::note_peak;
 use super::state::Tangent;
 use super::system::StepFailure;
 use super::termination::{no_step, snaps};
-use super::tracer::{LoadStepEnding, Tracer, end_path};
+use super::tracer::{LoadStepEnding, Tracer, after_peak, end_path};
 use super::trial::{StepPlan, first_slip};
 use voussoir_core::limit::Status;
 
@@ -95,7 +95,12 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
             if following.slope > 0.0 {
                 note_peak(tracer, tangent, direction);
             }
-            let status = if tracer.system.finite() { Status::Collapse } else { Status::LimitPoint };
+            // Where the load was falling the path is lost at a trough: from there it may rise to a greater peak.
+            let status = match (tracer.system.finite(), tangent.factor * direction > 0.0) {
+                (true, true) => Status::Collapse,
+                (true, false) => after_peak(tracer, true),
+                (false, _) => Status::LimitPoint,
+            };
             return Some(AfterFailure::Ended(end_path(tracer, status, why)));
         }
     };
