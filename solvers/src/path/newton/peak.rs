@@ -123,11 +123,7 @@ pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) 
                 && near(displacement, known.displacement, SAME)
                 && !near(known.lowest, known.factor, FALLEN)
         };
-        if let Some(again) = tracer.limit.proven_peaks.iter().position(|known| same(&known)) {
-            // The last one may be met again in a loop; an earlier one on the way back only.
-            if tracer.system.finite() && again + 1 < tracer.limit.proven_peaks.len() {
-                tracer.post_peak.returned = Some(factor);
-            }
+        if tracer.limit.proven_peaks.iter().any(|known| same(&known)) {
             return;
         }
         tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });

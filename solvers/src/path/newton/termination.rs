@@ -243,11 +243,6 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
     let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
         return false;
     };
-    if let Some(earlier) = tracer.post_peak.returned {
-        let why = format!("the path went back the way it came: it is at its limit point of factor {earlier} again");
-        end_path(tracer, Status::Stalled, why);
-        return true;
-    }
     let last = tracer.limit.proven_peaks.last();
     let settles = settles(tracer);
     let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));

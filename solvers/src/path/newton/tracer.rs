@@ -76,8 +76,6 @@ pub(super) struct PostPeak {
     /// The least load, before the path rises again by a tenth of what it fell, and whether it has.
     pub trough: Option<Peak>,
     pub risen: bool,
-    /// Factor of a limit point before the last to which the path has come again.
-    pub returned: Option<f64>,
     pub cycles: CycleDetector,
 }
 
