@@ -72,9 +72,14 @@ pub(super) fn branch_beyond_fold(
     {
         return Ok(own);
     }
-    if let Some(found) = by_enumeration(tracer, following, share) {
-        tracer.system.count("branches", 1);
-        return Ok(Some(found));
+    // A point that is about to close is open still: with the modes beyond the fold it counts among those that may turn.
+    let here = tracer.state.mode.clone();
+    let beyond = own.iter().map(|(_, modes)| modes.clone());
+    for modes in std::iter::once(here).chain(beyond) {
+        if let Some(found) = by_enumeration(tracer, following, modes, share) {
+            tracer.system.count("branches", 1);
+            return Ok(Some(found));
+        }
     }
     if let Some((other, modes)) = &own
         && !continues(tracer, following, other, modes)
@@ -137,11 +142,16 @@ fn continues(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: 
     after.is_none_or(|after| before.is_singular() || after.is_singular() || before.leads_over_kink_to(&after))
 }
 
-/// The one rate among all that start here that goes on along the branch, and is not the way back; `None` where there
-/// are several, or none was found.
-fn by_enumeration(tracer: &mut Tracer, following: &Following, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
+/// The one rate among all that start here, in these modes or those of points that may leave them, that goes on along the
+/// branch, and is not the way back; `None` where there are several, or none was found.
+fn by_enumeration(
+    tracer: &mut Tracer,
+    following: &Following,
+    modes: Vec<ContactMode>,
+    share: f64,
+) -> Option<(Tangent, Vec<ContactMode>)> {
     following.orientation.as_ref().filter(|before| !before.is_singular())?;
-    let state = tracer.state.clone();
+    let state = State { mode: modes, ..tracer.state.clone() };
     let rates = all_rates(&mut tracer.system, &state)?;
     let mut onward = rates.into_iter().filter(|(other, modes)| {
         alignment(&following.branch.tangent, other) > BACK
