@@ -12,7 +12,7 @@ use super::control::Control;
 use super::following::Following;
 use super::inelastic::{plastic_power, update_blocks};
 use super::limit_point_test::{LimitPointTest, all_rates, limit_point_test};
-use super::measure::motion_size;
+use super::measure::{cosine, motion_size};
 use super::orientation::Orientation;
 use super::state::{State, Tangent};
 use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
@@ -51,7 +51,7 @@ pub(super) fn yielding_blocks_branch(tracer: &mut Tracer, rate: &Tangent, share:
 
 /// Whether the motions of two rates make an acute angle.
 fn forwards(rate: &Tangent, other: &Tangent) -> bool {
-    alignment(rate, other) > 0.0
+    cosine(&rate.motion, &other.motion) > 0.0
 }
 
 /// The rate that leads on where that of `following` does not, with its modes, if one was found; an error says why
@@ -154,20 +154,12 @@ fn by_enumeration(
     let state = State { mode: modes, ..tracer.state.clone() };
     let rates = all_rates(&mut tracer.system, &state)?;
     let mut onward = rates.into_iter().filter(|(other, modes)| {
-        alignment(&following.branch.tangent, other) > BACK
+        cosine(&following.branch.tangent.motion, &other.motion) > BACK
             && continues(tracer, following, other, modes)
             && agrees(tracer, other, modes, share)
     });
     let found = onward.next()?;
     onward.next().is_none().then_some(found)
-}
-
-/// Cosine of the angle between the motions of two rates.
-fn alignment(rate: &Tangent, other: &Tangent) -> f64 {
-    let dot = |a: &Tangent, b: &Tangent| -> f64 {
-        a.motion.iter().flatten().zip(b.motion.iter().flatten()).map(|(a, b)| a * b).sum()
-    };
-    dot(rate, other) / (dot(rate, rate) * dot(other, other)).sqrt().max(1e-300)
 }
 
 /// Whether a rate asks for the modes that it was computed with.
