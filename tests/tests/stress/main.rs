@@ -4,6 +4,7 @@ mod bridges;
 mod cap;
 mod conic;
 mod extremes;
+mod imperfections;
 mod limit;
 mod limit_scenes;
 mod nonassociated;

@@ -19,7 +19,8 @@ const STRATEGIES: [(&str, &str); 5] = [
 /// Loads that are equal, relative.
 const APART: f64 = 1e-6;
 
-fn scene(k: usize) -> SettledScene {
+/// Scene `k` of the family: elastic voussoirs or compliant joints, with friction or stuck, half of them settled.
+pub fn scene(k: usize) -> SettledScene {
     let mut random = Random::new(5000 + k as u64);
     let shape = if k % 3 == 2 { Shape::Pier } else { Shape::Arch };
     let deforming = if k.is_multiple_of(2) { Deforming::Compliant } else { Deforming::Elastic };
@@ -36,7 +37,8 @@ struct Runs {
     names_bifurcation: bool,
 }
 
-fn named(result: &CaseResult) -> bool {
+/// Whether a result names a bifurcation.
+pub fn named(result: &CaseResult) -> bool {
     result.notes.iter().any(|note| note.contains("bifurcat") || note.contains("branch"))
 }
 

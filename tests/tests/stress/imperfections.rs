@@ -1,0 +1,46 @@
+//! Scenes whose load, or whose support, stands 1e-6 of the scene beside its place: the answer changes by less than 1e-3,
+//! or one of the two results names the bifurcation.
+
+use crate::strategies::{named, scene};
+use voussoir_tests::answered;
+
+const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
+
+/// Change of a load factor, relative, that an imperfection may cause.
+const CHANGE: f64 = 1e-3;
+
+/// How often what became of imperfect scenes, and which ones depend on the imperfection without a word.
+fn imperfect(scenes: impl Iterator<Item = usize>) {
+    let [mut alike, mut bifurcate, mut refused] = [0; 3];
+    let mut apart = Vec::new();
+    for k in scenes {
+        let scene = scene(k);
+        let perfect = answered(&scene.study(FINITE));
+        for (load, what) in [(true, "load"), (false, "support")] {
+            let shifted = answered(&scene.shifted(FINITE, load));
+            let case = format!("{k}, {what}: {:?} becomes {:?}", perfect.load_factor, shifted.load_factor);
+            println!("{case}");
+            match (perfect.load_factor, shifted.load_factor) {
+                (Some(before), Some(after)) if (after - before).abs() < CHANGE * before.abs() => alike += 1,
+                (None, None) => refused += 1,
+                _ if named(&perfect) || named(&shifted) => bifurcate += 1,
+                _ => apart.push(case),
+            }
+        }
+    }
+    println!(
+        "{alike} change by less than {CHANGE:e}, {bifurcate} name a bifurcation, {refused} refused, apart {apart:?}"
+    );
+    assert!(apart.is_empty(), "{apart:?}");
+}
+
+#[test]
+fn small_imperfections_change_little() {
+    imperfect([300, 302, 303].into_iter());
+}
+
+#[test]
+#[ignore = "long: 50 scenes"]
+fn small_imperfections_of_50_scenes_change_little() {
+    imperfect(300..350);
+}
