@@ -21,64 +21,23 @@ import tempfile
 from datetime import date
 from pathlib import Path
 
+from studies import RIGID, RING, friction, ring, wall
+
 ROOT = Path(__file__).resolve().parent.parent
 TABLE, FIGURE, PAGE = ROOT / "docs/scaling.csv", ROOT / "docs/scaling.svg", ROOT / "docs/performance.md"
 MARKS = "<!-- from scaling.csv: benches/scaling.py -->", "<!-- end of scaling.csv -->"
 KEYS = ["part", "name", "size", "seconds", "memory_mb", "factor", "status", "date", "machine", "commit"]
 
-STAGES = """
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "live"
-until = "collapse"
-loads = [{load}]
-[output]
-writers = []
-"""
+WRITERS = "writers = []"
+FRICTION = friction(RING["friction"])
 
 
-def arch(voussoirs=13, joint='law = "coulomb_associated"\nfriction = 0.6', material='law = "rigid"', ends="jointed", solver="auto", mesh="", sweep=""):
-    load = '{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }'
-    return f"""name = "arch"
-[scene]
-scene = "arch"
-profile = {{ shape = "segmental", span = 9.42, rise = 2.99 }}
-thickness = 0.6
-width = 5.81
-voussoirs = {voussoirs}
-ends = "{ends}"
-material = "stone"
-joint = "dry"
-{mesh}
-[materials.stone]
-{material}
-density = 2200.0
-[joints.dry]
-{joint}
-[solver]
-solver = "{solver}"
-{STAGES.format(load=load)}{sweep}"""
+def arch(voussoirs=13, joint=FRICTION, material=RIGID, solver="auto", mesh="", sweep=""):
+    return ring(voussoirs, joint, more=mesh, material=material, solver=solver, width=5.81, output=WRITERS, rest=sweep, name="arch")
 
 
-def wall(side, friction=0.65):
-    return f"""name = "wall"
-[scene]
-scene = "wall"
-width = 1.0
-brick = [0.4, 0.175]
-courses = {side}
-bricks = {side}
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-law = "coulomb_associated"
-friction = {friction}
-{STAGES.format(load='{ kind = "body", acceleration = [9.81, 0.0] }')}"""
+def square(side, coefficient=0.65):
+    return wall(f"courses = {side}\nbricks = {side}", friction(coefficient), output=WRITERS)
 
 
 ELASTIC = 'law = "elastic"\nyoung_modulus = 5e9\npoisson_ratio = 0.3'
@@ -86,7 +45,7 @@ COMPLIANT = 'law = "coulomb_associated"\nfriction = 0.6\nnormal_stiffness = 2e10
 SIZES = {
     "voussoirs, `limit_chain`": ([10, 100, 1000, 10_000, 100_000], lambda n: arch(n)),
     "voussoirs, `limit_conic`": ([10, 100, 1000, 10_000, 100_000], lambda n: arch(n, solver="limit_conic")),
-    "bricks, `limit_conic`": ([100, 400, 1024, 2500, 10_000], lambda n: wall(math.isqrt(n))),
+    "bricks, `limit_conic`": ([100, 400, 1024, 2500, 10_000], lambda n: square(math.isqrt(n))),
     "compliant joints, `event_path`": ([10, 30, 100, 300], lambda n: arch(n, COMPLIANT, solver="event_path")),
     "compliant joints, `newton_path`": ([10, 30, 100, 300], lambda n: arch(n, COMPLIANT, solver="newton_path")),
     "elastic voussoirs, `event_path`": ([10, 30, 100], lambda n: arch(n, material=ELASTIC, solver="event_path")),

@@ -1,41 +1,20 @@
 """Scenes that Voussoir and other programs are measured on: a study file, and the same polygons as a linear program."""
 
 import math
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
 
-STUDY = """name = "{name}"
-[scene]
-{scene}
-width = 1.0
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = {density}
-[joints.dry]
-law = "{law}"
-friction = {friction}
-[[stages]]
-name = "dead"
-gravity = 9.81
-[[stages]]
-name = "live"
-until = "collapse"
-loads = [{load}]
-[solver]
-solver = "{solver}"
-[output]
-figures = "none"
-[[variants]]
-name = "voussoir"
-set = {{}}
-"""
+sys.path.append(str(Path(__file__).resolve().parent.parent))
+import studies
+from studies import BRICK, RING
 
-RING = dict(span=9.42, rise=2.99, thickness=0.60, density=2200.0, friction=0.6)
-BRICK = (0.4, 0.175)
+WALL_FRICTION = 0.65
+# One case, no figures.
+QUIET = 'figures = "none"\n[[variants]]\nname = "voussoir"\nset = {}'
 WALLS = {
     "wall 1": [[0.5, 1, 1, 1, 1, 0.5], [1] * 5] * 3,
     "wall 2": [[0.5, 1, 1, 1, 1, 0.5], [1] * 5] * 5,
@@ -109,23 +88,13 @@ def ring(count):
     for k, a in enumerate(angles):
         normal = (math.cos(a), -math.sin(a))
         joints.append((k - 1 if k > 0 else None, k if k < count else None, (inside[k], outside[k]), normal))
-    scene = f'scene = "arch"\nprofile = {{ shape = "segmental", span = {s}, rise = {r} }}\n'
-    scene += f'thickness = {t}\nvoussoirs = {count}\nends = "jointed"'
-    load = '{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }'
-    law = "coulomb_associated"
-    text = STUDY.format(name=f"ring {count}", scene=scene, load=load, law=law, solver="auto", **pick(RING))
+    text = studies.ring(count, output=QUIET)
     matrices = program(polygons, joints, fixed, varying)
     return Scene(f"ring of {count}", text, *matrices, RING["friction"], unit / 1000.0)
 
 
-def pick(data):
-    """Density and friction alone."""
-    return {key: data[key] for key in ("density", "friction")}
-
-
 def wall(rows, name, law="coulomb_associated", solver="auto"):
     """A wall of courses from below, lengths in bricks, an opening where negative; pushed sideways by its weight."""
-    data = dict(density=2000.0, friction=0.65)
     length, height = BRICK
     polygons, courses = [], []
     for level, row in enumerate(rows):
@@ -154,10 +123,8 @@ def wall(rows, name, law="coulomb_associated", solver="auto"):
     unit = max(area for area, _ in measured)
     fixed = [(0.0, -a / unit, -a / unit * c[0]) for a, c in measured]
     varying = [(a / unit, 0.0, -a / unit * c[1]) for a, c in measured]
-    scene = f'scene = "wall"\nbrick = [{length}, {height}]\nrows = {rows}'
-    load = '{ kind = "body", acceleration = [9.81, 0.0] }'
-    text = STUDY.format(name=name, scene=scene, load=load, law=law, solver=solver, **data)
-    return Scene(name, text, *program(polygons, joints, fixed, varying), data["friction"], 1.0)
+    text = studies.wall(f"rows = {rows}", studies.friction(WALL_FRICTION, law), name, solver=solver, output=QUIET)
+    return Scene(name, text, *program(polygons, joints, fixed, varying), WALL_FRICTION, 1.0)
 
 
 def running_bond(side):

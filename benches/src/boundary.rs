@@ -114,6 +114,7 @@ impl InterfaceResponse for BenchFriction {
         &["slip [m]"]
     }
 
+    #[inline]
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         let (point, slip) = inlined([self.normal_stiffness, self.shear_stiffness], self.friction, gap, old[0])?;
         new[0] = slip;

@@ -87,6 +87,7 @@ impl InterfaceResponse for BartonBandisResponse {
         &["slip [m]"]
     }
 
+    #[inline]
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);

@@ -152,6 +152,7 @@ impl InterfaceResponse for CohesiveResponse {
         Some([strength, strength * self.normal.onset / (2.0 * (1.0 - self.normal.brittleness))])
     }
 
+    #[inline]
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);

@@ -124,6 +124,7 @@ impl InterfaceResponse for WearingResponse {
         &["slip [m]", "total_slip [m]"]
     }
 
+    #[inline]
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);

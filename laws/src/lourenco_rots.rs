@@ -198,6 +198,7 @@ impl InterfaceResponse for CompositeResponse {
         Some([self.surface.tension, self.surface.tension / self.surface.loss[0]])
     }
 
+    #[inline]
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);

@@ -49,7 +49,8 @@ pub trait InterfaceResponse: Debug + Send + Sync {
         None
     }
 
-    /// The update of one point. `old` and `new` are as long as the state.
+    /// The update of one point. `old` and `new` are as long as the state. With `#[inline]` on a law's own,
+    /// [`respond`](Self::respond) takes it into its loop, and the call from the registry is one a batch.
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure>;
 
     /// Updates a group of points; one gap and result each, states one after the other.
@@ -66,9 +67,10 @@ pub trait InterfaceResponse: Debug + Send + Sync {
         }
         for (index, (gap, point)) in gaps.iter().zip(points).enumerate() {
             let place = index * size..(index + 1) * size;
-            *point = self
-                .respond_point(*gap, &old[place.clone()], &mut new[place])
-                .map_err(|failure| BatchFailure { point: index, failure })?;
+            match self.respond_point(*gap, &old[place.clone()], &mut new[place]) {
+                Ok(found) => *point = found,
+                Err(failure) => return Err(BatchFailure { point: index, failure }),
+            }
         }
         Ok(())
     }

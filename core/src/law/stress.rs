@@ -80,9 +80,10 @@ pub trait StressUpdate: Debug + Send + Sync {
         }
         for (index, (strain, point)) in strains.iter().zip(points).enumerate() {
             let place = index * size..(index + 1) * size;
-            *point = self
-                .update_point(strain, &contexts[index], &old[place.clone()], &mut new[place])
-                .map_err(|failure| BatchFailure { point: index, failure })?;
+            match self.update_point(strain, &contexts[index], &old[place.clone()], &mut new[place]) {
+                Ok(found) => *point = found,
+                Err(failure) => return Err(BatchFailure { point: index, failure }),
+            }
         }
         Ok(())
     }
