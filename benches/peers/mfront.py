@@ -4,7 +4,6 @@
 
 Voussoir must be compiled with `--features external`; `mfront` and `tfel-config` of TFEL 4 or later must be on the path (TFEL is in no
 registry of Debian or PyPI: https://github.com/thelfer/tfel, cmake and make). Without them the script says so and ends well.
-`--libraries FOLDER` takes libElasticityOfHooke.so and libRoundedMohrCoulomb.so that are compiled already.
 
 Both laws go through the same 24 steps of strain and stress; told is the greatest difference of a stress from the other route's,
 relative to the greatest stress of the step.
@@ -21,7 +20,6 @@ YOUNG, POISSON, COHESION, FRICTION, DILATANCY = 5e9, 0.3, 1e6, 40.0, 10.0
 BEHAVIOURS = {
     "ElasticityOfHooke": """@DSL Default;
 @Behaviour ElasticityOfHooke;
-@Library ElasticityOfHooke;
 @UnitSystem SI;
 @ModellingHypothesis Tridimensional;
 @MaterialProperty stress young;
@@ -41,7 +39,6 @@ nu.setGlossaryName("PoissonRatio");
     # Abbo and Sloan (1995): corners rounded beyond 29 degrees of Lode's angle, the apex by 1 Pa.
     "RoundedMohrCoulomb": f"""@DSL Implicit;
 @Behaviour RoundedMohrCoulomb;
-@Library RoundedMohrCoulomb;
 @UnitSystem SI;
 @ModellingHypothesis Tridimensional;
 @Algorithm NewtonRaphson;
@@ -88,15 +85,20 @@ NAMES = ("xx", "yy", "zz", "xy", "yz", "zx")
 
 
 def compiled(folder):
-    """The libraries, made by MFront in this folder; `None` where it is not installed."""
+    """Name → library, made by MFront below this folder; nothing where it is not installed."""
     if not (shutil.which("mfront") and shutil.which("tfel-config")):
-        return None
-    print(subprocess.run(["mfront", "--version"], capture_output=True, text=True).stdout.split("\n")[1])
+        return {}
+    said = subprocess.run(["mfront", "--version"], capture_output=True, text=True).stdout
+    print("MFront:", next((line for line in said.splitlines() if "ersion" in line), "of no version"))
+    libraries = {}
     for name, text in BEHAVIOURS.items():
-        (folder / f"{name}.mfront").write_text(text)
+        own = folder / name
+        own.mkdir()
+        (own / f"{name}.mfront").write_text(text)
         command = ["mfront", "--obuild", "--interface=generic", f"{name}.mfront"]
-        subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    return folder / "src"
+        subprocess.run(command, cwd=own, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        libraries[name] = next((own / "src").glob("lib*.so"))
+    return libraries
 
 
 def driven(program, folder, law, library=None):
@@ -134,20 +136,19 @@ def difference(rows, expected):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--voussoir", default="voussoir", help="the program, with its feature `external`")
-    parser.add_argument("--libraries", type=Path, help="a folder of libraries that are compiled already")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        libraries = options.libraries or compiled(folder)
-        if libraries is None:
+        libraries = compiled(folder)
+        if not libraries:
             print("mfront and tfel-config are not on the path: nothing was compared")
             return
         external = 'law = "external"\nlibrary = "{}"\nbehaviour = "{}"'
-        library = libraries.resolve() / "libElasticityOfHooke.so"
+        library = libraries["ElasticityOfHooke"]
         law = external.format(library, "ElasticityOfHooke") + f"\nproperties = {{ YoungModulus = {YOUNG}, PoissonRatio = {POISSON} }}"
         rows = driven(options.voussoir, folder, law, library)
         print(f"ElasticityOfHooke: {len(rows)} states, stresses within {difference(rows, map(hooke, rows)):.1e} of Hooke's law")
-        library = libraries.resolve() / "libRoundedMohrCoulomb.so"
+        library = libraries["RoundedMohrCoulomb"]
         rows = driven(options.voussoir, folder, external.format(library, "RoundedMohrCoulomb"), library)
         own = driven(options.voussoir, folder, OWN)
         apart = difference(rows, (of(row, "stress", "Pa") for row in own))
