@@ -43,6 +43,8 @@ pub(crate) struct Behaviour {
     density: f64,
     /// Numbers of its own state.
     internal: usize,
+    /// Where its own state holds the elastic strain, by MFront's name for it.
+    elastic_strain: Option<usize>,
     /// Names of the whole state.
     pub names: &'static [&'static str],
     /// Whether it says what it stores and dissipates.
@@ -176,7 +178,7 @@ impl Behaviour {
         let types = symbols
             .types("InternalStateVariables", variables.len())
             .ok_or_else(|| missing("InternalStateVariablesTypes"))?;
-        let mut state = Vec::new();
+        let (mut state, mut elastic_strain) = (Vec::new(), None);
         for (name, kind) in variables.iter().zip(types) {
             let size = usize::try_from(kind).ok().and_then(|kind| family.sizes.get(kind));
             let Some(&size) = size else {
@@ -185,6 +187,9 @@ impl Behaviour {
                     format!("its internal variable {name} is of a type that is not known, {kind}"),
                 );
             };
+            if name == "ElasticStrain" && size == N {
+                elastic_strain = Some(state.len());
+            }
             state.extend((0..size).map(|i| if size == 1 { format!("{name} [-]") } else { format!("{name}_{i} [-]") }));
         }
         let internal = state.len();
@@ -195,8 +200,9 @@ impl Behaviour {
             let symbol = format!("{}_{}", request.behaviour, family.hypothesis);
             return wrong("behaviour", format!("the library has no function {symbol}"));
         };
+        let density = request.density;
         let behaviour =
-            Behaviour { integrate, properties, external, density: request.density, internal, names, energies };
+            Behaviour { integrate, properties, external, density, internal, elastic_strain, names, energies };
         let rest = vec![0.0; behaviour.names.len()];
         check_rest(behaviour.step([0.0; N], 0.0, &rest, &mut rest.clone()))?;
         Ok(behaviour)
@@ -267,7 +273,7 @@ impl Behaviour {
             (stored, dissipated) = (rest[2 * N] + work, 0.0);
         }
         let lost = dissipated - rest[2 * N + 1];
-        let inelastic = new[..self.internal] != old[..self.internal];
+        let inelastic = self.inelastic(&before, &gradients, old, new);
         for i in 0..N {
             (new[self.internal + i], new[self.internal + N + i]) = (gradients[i], forces[i]);
         }
@@ -277,6 +283,19 @@ impl Behaviour {
         }
         let branch = if inelastic { INELASTIC } else { UpdateBranch::ELASTIC };
         Ok(Step { forces, tangent, branch, stored, dissipated: lost })
+    }
+
+    /// Whether the behaviour's own state says that something irreversible happened: any number of it changed, but that
+    /// the elastic strain may follow the strain, to rounding.
+    fn inelastic(&self, before: &[f64], gradients: &[f64], old: &[f64], new: &[f64]) -> bool {
+        let strain = self.elastic_strain.map_or(0..0, |start| start..start + before.len());
+        let size = before.iter().chain(gradients).fold(0.0_f64, |size, x| size.max(x.abs()));
+        let follows = |(i, place): (usize, usize)| {
+            let behind = new[place] - old[place] - (gradients[i] - before[i]);
+            behind.abs() <= 1e-12 * size
+        };
+        let mut others = (0..self.internal).filter(|place| !strain.contains(place));
+        others.any(|place| new[place] != old[place]) || !strain.clone().enumerate().all(follows)
     }
 }
 

@@ -104,3 +104,21 @@ int Crystal_Tridimensional(Data *d) {
   }
   return 1;
 }
+
+/* Yields along x; keeps its elastic strain, as MFront's implicit behaviours do, and nothing else. */
+DESCRIBE(Yielding, "Generic", 1, 1, 1, "Tridimensional", "Strain", "Stress", 0)
+unsigned short Yielding_nMaterialProperties = 2, Yielding_nInternalStateVariables = 1;
+Text Yielding_MaterialProperties[2] = {"Modulus", "Strength"}, Yielding_InternalStateVariables[1] = {"ElasticStrain"};
+int Yielding_InternalStateVariablesTypes[1] = {1};
+
+int Yielding_Tridimensional(Data *d) {
+  const double modulus = d->s0.material_properties[0], most = d->s0.material_properties[1] / modulus;
+  for (int i = 0; i < 6; ++i) {
+    double strain = d->s0.internal_variables[i] + d->s1.gradients[i] - d->s0.gradients[i], slope = modulus;
+    if (i == 0 && (strain > most || strain < -most)) strain = strain > 0 ? most : -most, slope = 0;
+    d->s1.internal_variables[i] = strain;
+    d->s1.forces[i] = modulus * strain;
+    for (int j = 0; j < 6; ++j) d->K[6 * i + j] = i == j ? slope : 0;
+  }
+  return 1;
+}

@@ -101,6 +101,28 @@ fn a_bond_of_a_library_is_its_closed_form() {
     assert_eq!(response.respond_point([f64::NAN, 0.0], &old, &mut new), Err(UpdateFailure::NotFinite));
 }
 
+/// A behaviour that keeps its elastic strain, as MFront's implicit ones do: `elastic` while that follows the strain, and
+/// `inelastic` where it lags behind, though no other number of its state says so.
+#[test]
+fn an_elastic_strain_that_follows_the_strain_is_no_change() {
+    let Some(library) = LIBRARY.as_ref() else { return };
+    let table = json!({ "law": "external", "library": library, "behaviour": "Yielding", "density": 2200.0,
+        "properties": { "Modulus": 1e9, "Strength": 1e6 } });
+    assert_eq!(complaints(PluginKind::BulkMaterial, &table), "");
+    let law: Box<dyn BulkMaterial> = serde_json::from_value(table).expect("a law");
+    let update = law.stress_update().expect("it answers");
+    let (mut old, mut new) = (vec![0.0; update.state_size()], vec![0.0; update.state_size()]);
+    let steps =
+        [(3e-4, 3e5, "elastic"), (9.1e-4, 9.1e5, "elastic"), (2e-3, 1e6, "inelastic"), (1.7e-3, 7e5, "elastic")];
+    for (along, stress, branch) in steps {
+        let strain = [along, -0.3 * along, 0.1 * along, 0.2 * along, 0.0, 0.4 * along];
+        let point = update.update_point(&strain, &UpdateContext::of_length(1.0), &old, &mut new).expect("a step");
+        assert!((point.stress[0] - stress).abs() <= 1e-9 * stress, "{} for {stress}", point.stress[0]);
+        assert_eq!(point.branch.name, branch, "at {along}");
+        std::mem::swap(&mut old, &mut new);
+    }
+}
+
 /// Three different shear moduli come back in our order, of engineering strains; elasticity and update agree.
 #[test]
 fn tensors_of_a_library_are_turned_into_ours() {
