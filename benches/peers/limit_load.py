@@ -51,7 +51,7 @@ def by_voussoir(program, scene):
 
 
 def timed(solve, data, tolerance):
-    """Processor time of the second of two runs where they are short, and the factor; infinite where it fails."""
+    """The factor and processor time of one run; infinite where it fails."""
     try:
         start = time.process_time()
         factor = solve(data, tolerance) * data.unit

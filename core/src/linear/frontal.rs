@@ -44,58 +44,41 @@ struct Left {
     values: Vec<f64>,
 }
 
-/// Takes L times the first `pivots` entries of a column out of the others, in place. L stands column by column, as high
-/// as the column.
+/// Takes L times the first `pivots` entries of columns out of the others, in place; before `first` they are zero. L stands
+/// column by column, as high as the columns, and is read once for all of them.
 #[inline(always)]
-fn substitute<S: Simd>(simd: S, column: &mut [f64], lower: &[f64], pivots: usize) {
-    let height = column.len();
-    let first = column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots);
+fn substitute<S: Simd, const N: usize>(
+    simd: S,
+    mut columns: [&mut [f64]; N],
+    lower: &[f64],
+    (first, pivots): (usize, usize),
+) {
+    let height = columns.first().map_or(0, |column| column.len());
     let mut k = first;
     while k + 4 <= pivots {
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| &lower[(k + i) * height..(k + i + 1) * height]);
-        let (_, rest) = column.split_at_mut(k);
-        let (u, rest) = rest.split_at_mut(4);
-        u[1] -= a[k + 1] * u[0];
-        u[2] -= a[k + 2] * u[0] + b[k + 2] * u[1];
-        u[3] -= a[k + 3] * u[0] + b[k + 3] * u[1] + c[k + 3] * u[2];
         let below = [&a[k + 4..], &b[k + 4..], &c[k + 4..], &d[k + 4..]];
-        add_four(simd, rest, below, [-u[0], -u[1], -u[2], -u[3]]);
-        k += 4;
-    }
-    for k in k..pivots {
-        let u = column[k];
-        let lower = &lower[k * height + k + 1..(k + 1) * height];
-        column[k + 1..].iter_mut().zip(lower).for_each(|(rest, l)| *rest -= l * u);
-    }
-}
-
-/// The same of two columns that begin with as many zeros, so that L is read once.
-#[inline(always)]
-fn substitute_two<S: Simd>(simd: S, columns: &mut [f64], lower: &[f64], (first, pivots): (usize, usize)) {
-    let height = columns.len() / 2;
-    let (one, two) = columns.split_at_mut(height);
-    let mut k = first;
-    while k + 4 <= pivots {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| &lower[(k + i) * height..(k + i + 1) * height]);
-        let (u, one) = one[k..].split_at_mut(4);
-        let (v, two) = two[k..].split_at_mut(4);
-        for u in [&mut *u, &mut *v] {
+        for column in &mut columns {
+            let (u, rest) = column[k..].split_at_mut(4);
             u[1] -= a[k + 1] * u[0];
             u[2] -= a[k + 2] * u[0] + b[k + 2] * u[1];
             u[3] -= a[k + 3] * u[0] + b[k + 3] * u[1] + c[k + 3] * u[2];
+            add_four(simd, rest, below, [-u[0], -u[1], -u[2], -u[3]]);
         }
-        let below = [&a[k + 4..], &b[k + 4..], &c[k + 4..], &d[k + 4..]];
-        add_four(simd, one, below, [-u[0], -u[1], -u[2], -u[3]]);
-        add_four(simd, two, below, [-v[0], -v[1], -v[2], -v[3]]);
         k += 4;
     }
     for k in k..pivots {
         let lower = &lower[k * height + k + 1..(k + 1) * height];
-        for column in [&mut *one, &mut *two] {
+        for column in &mut columns {
             let u = column[k];
             column[k + 1..].iter_mut().zip(lower).for_each(|(rest, l)| *rest -= l * u);
         }
     }
+}
+
+/// The first row of a column, of those of the pivots, that is no zero.
+fn first_row(column: &[f64], pivots: usize) -> usize {
+    column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots)
 }
 
 /// out −= A x, A column by column, four columns at a time.
@@ -134,7 +117,8 @@ fn eliminate<S: Simd>(simd: S, values: &mut [f64], height: usize, pivots: usize)
         let (before, rest) = values.split_at_mut(j * height);
         let column = &mut rest[..height];
         exchange(column, &exchanged);
-        substitute(simd, column, before, j);
+        let first = first_row(column, j);
+        substitute(simd, [&mut *column], before, (first, j));
         let greatest = (j..height).fold(j, |best, i| if column[i].abs() > column[best].abs() { i } else { best });
         let pivot = column[greatest];
         column.swap(j, greatest);
@@ -143,13 +127,16 @@ fn eliminate<S: Simd>(simd: S, values: &mut [f64], height: usize, pivots: usize)
         exchanged.push(greatest);
     }
     let (lower, rest) = values.split_at_mut(pivots * height);
-    let begins = |column: &[f64]| column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots);
     for columns in rest.chunks_mut(2 * height.max(1)) {
         columns.chunks_exact_mut(height).for_each(|column| exchange(column, &exchanged));
-        let mut firsts = columns.chunks_exact(height).map(begins);
-        match (firsts.next(), firsts.next()) {
-            (Some(first), Some(other)) if first == other => substitute_two(simd, columns, lower, (first, pivots)),
-            _ => columns.chunks_exact_mut(height).for_each(|column| substitute(simd, column, lower, pivots)),
+        let (one, two) = columns.split_at_mut(height);
+        let first = first_row(one, pivots);
+        match (!two.is_empty()).then(|| first_row(two, pivots)) {
+            Some(other) if other == first => substitute(simd, [one, two], lower, (first, pivots)),
+            other => {
+                substitute(simd, [one], lower, (first, pivots));
+                other.into_iter().for_each(|other| substitute(simd, [&mut *two], lower, (other, pivots)));
+            }
         }
     }
     exchanged
@@ -267,7 +254,8 @@ fn solve_all<S: Simd>(simd: S, fronts: &[Front], size: usize, right: &[Vec<f64>]
         for ((left, pivotal), right) in left.iter_mut().zip(&mut pivotal).zip(right) {
             left.extend(front.joining.iter().map(|i| right[*i]));
             exchange(left, &front.exchanged);
-            substitute(simd, left, &front.eliminated, pivots);
+            let first = first_row(left, pivots);
+            substitute(simd, [left], &front.eliminated, (first, pivots));
             pivotal.extend(left.drain(..pivots));
         }
     }

@@ -208,7 +208,7 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
             format!("carries at least {}: proved; a collapse was found at {}", load(proved), load(found))
         }
         (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
-        (Status::NoEquilibrium, _) if result.proof.ray.is_some() => {
+        _ if result.supports_cannot_move() => {
             "no equilibrium: no motion of the rigid blocks goes with that of their supports".into()
         }
         (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),

@@ -187,6 +187,11 @@ impl CaseResult {
         self.load_factor.filter(|_| self.certificate.passed && ends)
     }
 
+    /// Whether rigid blocks cannot follow their supports: its ray then refutes their motion, not the loads.
+    pub fn supports_cannot_move(&self) -> bool {
+        self.status == Status::NoEquilibrium && self.proof.ray.is_some()
+    }
+
     /// A stalled answer that says nothing, to be filled in.
     pub fn empty() -> Self {
         CaseResult {

@@ -53,7 +53,7 @@ fn proof(result: &CaseResult) -> String {
         (Status::Stalled, _) => "not proven".into(),
         (_, Some(bounds)) => bounds,
         (Status::Unbounded, _) => "weightless struts carry the load alone".into(),
-        (Status::NoEquilibrium, _) if result.proof.ray.is_some() => {
+        _ if result.supports_cannot_move() => {
             "forces in balance that grow without bound while the supports move".into()
         }
         (Status::NoEquilibrium, _) => "a motion on which the loads do more work than is dissipated".into(),

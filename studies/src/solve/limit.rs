@@ -79,9 +79,8 @@ fn record_stages(
         let name = stages[index].name.clone();
         StageResult { name, status, factor, hinges, stability: Default::default() }
     };
-    // A ray with `no_equilibrium` refutes the motion of supports, not the loads.
-    let blocked = result.proof.ray.is_some();
-    let carried = blocked || !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
+    // What supports cannot do says nothing against the loads.
+    let carried = result.supports_cannot_move() || !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
     let status = if carried { Status::Stands } else { result.status };
     for (earlier, covered) in stages.iter().enumerate().take(index).skip(done.len()) {
         let Target::Factor(factor) = covered.target else { continue };

@@ -64,8 +64,11 @@ fn by_strategies(
     observer: &mut dyn PathObserver,
 ) -> (CaseResult, bool) {
     let (mut own, mut ended) = traced(input, problem, solver, observer);
+    if own.status != Status::Stalled {
+        return (own, ended);
+    }
     for strategy in solver.1.further_strategies(input.settings) {
-        if ended || own.status != Status::Stalled {
+        if ended {
             break;
         }
         let name = serde_json::to_string(&*strategy).unwrap_or_default();

@@ -1,7 +1,7 @@
 //! What writers are given: the results and what they were computed from.
 
 use super::record::record;
-use crate::results::{CaseResult, StudyResults, load_rank};
+use crate::results::{CaseResult, StudyResults, least_of};
 use crate::study::{Case, Drawn, Output, Study};
 use serde_json::Value as Json;
 use std::borrow::Cow;
@@ -79,15 +79,11 @@ fn drawn(study: &Study, results: &StudyResults) -> Option<BTreeSet<usize>> {
         return Some(entries.iter().flat_map(of).flatten().map(|id| id as usize).collect());
     }
     (study.output.figures == Drawn::Worst).then(|| {
-        let rank = |case: &CaseResult| load_rank(case).unwrap_or(f64::INFINITY);
-        let mut least: BTreeMap<_, &CaseResult> = BTreeMap::new();
+        let mut alike: BTreeMap<_, Vec<&CaseResult>> = BTreeMap::new();
         for case in &results.cases {
-            let of = (&case.label.variant, case.status == Status::Stalled);
-            let own = least.entry(of).or_insert(case);
-            if rank(case) < rank(own) {
-                *own = case;
-            }
+            alike.entry((&case.label.variant, case.status == Status::Stalled)).or_default().push(case);
         }
-        least.values().map(|case| case.label.id).collect()
+        let worst = |cases: &Vec<&CaseResult>| least_of(cases.iter().copied()).unwrap_or(cases[0]).label.id;
+        alike.values().map(worst).collect()
     })
 }

@@ -198,6 +198,16 @@ fn peaks_that_steps_passed_over() {
     }
 }
 
+/// Where the path folds a joint is about to close and two points that slide come to rest: the rate beyond the fold asks
+/// for all three. With the closing joint alone the path once took the way back, all of it, to a certified 156.5.
+#[test]
+fn a_path_goes_on_where_a_joint_closes_at_a_fold() {
+    let result = answered(include_str!("settled/closing_at_a_fold.toml"));
+    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+    let factor = result.load_factor.expect("a factor");
+    assert!(result.certificate.passed && (factor - 60646.0).abs() < 1e-4 * factor, "{factor}");
+}
+
 /// A branch beyond a peak on which the modes of a joint keep changing and no step by arc length converges: where the study names no strategy another one
 /// answers, and says so; the one that is named is the one that is used.
 #[test]

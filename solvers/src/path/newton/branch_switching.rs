@@ -12,7 +12,7 @@ use super::control::Control;
 use super::following::Following;
 use super::inelastic::{plastic_power, update_blocks};
 use super::limit_point_test::{LimitPointTest, all_rates, limit_point_test};
-use super::measure::motion_size;
+use super::measure::{cosine, motion_size};
 use super::orientation::Orientation;
 use super::state::{State, Tangent};
 use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
@@ -51,7 +51,7 @@ pub(super) fn yielding_blocks_branch(tracer: &mut Tracer, rate: &Tangent, share:
 
 /// Whether the motions of two rates make an acute angle.
 fn forwards(rate: &Tangent, other: &Tangent) -> bool {
-    alignment(rate, other) > 0.0
+    cosine(&rate.motion, &other.motion) > 0.0
 }
 
 /// The rate that leads on where that of `following` does not, with its modes, if one was found; an error says why
@@ -72,9 +72,14 @@ pub(super) fn branch_beyond_fold(
     {
         return Ok(own);
     }
-    if let Some(found) = by_enumeration(tracer, following, share) {
-        tracer.system.count("branches", 1);
-        return Ok(Some(found));
+    // A point that is about to close is open still: with the modes beyond the fold it counts among those that may turn.
+    let here = tracer.state.mode.clone();
+    let beyond = own.iter().map(|(_, modes)| modes.clone());
+    for modes in std::iter::once(here).chain(beyond) {
+        if let Some(found) = by_enumeration(tracer, following, modes, share) {
+            tracer.system.count("branches", 1);
+            return Ok(Some(found));
+        }
     }
     if let Some((other, modes)) = &own
         && !continues(tracer, following, other, modes)
@@ -137,27 +142,24 @@ fn continues(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: 
     after.is_none_or(|after| before.is_singular() || after.is_singular() || before.leads_over_kink_to(&after))
 }
 
-/// The one rate among all that start here that goes on along the branch, and is not the way back; `None` where there
-/// are several, or none was found.
-fn by_enumeration(tracer: &mut Tracer, following: &Following, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
+/// The one rate among all that start here, in these modes or those of points that may leave them, that goes on along the
+/// branch, and is not the way back; `None` where there are several, or none was found.
+fn by_enumeration(
+    tracer: &mut Tracer,
+    following: &Following,
+    modes: Vec<ContactMode>,
+    share: f64,
+) -> Option<(Tangent, Vec<ContactMode>)> {
     following.orientation.as_ref().filter(|before| !before.is_singular())?;
-    let state = tracer.state.clone();
+    let state = State { mode: modes, ..tracer.state.clone() };
     let rates = all_rates(&mut tracer.system, &state)?;
     let mut onward = rates.into_iter().filter(|(other, modes)| {
-        alignment(&following.branch.tangent, other) > BACK
+        cosine(&following.branch.tangent.motion, &other.motion) > BACK
             && continues(tracer, following, other, modes)
             && agrees(tracer, other, modes, share)
     });
     let found = onward.next()?;
     onward.next().is_none().then_some(found)
-}
-
-/// Cosine of the angle between the motions of two rates.
-fn alignment(rate: &Tangent, other: &Tangent) -> f64 {
-    let dot = |a: &Tangent, b: &Tangent| -> f64 {
-        a.motion.iter().flatten().zip(b.motion.iter().flatten()).map(|(a, b)| a * b).sum()
-    };
-    dot(rate, other) / (dot(rate, rate) * dot(other, other)).sqrt().max(1e-300)
 }
 
 /// Whether a rate asks for the modes that it was computed with.

@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::control_row::work_along;
-use super::measure::{increment_along, motion_size, tangent_size};
+use super::measure::{cosine, increment_along, motion_size, tangent_size};
 use super::orientation::Orientation;
 use super::response::update_at_rest;
 use super::state::{State, Tangent};
@@ -70,11 +70,9 @@ impl Tried {
     /// Whether a step from one state to the next takes the way back on which the path came here.
     pub fn leads_back(&self, state: &State, next: &State) -> bool {
         self.arrived.as_ref().is_some_and(|(modes, rate)| {
-            let from = state.motion.iter().flatten();
-            let moved = || next.motion.iter().flatten().zip(from.clone()).map(|(after, before)| after - before);
-            let along: f64 = moved().zip(rate.motion.iter().flatten()).map(|(moved, rate)| moved * rate).sum();
-            let sizes = moved().map(|x| x * x).sum::<f64>() * rate.motion.iter().flatten().map(|x| x * x).sum::<f64>();
-            next.mode == *modes && along < BACK * sizes.sqrt()
+            let moved = |(after, before): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| after[k] - before[k]);
+            let step: Vec<[f64; 3]> = next.motion.iter().zip(&state.motion).map(moved).collect();
+            next.mode == *modes && cosine(&step, &rate.motion) < BACK
         })
     }
 }

@@ -62,7 +62,7 @@ use std::sync::Arc;
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
-/// First step of the last strategy that is tried: a tenth of the usual one.
+/// First step of the last strategy that is tried; the usual one is 0.1.
 const SHORT: f64 = 0.003;
 
 /// Steps with Newton's method.
