@@ -16,9 +16,13 @@ gives (`limit_load.py`): that is the reference, and it is no answer of a path so
 import argparse
 import dataclasses
 import math
+import os
 import platform
 import subprocess
 import time
+
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")  # before NumPy and GetFEM are loaded: waiting threads count as processor time
 
 from limit_load import by_voussoir, report
 from scenes import RING, area_and_centre, ring
