@@ -1,5 +1,4 @@
-//! Whether a step up to the first peak is short enough for the history of slip (finite displacements, flow that is not
-//! associated).
+//! Whether a step is short enough for the history of slip (finite displacements, flow that is not associated).
 //!
 //! A step is implicit: what slides at its end has slid by what its gap says, whenever it began. While a point slides to
 //! one side that is exact. Two things it misses:
@@ -23,8 +22,10 @@ use super::trial::{StepPlan, Trial};
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use voussoir_core::law::{Facet, FacetMode};
-use voussoir_core::path::Branching;
+use voussoir_core::path::{Branching, LoadStepEnd};
 
+/// Steps that are shortened, in all, beyond which none is after a peak.
+const MOST_ARRESTS: u64 = 500;
 /// Force that slip missed in a step may leave at a point, relative to the greatest force; and while blocks yield, whose
 /// stresses follow the path of strain to first order in the step anyhow.
 const MISSED: [f64; 2] = [1e-7, 1e-5];
@@ -54,9 +55,14 @@ pub(super) fn missed_slip(
     trial: &Trial,
     end: &Tangent,
 ) -> Option<f64> {
-    // After a peak friction may let the path cycle in small loops: following them closely leads nowhere.
     let matters = tracer.system.finite() && !tracer.system.joints_flow_associated();
-    if !matters || tracer.limit.peak.is_some() {
+    // After a peak friction may let the path cycle in small loops, and where it falls a step that ends where a point comes
+    // to rest may end at a fold: history is followed where the load rises to another peak, within a budget. A stage that
+    // goes to a factor has ended at its peak, but for what it snaps to.
+    let arrests = tracer.system.counters.get("arrests").copied().unwrap_or(0);
+    let goes_to_factor = matches!(following.load_step.end, LoadStepEnd::Factor(_));
+    let enough = following.slope <= 0.0 || goes_to_factor || arrests >= MOST_ARRESTS;
+    if !matters || (tracer.limit.peak.is_some() && enough) {
         following.arrest = None;
         return None;
     }
