@@ -85,6 +85,39 @@ fn a_closed_bracket_is_confirmed() {
     assert_eq!(findings(&study, &original), Vec::<String>::new());
 }
 
+/// Splitting the program of all products proves nearly the found load, range after range, and is confirmed; no other
+/// bound, no other range and no other multiplier of a product of the found state is.
+#[test]
+fn a_bound_by_splitting_is_confirmed() {
+    let split = wall("search_limit = 0.0\nproduct_rows = 0\nproduct_limit = 8.0", COULOMB);
+    let (study, original) = results(&split);
+    let case = &original["cases"][0];
+    let [low, high] = [0, 1].map(|i| case["bounds"][i].as_f64().expect("a bound"));
+    println!("[{low}, {high}] {}", case["counters"]);
+    assert!((high - 5.0 / 7.0).abs() < 1e-12 && low > 0.98 * high && low <= high, "[{low}, {high}] {}", case["notes"]);
+    assert_eq!(case["lower_proof"]["by"], "products");
+    assert_eq!(findings(&study, &original), Vec::<String>::new());
+    let change = |path: &str, value: Value| {
+        let mut changed = original.clone();
+        *changed.pointer_mut(&format!("/cases/0/{path}")).unwrap_or_else(|| panic!("{path}")) = value;
+        assert!(!findings(&study, &changed).is_empty(), "{path} was changed and not found");
+    };
+    change("bounds/0", json!(low * (1.0 + 1e-4)));
+    let last = case["lower_proof"]["steps"].as_array().expect("steps").len() - 1;
+    change(&format!("lower_proof/steps/{last}/range/1"), json!(0.9 * high));
+    change(&format!("lower_proof/steps/{last}/range/0"), json!(low));
+    let greatest =
+        case["lower_proof"]["steps"][last]["multipliers"].as_array().expect("multipliers").iter().enumerate();
+    let entries = greatest.flat_map(|(i, row)| {
+        let row = row[1].as_array().expect("a row").iter().enumerate();
+        row.map(move |(j, entry)| (entry[1].as_f64().expect("a multiplier"), i, j))
+    });
+    let (value, i, j) = entries.fold((0.0f64, 0, 0), |most, e| if e.0.abs() > most.0.abs() { e } else { most });
+    for changed in [value * 1.001, 0.0, f64::from(i32::MAX)] {
+        change(&format!("lower_proof/steps/{last}/multipliers/{i}/1/{j}/1"), json!(changed));
+    }
+}
+
 /// What a search proved is said to be so.
 #[test]
 fn a_search_is_named() {

@@ -118,6 +118,26 @@ fn products_alone_bound_the_least_loads() {
     assert!(closed * 10 >= small.len() * 9, "{closed} of {}", small.len());
 }
 
+/// Splitting the program of all products never proves more than the independent least load, and mostly nearly that.
+#[test]
+fn split_products_bound_the_least_loads() {
+    let small: Vec<Value> = walls().into_iter().filter(|wall| blocks(wall) <= 5).step_by(9).collect();
+    let (mut near, mut tried) = (0, 0);
+    for wall in &small {
+        let limits = "solver = \"limit_least\"\nsearch_limit = 0.0\nproduct_rows = 0\nproduct_limit = 1.0";
+        let result = answer_with(wall, "coulomb", limits);
+        assert!(result.certificate.passed, "{wall} {:?}", result.certificate);
+        let [low, _] = result.bounds.expect("a bracket");
+        let expected = number(wall, "least");
+        println!("{low} of {expected}, {:?}", result.counters.get("product_multiplications"));
+        assert!(low <= expected + 2e-7 * expected.abs().max(1e-3), "{wall}: {low}");
+        tried += usize::from(expected > 0.0);
+        near += usize::from(expected > 0.0 && low >= 0.98 * expected);
+    }
+    println!("{near} of {tried} nearly closed");
+    assert!(near * 4 >= tried * 3, "{near} of {tried}");
+}
+
 /// The walls of 10 to 12 blocks: search and products together close every bracket but one, which stays
 /// open by 4e-4 (a wall that slides as a whole, found to the last digit).
 #[test]

@@ -39,6 +39,8 @@ pub struct Work {
     pub entries: u64,
     /// Iterations of the program of products.
     pub iterations: u64,
+    /// Multiplications of the program of all products.
+    pub multiplications: u64,
 }
 
 /// The bounds of the dissipation d_i·r on each pair where it yields, and the pairs that cannot.

@@ -6,5 +6,6 @@ mod conflict_search;
 mod descent;
 mod products;
 mod solver;
+mod splitting;
 
 pub use self::solver::LimitNonassociated;

@@ -48,15 +48,17 @@ struct Program {
 
 /// Something ≥ 0.
 #[derive(Clone, Copy)]
-enum Kind {
+pub enum Kind {
     /// γ_i.
     Gamma(usize),
-    /// γ_i θ.
+    /// γ_i (θ − a).
     GammaTheta(usize),
     /// γ_i (t − θ).
     GammaUpperSlack(usize),
-    /// θ.
+    /// θ − a.
     Theta,
+    /// t − θ.
+    UpperSlack,
     /// s_j.
     Slack(usize),
     /// γ_i s_j.
@@ -67,17 +69,23 @@ enum Kind {
 pub struct Bound {
     /// No state has a lesser θ.
     pub theta: f64,
-    /// What the multipliers prove before rounding is taken off.
-    raw: f64,
-    /// t.
-    most: f64,
-    /// Multipliers of what is ≥ 0, in the units of the systems; those of γ_i s_i = 0 have either sign.
-    multipliers: Vec<(Kind, f64)>,
+    /// What proves it, from below.
+    pub steps: Vec<Step>,
 }
 
-impl Bound {
+/// Proof that no state with a ≤ θ ≤ t lies below a bound.
+pub struct Step {
+    /// The bound before rounding is taken off.
+    pub raw: f64,
+    /// a and t.
+    pub range: [f64; 2],
+    /// Multipliers of what is ≥ 0, in the units of the systems; those of γ_i s_i = 0 have either sign.
+    pub multipliers: Vec<(Kind, f64)>,
+}
+
+impl Step {
     /// The proof in SI units, for load factors from `start` on.
-    pub fn step(&self, systems: &Systems, problem: &LimitProblem, start: f64) -> ProductStep {
+    pub fn stored(&self, systems: &Systems, problem: &LimitProblem, start: f64) -> ProductStep {
         let code = |i: usize| {
             let pair = &systems.pairs[i];
             let force = pair.normal[0].0;
@@ -99,19 +107,20 @@ impl Bound {
         for &(kind, z) in &self.multipliers {
             match kind {
                 Kind::Gamma(i) => {
-                    let share = z / self.most * force / unit;
+                    let share = z / (self.range[1] - self.range[0]) * force / unit;
                     add(code(i), FIRST, share);
                     add(code(i), LAST, share);
                 }
                 Kind::GammaTheta(i) => add(code(i), FIRST, z * force / unit),
                 Kind::GammaUpperSlack(i) => add(code(i), LAST, z * force / unit),
                 Kind::Theta => add(FIRST, FIRST, z),
+                Kind::UpperSlack => add(FIRST, LAST, z),
                 Kind::Slack(j) => add(FIRST, code(j), z * unit / force),
                 Kind::Product(i, j) => add(code(i), code(j), z),
             }
         }
         ProductStep {
-            range: [start, start + self.most * unit],
+            range: self.range.map(|end| start + end * unit),
             bound: start + self.raw * unit,
             multipliers: sums.into_iter().map(|(i, row)| (i, row.into_iter().collect())).collect(),
         }
@@ -480,7 +489,8 @@ impl Program {
                 let idle = self.idle.iter().map(|&(k, i)| (Kind::Product(i, i), -z[k]));
                 let multipliers = kinds.chain(idle).filter(|(_, z)| *z != 0.0).collect();
                 let theta = proved - MARGIN * worst;
-                return positive.then_some(Bound { theta, raw: proved, most: self.most, multipliers });
+                let step = Step { raw: proved, range: [0.0, self.most], multipliers };
+                return positive.then(|| Bound { theta, steps: vec![step] });
             }
             let mut load = vec![0.0; first];
             load.extend(r.iter().map(|r| -r));

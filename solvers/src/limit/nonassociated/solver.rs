@@ -3,6 +3,7 @@
 use super::bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
 use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
+use super::splitting::split_bound;
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
 use crate::limit::sequential::{FlowState, Sequence, sequence};
@@ -38,6 +39,9 @@ pub struct LimitNonassociated {
     /// Greatest number of rows of the program of products.
     #[serde(default = "product_rows")]
     pub product_rows: usize,
+    /// Work that the program of all products may take, in 10⁹ multiplications.
+    #[serde(default)]
+    pub product_limit: f64,
 }
 
 fn search_limit() -> f64 {
@@ -50,7 +54,7 @@ fn product_rows() -> usize {
 
 impl Default for LimitNonassociated {
     fn default() -> Self {
-        LimitNonassociated { search_limit: SEARCH_LIMIT, product_rows: PRODUCT_ROWS }
+        LimitNonassociated { search_limit: SEARCH_LIMIT, product_rows: PRODUCT_ROWS, product_limit: 0.0 }
     }
 }
 
@@ -73,6 +77,13 @@ voussoir_core::inventory::submit! {
                 shape: Shape::Integer { min: 0, max: 1_000_000 },
                 need: Need::Default("12000"),
             },
+            Parameter::number(
+                "product_limit",
+                Quantity::Ratio,
+                Range::NON_NEGATIVE,
+                "work that the program of all products may take where that of `product_rows` leaves the bracket open, in 10⁹ multiplications (about 0.1 s each); 0 for none",
+            )
+            .default("0.0"),
         ],
         provides: &[Capability::NON_ASSOCIATED],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
@@ -81,6 +92,7 @@ voussoir_core::inventory::submit! {
             "Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43",
             "Marques-Silva & Sakallah 1999, IEEE Trans. Computers 48",
             "Sherali & Adams 1990, SIAM J. Discrete Math. 3",
+            "Eckstein & Bertsekas 1992, Math. Programming 55",
         ],
         file: file!(),
         page: include_str!("limit_least.md"),
@@ -262,6 +274,9 @@ impl LimitSolver for LimitNonassociated {
         ] {
             *answer.counters.entry(name.into()).or_default() += count;
         }
+        if self.product_limit > 0.0 {
+            answer.counters.insert("product_multiplications".into(), least.work.multiplications);
+        }
         own.lower_proof = Some(lower.proof(&least.systems, problem, start));
         finish(answer, own, best, lower.theta, (start, max, unit))
     }
@@ -342,6 +357,12 @@ impl Least<'_> {
                 Proof::Open(_) => {
                     whole = false;
                     lower.product(self.products(known, limits.product_rows, false));
+                    if lower.theta < known * (1.0 - WIDEST) && limits.product_limit > 0.0 {
+                        let multiplications = (limits.product_limit * 1e9).min(1e18) as u64;
+                        let (bound, work) = split_bound(&self.systems, known, multiplications);
+                        self.work.multiplications += work;
+                        lower.product(bound.filter(|bound| bound.theta > lower.theta));
+                    }
                 }
                 Proof::State(proved, moving) => {
                     lower.search(proved);
@@ -398,7 +419,8 @@ impl Lower {
         match &self.products {
             _ if self.theta <= 0.0 => LowerProof::by(LowerProofKind::Start),
             Some(bound) if bound.theta >= self.theta => {
-                LowerProof { by: LowerProofKind::Products, steps: vec![bound.step(systems, problem, start)] }
+                let steps = bound.steps.iter().map(|step| step.stored(systems, problem, start)).collect();
+                LowerProof { by: LowerProofKind::Products, steps }
             }
             _ => LowerProof::by(LowerProofKind::Search),
         }

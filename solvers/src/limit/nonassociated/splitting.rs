@@ -1,0 +1,410 @@
+//! The program of all products, for scenes whose rows are too many for an interior-point method.
+//!
+//! With U spanning the motions (γ, p·q̇) that the flow rule allows and V the fields (s, θ − a, t − θ) in
+//! equilibrium, the products of a state are Z = U Y Vᵀ ≥ 0 with Z_ii = 0 for each pair. The least θ − a of such Z
+//! with p·q̇ = 1 is a linear program over a tensor product of two subspaces. The projection onto it is
+//! U (Uᵀ · V) Vᵀ, four products of dense matrices, whatever the number of rows: operator splitting needs nothing else.
+//!
+//! Splitting with an adapted penalty (Boyd et al., Foundations and Trends in Machine Learning 3 (2011)) gives an estimate and
+//! multipliers that are nearly right. Those that prove a bound β are exact: Λ ≥ 0 with Uᵀ (C − β N − Λ) V = 0 is looked for by
+//! the Douglas–Rachford iteration, and what is left is taken out by changes M ∘ (U y Vᵀ), where M vanishes with Λ, by conjugate
+//! residuals. Where Λ stays ≥ 0, β is proved, and the next is half the way to the estimate, else half the way down.
+
+use super::products::{Bound, Kind, Step};
+use crate::limit::systems::Systems;
+use nalgebra::{DMatrix, DVector};
+
+/// The first range takes this share of the work, the next the same of what is left.
+const RANGE: f64 = 0.6;
+/// Shares of a range's work: the program itself, and each trial of a bound.
+const SPLITTING: f64 = 0.2;
+const TRIAL: f64 = 0.08;
+/// The fewest iterations of either.
+const FEWEST: usize = 1000;
+/// Multipliers are looked at so often, and corrected where none would be lower than this; next time, than a tenth of it.
+const CHECKED: usize = 200;
+const NEARLY: f64 = 1e-6;
+/// Conjugate residuals of one correction.
+const RESIDUALS: usize = 500;
+/// Supports on which multipliers are corrected in one trial, and corrections on each.
+const SUPPORTS: usize = 10;
+const CORRECTIONS: usize = 4;
+/// What a correction leaves, as a share of what there was.
+const LEFT: f64 = 1e-7;
+/// A bound lower by this share of the range is the least that is tried.
+const LEAST: f64 = 0.02;
+/// Multipliers below this many times the greatest residual, and below this, change in proportion to themselves.
+const FREE: [f64; 2] = [100.0, 1e-4];
+/// Over-relaxation.
+const RELAXATION: f64 = 1.7;
+/// The penalty at first, in units of the objective.
+const PENALTY: f64 = 10.0;
+/// The penalty is adapted so often.
+const ADAPTED: usize = 100;
+/// The first bound tried, as a share of the estimate.
+const FIRST_SHARE: f64 = 0.85;
+/// Bounds closer than this share of t are not told apart.
+const CLOSE: f64 = 1e-3;
+/// Largest residual of multipliers, relative to the greatest.
+const EXACT: f64 = 1e-14;
+/// Columns shorter than this share of the longest are none.
+const RANK: f64 = 1e-10;
+/// t lies so far above the known state.
+const ABOVE: f64 = 1e-5;
+/// Rounds in which the rows are scaled.
+const SCALINGS: usize = 8;
+
+/// Columns that span the solutions of matrix · x = 0.
+fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let decomposed = matrix.transpose().col_piv_qr();
+    let diagonal = decomposed.r().diagonal();
+    let rank = diagonal.iter().filter(|d| d.abs() > RANK * diagonal[0].abs()).count();
+    let columns = matrix.ncols();
+    let mut basis = DMatrix::identity(columns, columns);
+    decomposed.q_tr_mul(&mut basis);
+    basis.rows(rank, columns - rank).transpose()
+}
+
+/// Orthonormal columns of the same span.
+fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
+    let decomposed = columns.col_piv_qr();
+    let r = decomposed.r().diagonal();
+    let rank = r.iter().filter(|d| d.abs() > RANK * r[0].abs()).count();
+    decomposed.q().columns(0, rank).into_owned()
+}
+
+/// Orthonormal columns after rows were scaled until none stands out, with the scales.
+fn balanced(columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let mut scale = DVector::from_element(columns.nrows(), 1.0);
+    let scaled = |scale: &DVector<f64>| {
+        let mut by = columns.clone();
+        by.row_iter_mut().zip(scale.iter()).for_each(|(mut row, s)| row *= *s);
+        orthonormal(by)
+    };
+    for _ in 0..SCALINGS {
+        let basis = scaled(&scale);
+        scale.iter_mut().zip(basis.row_iter()).for_each(|(s, row)| *s /= row.norm_squared().max(1e-4).sqrt().sqrt());
+    }
+    (scaled(&scale), scale)
+}
+
+/// U: γ and p·q̇ of the motions that the flow rule allows.
+fn motions(systems: &Systems) -> DMatrix<f64> {
+    let (groups, pairs) = (systems.equilibrium.len(), systems.pairs.len());
+    let mut flow = DMatrix::zeros(systems.forces, groups + pairs);
+    for (q, row) in systems.equilibrium.iter().enumerate() {
+        row.iter().for_each(|&(j, v)| flow[(j, q)] += v);
+    }
+    for (i, pair) in systems.pairs.iter().enumerate() {
+        pair.flow.iter().for_each(|&(j, v)| flow[(j, groups + i)] += v);
+    }
+    let free = null_space(&flow);
+    let power = DVector::from_column_slice(&systems.varying).transpose() * free.rows(0, groups);
+    let mut all = free.rows(groups, pairs).into_owned().insert_row(pairs, 0.0);
+    all.row_mut(pairs).copy_from(&power);
+    all
+}
+
+/// V: s, θ − a and t − θ of the fields in equilibrium.
+fn fields(systems: &Systems, [a, t]: [f64; 2]) -> DMatrix<f64> {
+    let (rows, forces, pairs) = (systems.equilibrium.len(), systems.forces, systems.pairs.len());
+    let mut balance = DMatrix::zeros(rows, forces + 2);
+    for (q, row) in systems.equilibrium.iter().enumerate() {
+        row.iter().for_each(|&(j, v)| balance[(q, j)] += v);
+        balance[(q, forces)] = systems.varying[q];
+        balance[(q, forces + 1)] = systems.fixed[q];
+    }
+    let free = null_space(&balance);
+    let (theta, one) = (free.row(forces).into_owned(), free.row(forces + 1).into_owned());
+    let mut all = DMatrix::zeros(pairs + 2, free.ncols());
+    for (j, pair) in systems.pairs.iter().enumerate() {
+        let mut slack = &one * pair.bound;
+        pair.normal.iter().for_each(|&(k, v)| slack -= free.row(k) * v);
+        all.row_mut(j).copy_from(&slack);
+    }
+    all.row_mut(pairs).copy_from(&(&theta - &one * a));
+    all.row_mut(pairs + 1).copy_from(&(&one * t - &theta));
+    all
+}
+
+/// A subspace: orthonormal columns, and their transpose.
+struct Subspace {
+    columns: DMatrix<f64>,
+    transposed: DMatrix<f64>,
+    scale: DVector<f64>,
+}
+
+impl Subspace {
+    fn new(columns: &DMatrix<f64>) -> Self {
+        let (columns, scale) = balanced(columns);
+        Subspace { transposed: columns.transpose(), columns, scale }
+    }
+}
+
+/// The program over the products of two subspaces, and the work done on it.
+struct Products {
+    motions: Subspace,
+    fields: Subspace,
+    pairs: usize,
+    range: [f64; 2],
+    /// Projection of C, in units of its length.
+    objective: DMatrix<f64>,
+    /// Length of the projection of C: multipliers in units of it.
+    unit: f64,
+    /// Projection of N.
+    power: DMatrix<f64>,
+    /// Multiplications so far.
+    work: u64,
+}
+
+impl Products {
+    fn new(systems: &Systems, range: [f64; 2]) -> Self {
+        let (motions, fields) = (Subspace::new(&motions(systems)), Subspace::new(&fields(systems, range)));
+        let pairs = systems.pairs.len();
+        let none = DMatrix::zeros(0, 0);
+        let (objective, power) = (none.clone(), none);
+        let mut all = Products { motions, fields, pairs, range, objective, unit: 1.0, power, work: 0 };
+        let at = |j: usize, value: f64| value / (all.motions.scale[pairs] * all.fields.scale[j]);
+        let (theta, upper) = (at(pairs, 1.0), at(pairs + 1, 1.0));
+        let mut matrix = DMatrix::zeros(pairs + 1, pairs + 2);
+        matrix[(pairs, pairs)] = theta;
+        let objective = all.project(&matrix);
+        all.unit = objective.norm();
+        all.objective = objective / all.unit;
+        matrix[(pairs, pairs)] = theta / (range[1] - range[0]);
+        matrix[(pairs, pairs + 1)] = upper / (range[1] - range[0]);
+        all.power = all.project(&matrix);
+        all
+    }
+
+    /// Uᵀ Z V.
+    fn inner(&mut self, z: &DMatrix<f64>) -> DMatrix<f64> {
+        let (u, v) = (&self.motions, &self.fields);
+        let (rows, columns) = z.shape();
+        self.work += (u.columns.ncols() * columns * (rows + v.columns.ncols())) as u64;
+        &u.transposed * z * &v.columns
+    }
+
+    /// U y Vᵀ.
+    fn outer(&mut self, y: &DMatrix<f64>) -> DMatrix<f64> {
+        let (u, v) = (&self.motions, &self.fields);
+        let (rows, columns) = y.shape();
+        self.work += (u.columns.nrows() * columns * (rows + v.columns.nrows())) as u64;
+        &u.columns * y * &v.transposed
+    }
+
+    fn project(&mut self, z: &DMatrix<f64>) -> DMatrix<f64> {
+        let inner = self.inner(z);
+        self.outer(&inner)
+    }
+
+    /// Multipliers ≥ 0; those of γ_i s_i have either sign.
+    fn admissible(&self, z: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut own = z.map(|z| z.max(0.0));
+        (0..self.pairs).for_each(|i| own[(i, i)] = z[(i, i)]);
+        own
+    }
+
+    /// The least of what must not be negative.
+    fn least(&self, z: &DMatrix<f64>) -> f64 {
+        let all = (0..z.ncols()).flat_map(|j| (0..z.nrows()).map(move |i| (i, j)));
+        all.filter(|&(i, j)| i != j || i == self.pairs).map(|at| z[at]).fold(0.0, f64::min)
+    }
+
+    /// The program by splitting: multipliers, and the bound that they nearly prove.
+    fn split(&mut self, iterations: usize) -> (DMatrix<f64>, f64) {
+        let length = self.power.norm();
+        let unit_power = &self.power / length;
+        let (rows, columns) = self.power.shape();
+        let mut z = DMatrix::<f64>::zeros(rows, columns);
+        let (mut w, mut penalty) = (z.clone(), PENALTY);
+        for iteration in 1..=iterations {
+            let mut x = self.project(&(&z - &w)) - &self.objective / penalty;
+            // p·q̇ = 1, in units that make the normalisation of length one.
+            let short = 1.0 - x.dot(&unit_power);
+            x += &unit_power * short;
+            let y = &x * RELAXATION + &z * (1.0 - RELAXATION) + &w;
+            let mut next = y.map(|y| y.max(0.0));
+            (0..self.pairs).for_each(|i| next[(i, i)] = 0.0);
+            w = y - &next;
+            if iteration % ADAPTED == 0 {
+                // What is missing of Z = U Y Vᵀ and of the multipliers' equation, each relative to its data.
+                let apart = (&x - &next).norm() / next.norm().max(x.norm());
+                let by = (apart / (penalty * (&next - &z).norm())).sqrt().clamp(0.5, 2.0);
+                if by.is_finite() && !(0.7..=1.4).contains(&by) {
+                    penalty *= by;
+                    w /= by;
+                }
+            }
+            z = next;
+        }
+        let multipliers = self.admissible(&(w * -penalty));
+        let proved = self.project(&multipliers);
+        let left = &self.objective - proved;
+        let bound = left.dot(&self.power) / self.power.norm_squared() * self.unit;
+        (multipliers, bound)
+    }
+
+    /// Exact multipliers of a bound, from some that are nearly right and come nearer.
+    fn prove(&mut self, bound: f64, near: &mut DMatrix<f64>, iterations: usize) -> Option<DMatrix<f64>> {
+        let target = &self.objective - &self.power * (bound / self.unit);
+        let mut nearly = NEARLY;
+        for iteration in 1..=iterations {
+            let own = self.admissible(near);
+            let reflected = &own * 2.0 - &*near;
+            *near = &own + &target - self.project(&reflected);
+            let last = iteration == iterations;
+            if iteration % CHECKED == 0 || last {
+                let short = &target - &own;
+                let moved = &own + self.project(&short);
+                if !moved.iter().all(|value| value.is_finite()) {
+                    return None;
+                }
+                if last || self.least(&moved) >= -nearly {
+                    if let Some(exact) = self.corrected(&target, own) {
+                        return Some(exact);
+                    }
+                    nearly *= 0.1;
+                }
+            }
+        }
+        None
+    }
+
+    /// Multipliers that are exact, from some that are nearly so.
+    fn corrected(&mut self, target: &DMatrix<f64>, mut own: DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let mut worst = f64::INFINITY;
+        for _ in 0..SUPPORTS {
+            let first = self.inner(&(target - &own)).amax();
+            let free = (FREE[0] * first).clamp(EXACT, FREE[1]);
+            let mut freedom = own.map(|v| (v / free).clamp(0.0, 1.0));
+            (0..self.pairs).for_each(|i| freedom[(i, i)] = 1.0);
+            let mut last = f64::INFINITY;
+            for _ in 0..CORRECTIONS {
+                let left = self.inner(&(target - &own));
+                let size = left.amax();
+                if size <= EXACT * own.amax() && self.least(&own) >= 0.0 {
+                    return Some(own * self.unit);
+                }
+                if self.least(&own) < 0.0 || size > 0.5 * last {
+                    break;
+                }
+                last = size;
+                let step = self.correction(&freedom, left);
+                own += freedom.component_mul(&self.outer(&step));
+            }
+            if !own.iter().all(|value| value.is_finite()) || first > worst {
+                return None;
+            }
+            worst = first;
+            own = self.admissible(&own);
+        }
+        None
+    }
+
+    /// y with Uᵀ (M ∘ (U y Vᵀ)) V = left, by conjugate residuals.
+    fn correction(&mut self, freedom: &DMatrix<f64>, left: DMatrix<f64>) -> DMatrix<f64> {
+        let apply = |all: &mut Self, y: &DMatrix<f64>| {
+            let outer = all.outer(y).component_mul(freedom);
+            all.inner(&outer)
+        };
+        let enough = LEFT * left.norm();
+        let mut before = left.norm();
+        let mut y = DMatrix::zeros(left.nrows(), left.ncols());
+        let mut residual = left;
+        let mut image = apply(self, &residual);
+        let (mut direction, mut along) = (residual.clone(), image.clone());
+        let mut power = residual.dot(&image);
+        for _ in 0..RESIDUALS {
+            let squared = along.norm_squared();
+            if power <= 0.0 || squared == 0.0 {
+                break;
+            }
+            let step = power / squared;
+            y += &direction * step;
+            residual -= &along * step;
+            // Conjugate residuals never grow but by rounding.
+            let now = residual.norm();
+            if now <= enough || now > before {
+                break;
+            }
+            before = now;
+            image = apply(self, &residual);
+            let next = residual.dot(&image);
+            let kept = next / power;
+            power = next;
+            direction = &residual + direction * kept;
+            along = &image + along * kept;
+        }
+        y
+    }
+
+    /// The proof with its multipliers, in the units of the systems.
+    fn step(&self, bound: f64, multipliers: &DMatrix<f64>) -> Step {
+        let n = self.pairs;
+        let mut kinds = Vec::new();
+        for i in 0..=n {
+            for j in 0..n + 2 {
+                let value = multipliers[(i, j)];
+                if value == 0.0 {
+                    continue;
+                }
+                let kind = match (i < n, j) {
+                    (true, j) if j < n => Kind::Product(i, j),
+                    (true, j) if j == n => Kind::GammaTheta(i),
+                    (true, _) => Kind::GammaUpperSlack(i),
+                    (false, j) if j < n => Kind::Slack(j),
+                    (false, j) if j == n => Kind::Theta,
+                    (false, _) => Kind::UpperSlack,
+                };
+                kinds.push((kind, value * self.motions.scale[i] * self.fields.scale[j]));
+            }
+        }
+        Step { raw: self.range[0] + bound, range: self.range, multipliers: kinds }
+    }
+
+    /// The greatest bound that so much work proves.
+    fn greatest(&mut self, limit: u64) -> Option<Step> {
+        let before = self.work;
+        let once = self.objective.clone();
+        self.project(&once);
+        let cost = (self.work - before).max(1) as f64;
+        let iterations = |share: f64| ((share * limit as f64 / cost) as usize).max(FEWEST);
+        let width = self.range[1] - self.range[0];
+        let (mut near, estimate) = self.split(iterations(SPLITTING));
+        // Not a bound, and at first not near one: what has failed is tried again once something lower is proved.
+        let high = if estimate > 0.0 { estimate.min(width) } else { width };
+        let (mut low, mut best, mut bound) = (0.0, None, FIRST_SHARE * high);
+        while high - low > CLOSE * width && bound > low + LEAST * width.min(high - low) && self.work < limit {
+            match self.prove(bound, &mut near, iterations(TRIAL)) {
+                Some(exact) => {
+                    low = bound;
+                    best = Some(self.step(bound, &exact));
+                    bound = 0.5 * (low + high);
+                }
+                None => bound = 0.5 * (low + bound),
+            }
+        }
+        best
+    }
+}
+
+/// The greatest lower bound of θ, for states with θ ≤ `most`, that so many multiplications prove; with the work it took.
+pub fn split_bound(systems: &Systems, most: f64, limit: u64) -> (Option<Bound>, u64) {
+    let most = most * (1.0 + ABOVE);
+    let (mut steps, mut proved, mut work) = (Vec::new(), 0.0, 0u64);
+    while !systems.pairs.is_empty() && proved < most * (1.0 - CLOSE) {
+        let mut products = Products::new(systems, [proved, most]);
+        let own = (RANGE * limit.saturating_sub(work) as f64) as u64;
+        // No motion of the flow rule has p·q̇ = 1, or there is too little work left to try.
+        let hopeless = products.power.norm() < RANK || own < (FEWEST as u64) * products.work;
+        let found = if hopeless { None } else { products.greatest(own) };
+        work += products.work;
+        let Some(step) = found else { break };
+        // What rounding may cost is left out where the next range begins.
+        proved = step.raw * (1.0 - 1e-6);
+        steps.push(step);
+    }
+    let bound = (!steps.is_empty()).then(|| Bound { theta: proved, steps });
+    (bound, work)
+}
