@@ -67,10 +67,10 @@ fn settled(
         }
     }
     let own = systems.pairs.iter().any(|pair| pair.non_associated());
-    if !own || flow == FlowRule::Associated {
-        if let Some(force) = field(&systems, &driven)? {
-            return follows(&systems, &driven, unit, &force, FlowRule::Associated);
-        }
+    if (!own || flow == FlowRule::Associated)
+        && let Some(force) = field(&systems, &driven)?
+    {
+        return follows(&systems, &driven, unit, &force, FlowRule::Associated);
     }
     if let Some(ray) = ray(&systems, &driven)? {
         return Ok(SettlementAnswer::Blocked(systems.variables.joint_forces(&ray, systems.force)));
