@@ -13,7 +13,7 @@ use super::rounding::{ROUNDED, jump_rounding, lie};
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::limit::{LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, FillReaction, StageLoads, add_force};
+use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, add_force};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -458,7 +458,8 @@ impl Check<'_> {
         let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
         let jumps = jumps(self.assembly, motion);
         let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
-        let (impossible, mut idle) = self.idle_power(field, &jumps, largest);
+        let laws = (&self.facets[..], &self.polygons[..]);
+        let (impossible, mut idle) = idle_power(self.assembly, laws, field, (&jumps, largest), |_| true);
         idle += self.idle_fill(claim.fill, motion);
         let flows = self.residual("flow", impossible / largest, ROUNDING);
         let scale = self.residual_scale(factor) * largest;
@@ -504,55 +505,6 @@ impl Check<'_> {
             }
         }
         (admissible && scaled && flows && complementary).then_some([lower, factor])
-    }
-
-    /// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
-    /// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
-    /// multiplier of its sliding facet; what is left of the opening is associated.
-    fn idle_power(&self, field: &[ContactForce], jumps: &[Jump], largest: f64) -> (f64, f64) {
-        let mut resultants = vec![[0.0f64; 3]; jumps.len()];
-        for contact in field {
-            let joint = &self.assembly.joints[contact.joint];
-            let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
-            let sum = &mut resultants[contact.joint];
-            sum[0] += contact.force[0];
-            sum[1] += contact.force[1];
-            sum[2] += contact.force[0] * lever;
-        }
-        let (mut impossible, mut idle) = (0.0f64, 0.0);
-        for ((joint, jump), [n, t, m]) in self.assembly.joints.iter().zip(jumps).zip(resultants) {
-            let Bond::Law(law) = joint.bond else {
-                impossible = impossible.max(jump.size());
-                continue;
-            };
-            let (height, area) = (joint.height(), joint.height() * self.assembly.width);
-            let mut open = jump.open;
-            // Slip that is rounding is none, however far a facet is from yielding.
-            let slip = if jump.slip.abs() > 8.0 * f64::EPSILON * largest { jump.slip } else { 0.0 };
-            let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
-            let sliding = self.facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * slip < 0.0);
-            match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
-                Some(facet) => {
-                    let gamma = -slip / facet.flow[1];
-                    open.iter_mut().for_each(|o| *o += gamma * facet.flow[0]);
-                    idle += gamma * slack(facet).abs();
-                }
-                None => impossible = impossible.max(slip.abs()),
-            }
-            let polygon = &self.polygons[law];
-            let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
-            let mut corners = vec![[least, 0.0]];
-            if greatest.is_finite() {
-                corners.push([greatest, 0.0]);
-            } else {
-                impossible = open.iter().fold(impossible, |worst, o| worst.max(-o));
-            }
-            let opening = Jump { open, slip: 0.0 };
-            let ends = [n / 2.0 - m / height, n / 2.0 + m / height];
-            let power = support_integral(&corners, &opening) * area + ends[0] * open[0] + ends[1] * open[1];
-            idle += power.abs();
-        }
-        (impossible, idle)
     }
 
     /// The factor that the motion proves, and by how much rounding of its jumps can change it where
@@ -644,6 +596,64 @@ pub(super) fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
     cuts.sort_by(f64::total_cmp);
     let greatest = |s: f64| lines.iter().map(|l| l[0] + s * (l[1] - l[0])).fold(f64::NEG_INFINITY, f64::max);
     cuts.windows(2).map(|w| (w[1] - w[0]) * (greatest(w[0]) + greatest(w[1])) / 2.0).sum()
+}
+
+/// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
+/// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
+/// multiplier of its sliding facet; what is left of the opening is associated. Joints that do not `count` are passed over.
+pub(super) fn idle_power(
+    assembly: &Assembly,
+    (facets, polygons): (&[Vec<Facet>], &[YieldPolygon]),
+    field: &[ContactForce],
+    (jumps, largest): (&[Jump], f64),
+    counts: impl Fn(&Joint) -> bool,
+) -> (f64, f64) {
+    let mut resultants = vec![[0.0f64; 3]; jumps.len()];
+    for contact in field {
+        let joint = &assembly.joints[contact.joint];
+        let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
+        let sum = &mut resultants[contact.joint];
+        sum[0] += contact.force[0];
+        sum[1] += contact.force[1];
+        sum[2] += contact.force[0] * lever;
+    }
+    let (mut impossible, mut idle) = (0.0f64, 0.0);
+    for ((joint, jump), [n, t, m]) in assembly.joints.iter().zip(jumps).zip(resultants) {
+        if !counts(joint) {
+            continue;
+        }
+        let Bond::Law(law) = joint.bond else {
+            impossible = impossible.max(jump.size());
+            continue;
+        };
+        let (height, area) = (joint.height(), joint.height() * assembly.width);
+        let mut open = jump.open;
+        // Slip that is rounding is none, however far a facet is from yielding.
+        let slip = if jump.slip.abs() > 8.0 * f64::EPSILON * largest { jump.slip } else { 0.0 };
+        let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
+        let sliding = facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * slip < 0.0);
+        match sliding.min_by(|a, b| slack(a).total_cmp(&slack(b))) {
+            Some(facet) => {
+                let gamma = -slip / facet.flow[1];
+                open.iter_mut().for_each(|o| *o += gamma * facet.flow[0]);
+                idle += gamma * slack(facet).abs();
+            }
+            None => impossible = impossible.max(slip.abs()),
+        }
+        let polygon = &polygons[law];
+        let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
+        let mut corners = vec![[least, 0.0]];
+        if greatest.is_finite() {
+            corners.push([greatest, 0.0]);
+        } else {
+            impossible = open.iter().fold(impossible, |worst, o| worst.max(-o));
+        }
+        let opening = Jump { open, slip: 0.0 };
+        let ends = [n / 2.0 - m / height, n / 2.0 + m / height];
+        let power = support_integral(&corners, &opening) * area + ends[0] * open[0] + ends[1] * open[1];
+        idle += power.abs();
+    }
+    (impossible, idle)
 }
 
 #[cfg(test)]

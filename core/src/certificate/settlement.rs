@@ -1,12 +1,13 @@
 //! What proves how rigid blocks follow supports that move: the supports move as they are told, joints move along the
-//! flow of their laws (associated), and the field does on every joint the work that it dissipates. With a field that
-//! is admissible no motion has less potential energy (weak duality).
+//! flow of their laws, and the field does on every joint the work that it dissipates. With associated flow and a field that
+//! is admissible no motion has less potential energy (weak duality); with the laws' own flow it is a state, of which there
+//! may be others.
 
-use super::limit::{ContactForce, largest_jump, support_integral};
-use super::mechanism::{CentroidVelocity, jumps};
-use crate::law::YieldPolygon;
+use super::limit::{ContactForce, idle_power, largest_jump, support_integral};
+use super::mechanism::{CentroidVelocity, Jump, jumps};
+use crate::law::{Facet, FlowRule, YieldPolygon};
 use crate::model::geometry::{Vec2, turned};
-use crate::model::{Assembly, Bond, Stage, Target};
+use crate::model::{Assembly, Bond, Joint, Stage, Target};
 
 /// Motion of every held block at its centroid by the end of stage `index`; `None` of free ones.
 ///
@@ -65,12 +66,14 @@ pub fn support_motions(
 /// Residuals by name: `settlement_supports` (how far held blocks are from where they are told to be), `settlement_flow`
 /// (jumps that are no flow), both relative to the greatest displacement and to the greatest jump or a millionth of that, and `settlement_gap` (work of the
 /// field on all joints that is not dissipated, relative to the sum of |force| × greatest jump). `supports`: the motion
-/// of every held block, `None` of free ones.
+/// of every held block, `None` of free ones. With the laws' own flow jumps are combinations of flow directions, and the gap is
+/// the power of each on the distance of the field from its yield surface.
 pub fn settlement_residuals(
     assembly: &Assembly,
     field: &[ContactForce],
     motion: &[CentroidVelocity],
     supports: &[Option<CentroidVelocity>],
+    flow: FlowRule,
 ) -> [(&'static str, f64); 3] {
     let size = |v: &CentroidVelocity| v[0].hypot(v[1]).max(v[2].abs() * assembly.size());
     let greatest = motion.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
@@ -78,29 +81,46 @@ pub fn settlement_residuals(
     let off = held.map(|v| size(&v)).fold(0.0, f64::max) / greatest;
     let jumps = jumps(assembly, motion);
     let largest = largest_jump(&jumps).max(1e-6 * greatest);
+    let facets: Vec<Vec<Facet>> =
+        assembly.catalogue.laws.iter().map(|(_, law)| law.facets().unwrap_or_default()).collect();
+    let polygons: Vec<YieldPolygon> = facets.iter().map(|facets| YieldPolygon::of(facets)).collect();
+    // Supports may move into each other: what they meet is the ground.
+    let counts =
+        |joint: &Joint| joint.bond == Bond::Bonded || supports[joint.minus].is_none() || supports[joint.plus].is_none();
+    let (impossible, gap) = match flow {
+        FlowRule::Associated => undissipated(assembly, &polygons, field, &jumps, counts),
+        FlowRule::NonAssociated => idle_power(assembly, (&facets, &polygons), field, (&jumps, largest), counts),
+    };
+    let forces: f64 = field.iter().map(|contact| contact.force[0].hypot(contact.force[1])).sum();
+    [
+        ("settlement_supports", off),
+        ("settlement_flow", impossible / largest),
+        ("settlement_gap", gap / (forces * largest).max(f64::MIN_POSITIVE)),
+    ]
+}
+
+/// The greatest jump that is no associated flow, and the work of the field on the joints that is not dissipated.
+fn undissipated(
+    assembly: &Assembly,
+    polygons: &[YieldPolygon],
+    field: &[ContactForce],
+    jumps: &[Jump],
+    counts: impl Fn(&Joint) -> bool,
+) -> (f64, f64) {
     let mut work: Vec<f64> = vec![0.0; jumps.len()];
-    let mut forces = 0.0;
     for contact in field {
         let (joint, jump) = (&assembly.joints[contact.joint], &jumps[contact.joint]);
         let along = joint.ends[1] - joint.ends[0];
         let share = (contact.point - joint.ends[0]).dot(&along) / along.norm_squared();
         let open = jump.open[0] + share * (jump.open[1] - jump.open[0]);
         work[contact.joint] += contact.force[0] * open + contact.force[1] * jump.slip;
-        forces += contact.force[0].hypot(contact.force[1]);
     }
     let (mut impossible, mut gap) = (0.0f64, 0.0);
-    let polygons: Vec<YieldPolygon> =
-        assembly.catalogue.laws.iter().map(|(_, law)| YieldPolygon::of(&law.facets().unwrap_or_default())).collect();
-    for ((joint, jump), work) in assembly.joints.iter().zip(&jumps).zip(&work) {
-        let held = |body: usize| supports[body].is_some();
+    for ((joint, jump), work) in assembly.joints.iter().zip(jumps).zip(&work).filter(|((joint, _), _)| counts(joint)) {
         let Bond::Law(law) = joint.bond else {
             impossible = impossible.max(jump.size());
             continue;
         };
-        // Supports may move into each other: what they meet is the ground.
-        if held(joint.minus) && held(joint.plus) {
-            continue;
-        }
         let polygon = &polygons[law];
         for open in jump.open {
             impossible = impossible.max(polygon.impossible([open, jump.slip]));
@@ -108,9 +128,5 @@ pub fn settlement_residuals(
         let dissipated = support_integral(&polygon.vertices, jump) * joint.height() * assembly.width;
         gap += (work + dissipated).abs();
     }
-    [
-        ("settlement_supports", off),
-        ("settlement_flow", impossible / largest),
-        ("settlement_gap", gap / (forces * largest).max(f64::MIN_POSITIVE)),
-    ]
+    (impossible, gap)
 }

@@ -2,6 +2,7 @@
 
 use super::lower_proof::LowerProof;
 use super::problem::{JointForce, LimitProblem, Velocity};
+use crate::law::FlowRule;
 use crate::model::Wrenches;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -96,6 +97,8 @@ pub enum SettlementAnswer {
         motion: Vec<Velocity>,
         /// Whether it is the only one.
         unique: Option<bool>,
+        /// How joints were read.
+        flow: FlowRule,
     },
     /// No motion goes with that of the supports: forces in balance without loads that do no work against any flow of the
     /// joints, and do work against the supports. One entry per joint of the problem.
@@ -116,7 +119,7 @@ pub trait LimitSolver: Debug + Send + Sync {
     /// How rigid blocks follow supports that move, small displacements: of all motions q with the given `openings` of
     /// both ends and slip \[m\] that the supports alone would cause at each joint, those of least potential energy
     /// −w·q + Σ bᵢγᵢ under the loads w of each group about the pole; the dual is the field. Joints are read with
-    /// associated flow.
+    /// associated flow; where no motion goes with that, or the solver takes laws as they are, the answer is a state of the laws' own flow.
     fn settle(&self, _: &LimitProblem, _: &Wrenches, _: &[[f64; 3]]) -> SettlementAnswer {
         SettlementAnswer::Refused("this solver knows loads only, no supports that move".into())
     }

@@ -5,15 +5,17 @@
 //! fields    max −r·g_s               E r + w = 0,  A r ≤ b
 //! ```
 //!
-//! g_s: openings and slip that the supports alone cause, D = A: flow is associated. By complementary slackness the best
+//! g_s: openings and slip that the supports alone cause, D = A: flow is associated. With the laws' own flow D the field is
+//! that of D r ≤ b + (D − A) r̄, whose r̄ are its own forces: a fixed point, sought as `limit_sequential` seeks its load. By complementary slackness the best
 //! motions are those with γ_i = 0 wherever the best field has slack; one is taken in their relative interior, the mean
 //! of those with the greatest γ_i each, which is as symmetric as the scene. Source: Iannuzzo et al. 2018, Meccanica 53
 //! (rigid blocks under settlements by least energy). Where the fields have no bound no motion exists: the ray that shows it
 //! is the answer.
 
-use super::systems::{LARGEST, Systems};
+use super::systems::{LARGEST, Pair, Systems};
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
 use voussoir_core::model::Wrenches;
 
@@ -23,15 +25,28 @@ const TIGHT: f64 = 1e-9;
 const APART: f64 = 1e-7;
 /// Pivots of a linear program.
 const PIVOTS: u64 = 20_000;
+/// Linear programs of a sequence.
+const PROGRAMS: usize = 60;
+/// The first, each of which begins from the forces of the one before; from there on half of the way.
+const FULL: usize = 24;
+/// Change of forces, relative to the greatest, at which a sequence is at its end.
+const EXACT: f64 = 1e-12;
+/// The same from which its end is solved for.
+const CLOSE: f64 = 1e-4;
 /// What least squares may leave, relative to their right-hand side.
 const RESIDUAL: f64 = 1e-9;
 
-/// Answers for any limit solver.
-pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
-    settled(problem, loads, openings).unwrap_or_else(SettlementAnswer::Refused)
+/// Answers for any limit solver: with this flow, or the laws' own where no motion goes with associated flow.
+pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]], flow: FlowRule) -> SettlementAnswer {
+    settled(problem, loads, openings, flow).unwrap_or_else(SettlementAnswer::Refused)
 }
 
-fn settled(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> Result<SettlementAnswer, String> {
+fn settled(
+    problem: &LimitProblem,
+    loads: &Wrenches,
+    openings: &[[f64; 3]],
+    flow: FlowRule,
+) -> Result<SettlementAnswer, String> {
     if problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
         return Err("settlements of rigid blocks take no joints that crush".into());
     }
@@ -51,20 +66,118 @@ fn settled(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> R
             driven[first + k] = if unit > 0.0 { opening[k] / unit } else { 0.0 };
         }
     }
-    let Some(force) = field(&systems, &driven)? else {
-        let ray = ray(&systems, &driven)?;
+    let own = systems.pairs.iter().any(|pair| pair.non_associated());
+    if (!own || flow == FlowRule::Associated)
+        && let Some(force) = field(&systems, &driven)?
+    {
+        return follows(&systems, &driven, unit, &force, FlowRule::Associated);
+    }
+    if let Some(ray) = ray(&systems, &driven)? {
         return Ok(SettlementAnswer::Blocked(systems.variables.joint_forces(&ray, systems.force)));
-    };
-    let tight = tight(&systems, &force);
-    let (multipliers, unique) = multipliers(&systems, &driven, &tight)?;
-    let motion = motion(&systems, &driven, &tight, &multipliers)?;
+    }
+    if !own {
+        return Err("rigid blocks neither follow their supports nor is it proved that they cannot".into());
+    }
+    let state = own_flow(&systems, &driven)
+        .and_then(|force| follows(&fictitious(&systems, &force), &driven, unit, &force, FlowRule::NonAssociated));
+    match state {
+        // Where no state of their own flow is found blocks are read with associated flow, as the answer says.
+        Err(why) if flow == FlowRule::NonAssociated => {
+            let force = field(&systems, &driven)?.ok_or(why)?;
+            follows(&systems, &driven, unit, &force, FlowRule::Associated)
+        }
+        state => state,
+    }
+}
+
+/// The answer with this field, on whose yield surface `systems` are read with associated flow.
+fn follows(
+    systems: &Systems,
+    driven: &[f64],
+    unit: f64,
+    force: &[f64],
+    flow: FlowRule,
+) -> Result<SettlementAnswer, String> {
+    let tight = tight(systems, force);
+    let (multipliers, unique) = multipliers(systems, driven, &tight)?;
+    let motion = motion(systems, driven, &tight, &multipliers)?;
     let length = systems.length;
     let of = |q: &[f64]| -> Velocity { [q[0] * unit, q[1] * unit, q[2] * unit / length] };
     Ok(SettlementAnswer::Follows {
-        field: systems.variables.joint_forces(&force, systems.force),
+        field: systems.variables.joint_forces(force, systems.force),
         motion: motion.chunks_exact(3).map(of).collect(),
-        unique,
+        // Of the motions that go with this field; other fields may have others.
+        unique: unique.filter(|unique| flow == FlowRule::Associated || !unique),
+        flow,
     })
+}
+
+/// The pairs that flow otherwise as associated ones through the yield point at the forces of `reference`:
+/// d·r ≤ b + (d − a)·r̄.
+fn fictitious(systems: &Systems, reference: &[f64]) -> Systems {
+    let mut replaced = systems.clone();
+    for pair in replaced.pairs.iter_mut().filter(|pair| pair.non_associated()) {
+        pair.bound += relief(pair, reference).max(0.0);
+        pair.normal.clone_from(&pair.flow);
+    }
+    replaced
+}
+
+/// (d − a)·r.
+fn relief(pair: &Pair, force: &[f64]) -> f64 {
+    let along = |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(j, v)| v * force[j]).sum() };
+    along(&pair.flow) - along(&pair.normal)
+}
+
+/// A field that is that of its own fictitious cohesion: admissible, and on the yield surface where blocks slide.
+fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
+    let start = field(systems, &vec![0.0; systems.forces])?.ok_or("no field carries the loads")?;
+    let mut reference = start.clone();
+    let mut change = f64::INFINITY;
+    for step in 0..PROGRAMS {
+        let program = fictitious(systems, &reference);
+        let Ok(Some(force)) = field(&program, driven) else {
+            // The forces of a program may violate the strengths so much that nothing carries the loads in the next.
+            reference.iter_mut().zip(&start).for_each(|(old, own)| *old += 0.5 * (own - *old));
+            continue;
+        };
+        let size = force.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
+        let moved = |pair: &Pair| (relief(pair, &force) - relief(pair, &reference)).abs();
+        change = systems.pairs.iter().map(moved).fold(0.0, f64::max) / size;
+        if change <= EXACT {
+            return Ok(force);
+        }
+        if change <= CLOSE
+            && let Some(force) = onto_yield(systems, &program, &force)
+        {
+            return Ok(force);
+        }
+        let share = if step < FULL { 1.0 } else { 0.5 };
+        reference.iter_mut().zip(&force).for_each(|(old, new)| *old += share * (new - *old));
+    }
+    Err(format!(
+        "no associated flow lets rigid blocks follow their supports, and {PROGRAMS} linear programs with the laws' own flow did \
+         not converge: forces still change by {change:.1e}. Such blocks may jam, with forces as great as joints are stiff: give \
+         joints a stiffness, and a path follows them"
+    ))
+}
+
+/// A field near its fixed point moved there: the tight pairs of its program onto the yield surface itself.
+fn onto_yield(systems: &Systems, program: &Systems, force: &[f64]) -> Option<Vec<f64>> {
+    let tight = tight(program, force);
+    let mut matrix = DMatrix::zeros(systems.equilibrium.len() + tight.len(), systems.forces);
+    let mut values = DVector::zeros(matrix.nrows());
+    let balance = systems.equilibrium.iter().zip(systems.fixed.iter().map(|w| -w));
+    let yields = tight.iter().map(|&i| (&systems.pairs[i].normal, systems.pairs[i].bound));
+    for (row, (entries, value)) in balance.chain(yields).enumerate() {
+        entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
+        values[row] = value - entries.iter().map(|&(j, v)| v * force[j]).sum::<f64>();
+    }
+    let correction = least_squares(matrix, &values, "forces").ok()?;
+    let moved: Vec<f64> = force.iter().zip(&correction).map(|(r, by)| r + by).collect();
+    let size = moved.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
+    let excess = |pair: &Pair| pair.normal.iter().map(|&(j, v)| v * moved[j]).sum::<f64>() - pair.bound;
+    systems.pairs.iter().all(|pair| excess(pair) <= EXACT * size).then_some(moved)
 }
 
 /// The field on which the supports do most work against the blocks, in units of force; `None` where that has no bound.
@@ -115,7 +228,7 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> 
 /// Forces in balance without loads that do no positive work against any flow d of the joints, and negative work on the
 /// gaps of the supports, the greatest force one: E r = 0, D r ≤ 0, r·g_s < 0. By Farkas' lemma no motion goes with the
 /// supports then. The flow is the laws' own: friction that is not associated leaves blocks more motions.
-fn ray(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
+fn ray(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     let (free, pairs) = (systems.forces, systems.pairs.len());
     let row = |entries: &[(usize, f64)], slack: Option<usize>| {
         let mut row = vec![0.0; free + pairs];
@@ -129,11 +242,9 @@ fn ray(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     let rows: Vec<Vec<f64>> = balance.chain(flows).chain([row(&work, None)]).collect();
     let mut right = vec![0.0; rows.len()];
     right[rows.len() - 1] = -1.0;
-    let none = "with associated flow rigid blocks cannot follow their supports, and with their laws' own flow they may: \
-                limit analysis does not tell";
-    let mut program = Equations { free, variables: pairs, rows, right }.dictionary().ok_or(none)?;
+    let Some(mut program) = (Equations { free, variables: pairs, rows, right }).dictionary() else { return Ok(None) };
     if program.feasible() != Feasibility::Point {
-        return Err(none.into());
+        return Ok(None);
     }
     // The least slacks: one vertex, with few forces.
     let slacks: Vec<(usize, f64)> = (0..pairs).map(|i| (i, 1.0)).collect();
@@ -149,7 +260,7 @@ fn ray(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     let mut ray = least_squares(matrix, &values, "ray")?;
     let greatest = ray.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
     ray.iter_mut().for_each(|r| *r /= greatest);
-    Ok(ray)
+    Ok(Some(ray))
 }
 
 /// The least x of all that solve the equations.

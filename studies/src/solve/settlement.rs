@@ -110,13 +110,14 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
     let supports = support_motions(assembly, input.stages, index)?;
     let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + asked.factor * b[i]);
     let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
-    let (field, motion, unique) = match asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports)) {
-        SettlementAnswer::Follows { field, motion, unique } => (field, motion, unique),
-        SettlementAnswer::Blocked(ray) => {
-            return blocked(input, asked, &contact_forces(problem, &ray), &supports, result).map(|()| Vec::new());
-        }
-        SettlementAnswer::Refused(why) => return Err(why),
-    };
+    let (field, motion, unique, flow) =
+        match asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports)) {
+            SettlementAnswer::Follows { field, motion, unique, flow } => (field, motion, unique, flow),
+            SettlementAnswer::Blocked(ray) => {
+                return blocked(input, asked, &contact_forces(problem, &ray), &supports, result).map(|()| Vec::new());
+            }
+            SettlementAnswer::Refused(why) => return Err(why),
+        };
     let field = contact_forces(problem, &field);
     let free = body_velocities(assembly, problem, &motion);
     let motion: Vec<CentroidVelocity> = supports.iter().zip(free).map(|(held, free)| held.unwrap_or(free)).collect();
@@ -138,15 +139,25 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
         return Err(certificate.failures.join("; "));
     }
     result.certificate.residuals.extend(certificate.residuals);
-    for (name, value) in settlement_residuals(assembly, &field, &motion, &supports) {
+    for (name, value) in settlement_residuals(assembly, &field, &motion, &supports, flow) {
         result.certificate.residuals.insert(name.into(), value);
         if value.is_nan() || value > PROVED {
             return Err(format!("{name}: {value:.3e} exceeds {PROVED:.1e}"));
         }
     }
     if problem.non_associated {
-        result.flow_read_as = Some("associated".into());
-        let note = "blocks follow their supports with associated flow: slip opens a joint by its friction angle";
+        let (read, note) = match flow {
+            FlowRule::Associated => (
+                Some("associated".into()),
+                "blocks follow their supports with associated flow: slip opens a joint by its friction angle",
+            ),
+            FlowRule::NonAssociated => (
+                None,
+                "blocks follow their supports with the laws' own flow: a state in balance, within the strengths, that moves only \
+                 where it yields; there may be others",
+            ),
+        };
+        result.flow_read_as = read;
         result.notes.push(note.into());
     }
     let name = |body: usize| assembly.bodies[body].name.clone();
@@ -162,6 +173,6 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
     if largest_jump(&jumps(assembly, &motion)) <= RIGID * greatest {
         return Ok(Vec::new());
     }
-    let found = mechanism(assembly, &motion, unique, FlowRule::Associated);
+    let found = mechanism(assembly, &motion, unique, flow);
     Ok(found.map_or_else(Vec::new, |found| found.hinges))
 }

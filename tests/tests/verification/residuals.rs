@@ -7,6 +7,7 @@ use std::sync::Arc;
 use voussoir::core::certificate::{
     PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, settlement_residuals, tolerance,
 };
+use voussoir::core::law::FlowRule;
 use voussoir::core::limit::{
     JointForce, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status, Velocity,
 };
@@ -200,7 +201,7 @@ fn a_support_elsewhere_is_seen() {
     let told = |x: f64| -> Vec<Option<[f64; 3]>> {
         case.assembly.bodies.iter().map(|body| body.fixed.then_some([x, 0.0, 0.0])).collect()
     };
-    let off = |x: f64| settlement_residuals(&case.assembly, &[], &still, &told(x))[0];
+    let off = |x: f64| settlement_residuals(&case.assembly, &[], &still, &told(x), FlowRule::Associated)[0];
     assert_eq!(off(0.0), ("settlement_supports", 0.0));
     assert!(off(1e-3).1 > 1e-8);
 }

@@ -4,7 +4,9 @@
 use voussoir::core::certificate::Side;
 use voussoir::core::limit::Status;
 use voussoir::results::{CaseResult, Proof};
-use voussoir_tests::{answered, assert_close, changed};
+use voussoir::solve_case;
+use voussoir::verify::case::verify_case;
+use voussoir_tests::{answered, assert_close, changed, first_case};
 
 /// The reference arch of 15 elastic voussoirs: dead load, a settlement, a load at the quarter.
 fn arch(solver: &str, settlement: &str, after: &str) -> String {
@@ -284,8 +286,102 @@ fn rigid_blocks_carry_the_same_load_after_a_settlement() {
         assert_close(result.load_factor.expect("a collapse"), LOAD, 1e-9);
         assert!(!result.stages[1].hinges.is_empty());
     }
-    let read = answered(&rigid("coulomb", moved, "", ""));
-    assert_eq!((read.status, read.flow_read_as.as_deref()), (Status::Stands, Some("associated")));
+    let text = rigid("coulomb", moved, "", "");
+    for (solver, flow) in [("auto", None), ("limit_chain", Some("associated"))] {
+        let read = answered(&changed(&text, "\"auto\"", &format!("\"{solver}\"")));
+        assert_eq!((read.status, read.flow_read_as.as_deref()), (Status::Stands, flow), "{solver}");
+    }
+}
+
+/// Seven rigid voussoirs of low friction whose left support moves in and down.
+fn low_friction(solver: &str, friction: &str) -> String {
+    format!(
+        r#"name = "slips"
+[scene]
+scene = "arch"
+profile = {{ shape = "segmental", span = 10.0, rise = 3.01 }}
+thickness = 1.3653
+width = 1.0
+voussoirs = 7
+ends = "bonded"
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2200.0
+[joints.dry]
+law = "coulomb"
+friction = {friction}
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "settle"
+settlement = [{{ support = "left", displacement = [0.01, -0.02] }}]
+[solver]
+solver = "{solver}"
+"#
+    )
+}
+
+/// Friction that does not dilate: the state of `limit_sequential` is the one that a path comes to as joints grow stiff. With
+/// associated flow the blocks move otherwise, and the thrust is another.
+#[test]
+fn rigid_blocks_slip_after_a_settlement_as_stiff_joints_let_them() {
+    let state = |solver: &str, friction: &str| {
+        let case = first_case(&low_friction(solver, friction));
+        let result = solve_case(&case);
+        assert_eq!(result.status, Status::Stands, "{solver} {:?}", result.notes);
+        passes(&result);
+        assert_eq!(verify_case(&case, &result), Vec::<String>::new());
+        let motion = result.path.displacements.clone().expect("displacements");
+        let motion: Vec<f64> = motion.iter().flat_map(|entry| entry.displacement).collect();
+        let thrust = result.proof.field.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.force[0].abs()));
+        (motion, thrust, result.flow_read_as)
+    };
+    let apart = |a: &[f64], b: &[f64]| {
+        let size = b.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) / size
+    };
+    let (own, thrust, read) = state("limit_sequential", "0.45");
+    assert_eq!(read, None);
+    let (associated, other, read) = state("limit_conic", "0.45");
+    assert_eq!(read.as_deref(), Some("associated"));
+    assert!(
+        apart(&associated, &own) > 0.1 && (other - thrust).abs() > 0.1 * thrust,
+        "{associated:?} {own:?} {other} {thrust}"
+    );
+    let stiff =
+        |k: f64| state("event_path", &format!("0.45\nnormal_stiffness = {k:e}\nshear_stiffness = {:e}", 0.5 * k));
+    for (k, bound) in [(1e11, 2e-2), (1e13, 2e-4)] {
+        let (motion, reached, _) = stiff(k);
+        assert!(apart(&motion, &own) < bound, "{k} {motion:?} {own:?}");
+        assert_close(reached, thrust, 1e-9);
+    }
+}
+
+/// A support that moves in against five voussoirs of high friction jams them: forces grow as stiff as joints are made, so that rigid
+/// blocks have no state on the way. Limit analysis refuses, and says why.
+#[test]
+fn rigid_blocks_that_jam_are_refused() {
+    let scene = |solver: &str, friction: &str| {
+        let text = low_friction(solver, friction);
+        let text = changed(&text, "span = 10.0, rise = 3.01", "span = 11.270136014195565, rise = 2.0894729548624658");
+        let text = changed(&text, "thickness = 1.3653", "thickness = 1.3368464117222334");
+        let text = changed(&text, "voussoirs = 7", "voussoirs = 5");
+        changed(&text, "[0.01, -0.02]", "[0.0065165756233126265, 0.0]")
+    };
+    let rigid = answered(&scene("limit_conic", "0.6548213848460943"));
+    assert_eq!(rigid.status, Status::Stalled);
+    assert!(rigid.notes.iter().any(|note| note.contains("give joints a stiffness")), "{:?}", rigid.notes);
+    let greatest = [1e10, 1e12].map(|k| {
+        let friction = format!("0.6548213848460943\nnormal_stiffness = {k:e}\nshear_stiffness = {:e}", 0.5 * k);
+        let result = answered(&scene("event_path", &friction));
+        assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+        passes(&result);
+        result.proof.field.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.force[0].abs()))
+    });
+    assert_close(greatest[1] / greatest[0], 100.0, 0.02);
 }
 
 /// `auto` follows no path where a field proves already that the blocks stand.

@@ -6,6 +6,7 @@ use crate::limit::conic::LimitConic;
 use crate::limit::question::answer_by;
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
@@ -25,7 +26,7 @@ impl LimitSolver for LimitChain {
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
-        settle(problem, loads, openings)
+        settle(problem, loads, openings, FlowRule::Associated)
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {

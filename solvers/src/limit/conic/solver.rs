@@ -12,6 +12,7 @@ use crate::limit::question::answer_by;
 use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitJoint, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer,
 };
@@ -46,7 +47,7 @@ impl LimitSolver for LimitConic {
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
-        settle(problem, loads, openings)
+        settle(problem, loads, openings, FlowRule::Associated)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

@@ -11,6 +11,7 @@ use crate::limit::settlement::settle;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
 use serde::{Deserialize, Serialize};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated, SettlementAnswer,
     Status,
@@ -282,7 +283,7 @@ impl LimitSolver for LimitNonassociated {
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
-        settle(problem, loads, openings)
+        settle(problem, loads, openings, FlowRule::NonAssociated)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

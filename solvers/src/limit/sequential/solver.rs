@@ -5,6 +5,7 @@ use crate::limit::associated::{associated, associated_bound, settled_by_associat
 use crate::limit::scale::combined;
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
@@ -69,7 +70,7 @@ impl LimitSolver for LimitSequential {
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
-        settle(problem, loads, openings)
+        settle(problem, loads, openings, FlowRule::NonAssociated)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {
