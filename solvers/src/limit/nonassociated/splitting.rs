@@ -405,6 +405,6 @@ pub fn split_bound(systems: &Systems, most: f64, limit: u64) -> (Option<Bound>, 
         proved = step.raw * (1.0 - 1e-6);
         steps.push(step);
     }
-    let bound = (!steps.is_empty()).then(|| Bound { theta: proved, steps });
+    let bound = (!steps.is_empty()).then_some(Bound { theta: proved, steps });
     (bound, work)
 }
