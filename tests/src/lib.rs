@@ -50,6 +50,16 @@ pub fn answered_within(text: &str, uncertain: f64) -> CaseResult {
     result
 }
 
+/// Whether a result names a bifurcation. That a branch was lost, or a step fell on another one, names none.
+pub fn names_bifurcation(result: &CaseResult) -> bool {
+    let lost = ["the branch after the peak", "to another branch"];
+    let names = |note: &String| {
+        let rest = lost.iter().fold(note.clone(), |note, words| note.replace(words, ""));
+        rest.contains("bifurcat") || rest.contains("branch")
+    };
+    result.notes.iter().any(names)
+}
+
 /// The load factor of a case that must collapse, with a certificate.
 pub fn collapse_factor(text: &str) -> f64 {
     let result = answered(text);

@@ -1,8 +1,8 @@
 //! Scenes whose load, or whose support, stands 1e-6 of the scene beside its place: the answer changes by less than 1e-3,
 //! or one of the two results names the bifurcation.
 
-use crate::strategies::{named, scene};
-use voussoir_tests::answered;
+use crate::strategies::scene;
+use voussoir_tests::{answered, names_bifurcation};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 
@@ -23,7 +23,7 @@ fn imperfect(scenes: impl Iterator<Item = usize>) {
             match (perfect.load_factor, shifted.load_factor) {
                 (Some(before), Some(after)) if (after - before).abs() < CHANGE * before.abs() => alike += 1,
                 (None, None) => refused += 1,
-                _ if named(&perfect) || named(&shifted) => bifurcate += 1,
+                (Some(_), Some(_)) if names_bifurcation(&perfect) || names_bifurcation(&shifted) => bifurcate += 1,
                 _ => apart.push(case),
             }
         }

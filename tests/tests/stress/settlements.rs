@@ -19,7 +19,7 @@ use voussoir::core::model::geometry::Vec2;
 use voussoir::results::CaseResult;
 use voussoir_tests::energy::{EnergyScene, TraceLimits, load_path, settle};
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
-use voussoir_tests::{answered, first_case};
+use voussoir_tests::{answered, first_case, names_bifurcation};
 
 /// A case of the family.
 #[derive(Debug, Clone)]
@@ -69,11 +69,10 @@ fn factor(result: &CaseResult) -> Option<f64> {
     result.load_factor.filter(|_| result.status != Status::Stalled && result.certificate.passed)
 }
 
-fn names_bifurcation(result: &CaseResult) -> bool {
-    result
-        .notes
-        .iter()
-        .any(|note| ["bifurcat", "branch", "solutions", "no rate of solution"].iter().any(|w| note.contains(w)))
+/// Whether a result says that its answer may not be the only one.
+fn names_other_states(result: &CaseResult) -> bool {
+    let several = |note: &String| ["solutions", "no rate of solution"].iter().any(|words| note.contains(words));
+    names_bifurcation(result) || result.notes.iter().any(several)
 }
 
 /// Compares an answer with the second route of its class; what is wrong, if it is.
@@ -91,7 +90,7 @@ fn second_route(stratum: &Stratum, scene: &SettledScene, result: &CaseResult, ow
         let other = if stratum.solver == "event_path" { "newton_path" } else { "event_path" };
         let other = answered(&scene.study(&keys(&Stratum { solver: other, ..stratum.clone() }, "")));
         let value = factor(&other)?;
-        let unnamed = !names_bifurcation(result) && !names_bifurcation(&other);
+        let unnamed = !names_other_states(result) && !names_other_states(&other);
         return (apart(own, value, 1e-3) && unnamed).then(|| format!("{own:.9}, {} says {value:.9}", other.solver));
     }
     if stratum.draw.deforming == Deforming::Compliant && stratum.draw.stuck {
@@ -108,7 +107,7 @@ fn second_route(stratum: &Stratum, scene: &SettledScene, result: &CaseResult, ow
     let finer =
         answered(&scene.mirrored(&keys(stratum, "continuation = { strategy = \"arc_length\", largest_step = 0.001 }")));
     let value = factor(&finer)?;
-    let unnamed = !names_bifurcation(result) && !names_bifurcation(&finer);
+    let unnamed = !names_other_states(result) && !names_other_states(&finer);
     (apart(own, value, 1e-3) && unnamed).then(|| format!("{own:.9}, the mirror image with half the step {value:.9}"))
 }
 

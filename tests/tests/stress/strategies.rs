@@ -3,9 +3,8 @@
 
 use std::collections::BTreeMap;
 use voussoir::core::limit::Status;
-use voussoir::results::CaseResult;
-use voussoir_tests::answered;
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
+use voussoir_tests::{answered, names_bifurcation};
 
 /// Strategies: arc length with three step sizes, displacement control, dissipation.
 const STRATEGIES: [(&str, &str); 5] = [
@@ -37,11 +36,6 @@ struct Runs {
     names_bifurcation: bool,
 }
 
-/// Whether a result names a bifurcation.
-pub fn named(result: &CaseResult) -> bool {
-    result.notes.iter().any(|note| note.contains("bifurcat") || note.contains("branch"))
-}
-
 fn runs(k: usize) -> Runs {
     let scene = scene(k);
     let mut out = Runs { factors: Vec::new(), stalled: Vec::new(), names_bifurcation: false };
@@ -58,7 +52,7 @@ fn runs(k: usize) -> Runs {
                 std::fs::write(format!("{folder}/strategy{name}.toml"), &text).expect("the folder exists");
             }
             let result = answered(&text);
-            out.names_bifurcation |= named(&result);
+            out.names_bifurcation |= names_bifurcation(&result);
             let run = format!("{name}{disguise}");
             println!("scene {k} {run}: {:?} {:?}", result.status, result.load_factor);
             match result.load_factor {
