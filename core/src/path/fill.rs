@@ -68,7 +68,7 @@ pub(super) fn add_fill(problem: &mut PathProblem, assembly: &Assembly, stages: &
             compliance: [compliance; 2],
             // The force stays horizontal, at the point of the block; where the block deforms it turns with half of it.
             sliding: match slot {
-                None => Sliding { share: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] },
+                None => Sliding::fixed(0.0),
                 Some(_) => Sliding::middle(0.0),
             },
         });

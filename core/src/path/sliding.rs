@@ -11,27 +11,50 @@
 //! - β = 0: the gap of x⁺ from the *line* of minus's face, the force at x⁺. Exact for any slip and any
 //!   rotation while x⁺ is a corner of plus that minus's flat face reaches, and for a whole face of plus
 //!   that lies within minus's. β = 1: the same the other way round.
-//! - β = ½: the mean of the two, and all that can be said where the corners of both bodies coincide: as
-//!   soon as they slip by s, one of the two lies beyond the other's face, and both hinges of the joint are
-//!   wrong by s/2. So s is bounded by a twentieth of the joint.
+//! - β = ½: the mean of the two, and all that can be said where the corners of both bodies coincide. As soon as they
+//!   slip by s, one of the two lies beyond the other's face, and the mean is wrong by s/2: the point becomes that of the
+//!   corner that stays on the other's face. At one end of the joint that is plus's where s > 0 and minus's where s < 0,
+//!   at the other end the other way round. β follows the slip s = t_m·(x⁺ − x⁻), t_m in the mean axes,
+//!
+//! ```text
+//! β(s) = ½ ± ½ sgn(s) ψ((|s| − w/10)/(w − w/10))     w = h/20
+//! ψ(ξ) = ξ³ (10 − 15 ξ + 6 ξ²)     0 for ξ < 0, 1 for ξ > 1
+//! ```
+//!
+//! twice continuously differentiable, so that forces and stiffness are continuous: corners are rounded by w. What is
+//! conjugate to r is r·δg with this β, in which g depends on s through β as well: beside P acts
+//! (turned(P)·(x⁺ − x⁻)) (θ⁺ − θ⁻) β'(s) along t_m in the middle between x⁺ and x⁻. Where bodies are elastic, s and
+//! x⁺ − x⁻ in this are those of their rigid motions, and what their deformation adds to the gaps is read in the mean axes
+//! (wrong by its product with (β − ½)(θ⁺ − θ⁻)), with the forces that are conjugate to that.
 //!
 //! Areas, and so the compliances of single points, are those of the undeformed joint: where it loses
-//! or gains overlap a share s/h of the joint's compliance is wrong, its equilibrium is not. Elastic bodies
-//! deform under forces at their own points, so their points keep β = ½.
+//! or gains overlap a share s/h of the joint's compliance is wrong, its equilibrium is not. A joint whose corners
+//! coincide loses overlap as it slips: half of its height is the most. Points of elastic bodies whose corners do not
+//! coincide keep β = ½, up to w.
 //! Source: the gap function of node-to-segment contact (Wriggers 2006, Computational Contact Mechanics,
 //! ch. 4), of which β = 0 and 1 are the two passes.
 
 use crate::model::geometry::Vec2;
 use crate::model::{Assembly, Joint};
 
-/// Slip up to which a point is paired with β = ½, as a share of its joint.
-const LARGEST_SLIP: f64 = 0.05;
+/// Slip at which a point has passed from the middle to a corner, and up to which it holds in the middle, as a share of
+/// its joint.
+const PASSING_SLIP: f64 = 0.05;
+
+/// Share of that slip at which it begins to pass.
+const BEGINS: f64 = 0.1;
+
+/// Most slip of a joint whose corners coincide, as a share of it: what it has lost of its overlap.
+const LARGEST_SLIP: f64 = 0.5;
 
 /// How a contact point slides with finite displacements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sliding {
-    /// β: its axes turn by θ⁻ + β (θ⁺ − θ⁻), its force acts at (1 − β) x⁺ + β x⁻.
+    /// β without slip: its axes turn by θ⁻ + β (θ⁺ − θ⁻), its force acts at (1 − β) x⁺ + β x⁻.
     pub share: f64,
+    /// Slip at which β has passed to 1 \[m\], and its negative to 0: negative at the end where β passes to 0 as the slip
+    /// grows. Zero where β does not depend on slip.
+    pub passing: f64,
     /// Least and greatest tangential gap that this holds for \[m\].
     pub slip: [f64; 2],
 }
@@ -41,20 +64,40 @@ impl Sliding {
     /// \[m\] are ends of the joint.
     pub fn of(assembly: &Assembly, joint: &Joint, position: f64, tolerance: f64) -> Self {
         let sides = [joint.minus, joint.plus];
-        let rigid = sides.iter().all(|side| !assembly.is_deformable(*side));
-        let faces = rigid.then(|| sides.map(|side| face(&assembly.bodies[side].vertices, joint.ends, tolerance)));
-        sliding(faces, joint.height(), position)
+        let faces = sides.map(|side| face(&assembly.bodies[side].vertices, joint.ends, tolerance));
+        let found = sliding(faces, joint.height(), position);
+        let elastic = sides.iter().any(|side| assembly.is_deformable(*side));
+        if elastic && found.share != 0.5 { Sliding::middle(joint.height()) } else { found }
+    }
+
+    /// With one β \[-\], whatever the slip.
+    pub fn fixed(share: f64) -> Self {
+        Sliding { share, passing: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
     /// Midway between the bodies, in a joint of this height \[m\]; without bounds where it has none.
     pub fn middle(height: f64) -> Self {
-        let most = if height > 0.0 { LARGEST_SLIP * height } else { f64::INFINITY };
-        Sliding { share: 0.5, slip: [-most, most] }
+        let most = if height > 0.0 { PASSING_SLIP * height } else { f64::INFINITY };
+        Sliding { slip: [-most, most], ..Sliding::fixed(0.5) }
     }
 
     /// Whether a tangential gap \[m\] is within its bounds.
     pub fn holds(&self, slip: f64) -> bool {
         (self.slip[0]..=self.slip[1]).contains(&slip)
+    }
+
+    /// β and its first and second derivatives at a slip \[-, 1/m, 1/m²\].
+    pub fn share_at(&self, slip: f64) -> [f64; 3] {
+        if self.passing == 0.0 {
+            return [self.share, 0.0, 0.0];
+        }
+        let passed = slip / self.passing;
+        let x = ((passed.abs() - BEGINS) / (1.0 - BEGINS)).clamp(0.0, 1.0);
+        let psi = x * x * x * (10.0 + x * (6.0 * x - 15.0));
+        let first = 30.0 * (x * (1.0 - x)).powi(2);
+        let second = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x);
+        let (sense, scale) = (passed.signum(), self.passing * (1.0 - BEGINS));
+        [0.5 + 0.5 * sense * psi, 0.5 * first / scale, 0.5 * sense * second / (scale * scale)]
     }
 }
 
@@ -77,18 +120,27 @@ fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option<[f64; 2]> 
     })
 }
 
-/// How a point at a share `position` of a joint slides; `faces` of (minus, plus), `None` where a body is
-/// elastic. An end belongs to the body whose corner it is, a point between to the nearer end.
-fn sliding(faces: Option<[Option<[f64; 2]>; 2]>, height: f64, position: f64) -> Sliding {
-    let Some([Some(minus), Some(plus)]) = faces else { return Sliding::middle(height) };
+/// How a point of rigid bodies at a share `position` of a joint slides; `faces` of (minus, plus). An end belongs to the body whose corner it is, a point between to the nearer end.
+fn sliding(faces: [Option<[f64; 2]>; 2], height: f64, position: f64) -> Sliding {
+    let [Some(minus), Some(plus)] = faces else { return Sliding::middle(height) };
     let end = usize::from(position > 0.5);
     let own = [0.0, height][end];
     let at = position * height;
     match (minus[end] == own, plus[end] == own) {
-        (false, true) => Sliding { share: 0.0, slip: [minus[0] - at, minus[1] - at] },
-        (true, false) => Sliding { share: 1.0, slip: [at - plus[1], at - plus[0]] },
+        (false, true) => Sliding { slip: [minus[0] - at, minus[1] - at], ..Sliding::fixed(0.0) },
+        (true, false) => Sliding { slip: [at - plus[1], at - plus[0]], ..Sliding::fixed(1.0) },
+        (true, true) => coinciding(height, position),
         _ => Sliding::middle(height),
     }
+}
+
+/// Where the corners of both bodies coincide at the nearer end of a joint: midway, and at a corner once that has slipped.
+/// A point in the very middle is no end's.
+fn coinciding(height: f64, position: f64) -> Sliding {
+    let width = PASSING_SLIP * height;
+    let passing = if position == 0.5 { 0.0 } else { width * (position - 0.5).signum() };
+    let most = LARGEST_SLIP * height;
+    Sliding { share: 0.5, passing, slip: [-most, most] }
 }
 
 #[cfg(test)]
@@ -107,18 +159,38 @@ mod tests {
         let ends = [Vec2::new(3.0, 1.0), Vec2::new(1.0, 1.0)];
         let faces = [&below, &above].map(|v| face(v, ends, 1e-9));
         assert_eq!(faces, [Some([-1.0, 3.0]), Some([0.0, 2.0])]);
-        assert_eq!(sliding(Some(faces), 2.0, 0.0), Sliding { share: 0.0, slip: [-1.0, 3.0] });
-        assert_eq!(sliding(Some(faces), 2.0, 0.75), Sliding { share: 0.0, slip: [-2.5, 1.5] });
+        assert_eq!(sliding(faces, 2.0, 0.0), Sliding { slip: [-1.0, 3.0], ..Sliding::fixed(0.0) });
+        assert_eq!(sliding(faces, 2.0, 0.75), Sliding { slip: [-2.5, 1.5], ..Sliding::fixed(0.0) });
         // The other way up: the point belongs to minus, which slides by −g_t on plus.
-        let swapped = Some([faces[1], faces[0]]);
-        assert_eq!(sliding(swapped, 2.0, 0.75), Sliding { share: 1.0, slip: [-1.5, 2.5] });
+        let swapped = [faces[1], faces[0]];
+        assert_eq!(sliding(swapped, 2.0, 0.75), Sliding { slip: [-1.5, 2.5], ..Sliding::fixed(1.0) });
         // Half over: each end has its own corner.
-        let half = Some([Some([0.0, 3.0]), Some([-1.0, 2.0])]);
+        let half = [Some([0.0, 3.0]), Some([-1.0, 2.0])];
         assert_eq!([0.25, 0.75].map(|p| sliding(half, 2.0, p).share), [1.0, 0.0]);
-        // Corners that coincide, and elastic bodies, stay midway.
-        let same = Some([Some([0.0, 2.0]); 2]);
-        assert_eq!(sliding(same, 2.0, 0.0), Sliding { share: 0.5, slip: [-0.1, 0.1] });
-        assert_eq!(sliding(None, 2.0, 0.0), Sliding::middle(2.0));
+        // Corners that coincide pass from the middle to the corner that stays on a face; without faces points stay midway.
+        let same = [Some([0.0, 2.0]); 2];
+        assert_eq!(sliding(same, 2.0, 0.0), Sliding { share: 0.5, passing: -0.1, slip: [-1.0, 1.0] });
+        assert_eq!(sliding(same, 2.0, 1.0), Sliding { share: 0.5, passing: 0.1, slip: [-1.0, 1.0] });
+        assert_eq!(sliding([None; 2], 2.0, 0.0), Sliding::middle(2.0));
         assert_eq!(face(&below, [Vec2::new(3.0, 0.5), Vec2::new(1.0, 0.5)], 1e-9), None);
+    }
+
+    /// β passes from ½ to the corner's, with the derivatives that it says.
+    #[test]
+    fn a_coinciding_corner_passes_to_the_one_that_stays_on_a_face() {
+        for passing in [-0.1, 0.1] {
+            let sliding = Sliding { passing, ..Sliding::middle(2.0) };
+            assert_eq!(
+                [-1.0, -0.1, 0.0, 0.1, 1.0].map(|s| sliding.share_at(s * passing / 0.1)[0]),
+                [0.0, 0.0, 0.5, 1.0, 1.0]
+            );
+            for slip in [-0.12, -0.07, -1e-3, 0.02, 0.09, 0.2] {
+                let [_, first, second] = sliding.share_at(slip);
+                let [above, below] = [1e-6, -1e-6].map(|h| sliding.share_at(slip + h));
+                assert!(((above[0] - below[0]) / 2e-6 - first).abs() < 1e-7, "{slip}");
+                assert!(((above[1] - below[1]) / 2e-6 - second).abs() < 1e-5, "{slip}");
+            }
+        }
+        assert_eq!(Sliding::fixed(0.25).share_at(3.0), [0.25, 0.0, 0.0]);
     }
 }

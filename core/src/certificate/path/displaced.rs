@@ -5,7 +5,7 @@
 //! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
 //! axes. A contact's n and t turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are those of x⁺ − x⁻ in them, and its force
 //! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
-//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
+//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle; where β follows the slip a force along t goes with that). Bodies balance about their displaced poles.
 
 use crate::law::{Facet, FacetMode};
 use crate::model::geometry::{Vec2, cross, turned};
@@ -47,35 +47,56 @@ impl<'a> Displaced<'a> {
         Displaced { problem, state, finite, forces, deformation }
     }
 
-    /// Displacement of a point of a body \[m\].
-    fn displacement(&self, body: usize, slot: Option<usize>, point: Vec2) -> Vec2 {
+    /// Displacement of a point of a body by its rigid motion and by its deformation \[m\].
+    fn parts(&self, body: usize, slot: Option<usize>, point: Vec2) -> [Vec2; 2] {
         let [x, y, theta] = self.state.motion[body];
         let arm = point - self.problem.bodies[body].pole;
         let deformed = slot.and_then(|slot| self.deformation[body].get(slot)).copied().unwrap_or_default();
-        let swing = if self.finite { rotated(arm + deformed, theta) - arm } else { turned(arm) * theta + deformed };
-        Vec2::new(x, y) + swing
+        let shift = Vec2::new(x, y);
+        match self.finite {
+            true => [shift + (rotated(arm, theta) - arm), rotated(deformed, theta)],
+            false => [shift + turned(arm) * theta, deformed],
+        }
     }
 
-    fn side(&self, contact: &Contact, side: Attachment) -> Vec2 {
-        self.displacement(side.body, side.slot, contact.position)
+    fn displacement(&self, body: usize, slot: Option<usize>, point: Vec2) -> Vec2 {
+        let [rigid, deformed] = self.parts(body, slot, point);
+        rigid + deformed
     }
 
-    /// (n, t) of a contact point.
-    fn axes(&self, contact: &Contact) -> [Vec2; 2] {
+    /// Displacements of the points on plus and minus.
+    fn sides(&self, contact: &Contact) -> [[Vec2; 2]; 2] {
+        [contact.plus, contact.minus].map(|side: Attachment| self.parts(side.body, side.slot, contact.position))
+    }
+
+    /// Axes (n, t) of a contact point that have turned with a share β of its bodies' relative turn.
+    fn axes(&self, contact: &Contact, share: f64) -> [Vec2; 2] {
         let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
-        let turn = low + contact.sliding.share * (high - low);
+        let turn = low + share * (high - low);
         [contact.normal, contact.tangent].map(|e| if self.finite { rotated(e, turn) } else { e })
+    }
+
+    /// β of a contact point and its derivative by the slip, at its slip in the mean axes.
+    fn share(&self, contact: &Contact) -> [f64; 2] {
+        if !self.finite {
+            return [0.5, 0.0];
+        }
+        let [plus, minus] = self.sides(contact);
+        let slip = (plus[0] - minus[0]).dot(&self.axes(contact, 0.5)[1]);
+        let [share, first, _] = contact.sliding.share_at(slip);
+        [share, first]
     }
 
     /// Gaps (n, t) of all contact points from motions, forces and loads \[m\].
     pub fn gaps(&self) -> Vec<[f64; 2]> {
         let gap = |(contact, force): (&Contact, &[f64; 2])| {
-            let jump = self.side(contact, contact.plus) - self.side(contact, contact.minus);
-            let [n, t] = self.axes(contact);
-            [
-                contact.gap + jump.dot(&n) + contact.compliance[0] * force[0],
-                jump.dot(&t) + contact.compliance[1] * force[1],
-            ]
+            let [plus, minus] = self.sides(contact);
+            let [of_motion, of_deformation] = [self.axes(contact, self.share(contact)[0]), self.axes(contact, 0.5)];
+            let of = |k: usize| {
+                let read = (plus[0] - minus[0]).dot(&of_motion[k]) + (plus[1] - minus[1]).dot(&of_deformation[k]);
+                read + contact.compliance[k] * force[k]
+            };
+            [contact.gap + of(0), of(1)]
         };
         self.problem.contacts.iter().zip(&self.state.force).map(gap).collect()
     }
@@ -121,13 +142,36 @@ impl<'a> Displaced<'a> {
             }
         }
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
-            let [n, t] = self.axes(contact);
-            let push = n * r[0] + t * r[1];
-            let share = if self.finite { contact.sliding.share } else { 0.5 };
-            let at = self.side(contact, contact.plus) * (1.0 - share) + self.side(contact, contact.minus) * share;
-            add(contact.plus.body, at, contact.position, push);
-            add(contact.minus.body, at, contact.position, -push);
+            let [share, by_slip] = self.share(contact);
+            let [plus, minus] = self.sides(contact);
+            let [n, t] = self.axes(contact, share);
+            let by_motion = n * r[0] + t * r[1];
+            let mut both = |at: Vec2, push: Vec2| {
+                add(contact.plus.body, at, contact.position, push);
+                add(contact.minus.body, at, contact.position, -push);
+            };
+            both(plus[0] * (1.0 - share) + minus[0] * share, by_motion);
+            if by_slip != 0.0 {
+                // What β does as the slip grows: r·∂g/∂β β' along the mean tangent.
+                let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
+                let passing = cross(by_motion, plus[0] - minus[0]) * (high - low) * by_slip;
+                both((plus[0] + minus[0]) * 0.5, self.axes(contact, 0.5)[1] * passing);
+            }
+        }
+        if self.finite {
+            self.add_deformed_levers(&mut wrench);
         }
         wrench
+    }
+
+    /// Adds the moments of contact forces about what the deformation of bodies adds to their places.
+    fn add_deformed_levers(&self, wrench: &mut [[f64; 3]]) {
+        for (contact, r) in self.problem.contacts.iter().zip(&self.state.force) {
+            let [n, t] = self.axes(contact, 0.5);
+            let [plus, minus] = self.sides(contact);
+            let moment = cross((plus[1] + minus[1]) * 0.5, n * r[0] + t * r[1]);
+            wrench[contact.plus.body][2] += moment;
+            wrench[contact.minus.body][2] -= moment;
+        }
     }
 }

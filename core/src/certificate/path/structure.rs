@@ -285,10 +285,7 @@ fn read_fill(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> R
             gap: 0.0,
             law: PointLaw::Facets(law.into()),
             compliance: [reaction.stiffness().map_or(0.0, f64::recip); 2],
-            sliding: Sliding {
-                share: if slot.is_some() { 0.5 } else { 0.0 },
-                slip: [f64::NEG_INFINITY, f64::INFINITY],
-            },
+            sliding: Sliding::fixed(if slot.is_some() { 0.5 } else { 0.0 }),
         });
     }
     Ok(())

@@ -25,6 +25,28 @@ pub(super) struct Place<'a> {
     pub blocks: &'a [Option<YieldingBlock>],
 }
 
+/// A contact point where its bodies have moved rigidly.
+pub(super) struct Frame {
+    /// R⁺ξ⁺ and R⁻ξ⁻.
+    pub arms: [Vec2; 2],
+    /// x⁺ − x⁻.
+    pub jump: Vec2,
+    /// e_n and e_t.
+    pub axes: [Vec2; 2],
+    /// β and its derivatives by the slip in the mean axes.
+    pub share: [f64; 3],
+    /// θ⁺ − θ⁻.
+    pub turn: f64,
+}
+
+impl Frame {
+    /// Axes turned back from those by β to the mean ones.
+    pub fn mean(&self) -> [Vec2; 2] {
+        let back = rotation((0.5 - self.share[0]) * self.turn);
+        self.axes.map(|e| back * e)
+    }
+}
+
 /// Geometry of a problem as the path solver sees it.
 pub(super) struct Geometry<'a> {
     pub problem: &'a PathProblem,
@@ -90,15 +112,21 @@ impl<'a> Geometry<'a> {
         Vec2::new(x, y) + swing
     }
 
-    /// (R⁺ξ⁺, R⁻ξ⁻, x⁺ − x⁻ of the rigid motions, e_n and e_t) of a contact point.
-    pub fn frame(&self, contact: usize, motion: &[[f64; 3]]) -> (Vec2, Vec2, Vec2, [Vec2; 2]) {
+    /// Of a contact point.
+    pub fn frame(&self, contact: usize, motion: &[[f64; 3]]) -> Frame {
         let c = &self.problem.contacts[contact];
         let (minus, plus) = (c.minus.body, c.plus.body);
         let (low, high) = (motion[minus][2], motion[plus][2]);
         let arm = |body: usize, theta: f64| self.turn(theta) * (c.position - self.problem.bodies[body].pole);
-        let turn = self.turn(low + c.sliding.share * (high - low));
         let jump = self.rigid(plus, c.position, motion) - self.rigid(minus, c.position, motion);
-        (arm(plus, high), arm(minus, low), jump, [turn * c.normal, turn * c.tangent])
+        let turn = high - low;
+        let mut share = [c.sliding.share, 0.0, 0.0];
+        if self.finite && c.sliding.passing != 0.0 {
+            let middle = self.turn(low + 0.5 * turn) * c.tangent;
+            share = c.sliding.share_at(middle.dot(&jump));
+        }
+        let axes = self.turn(low + share[0] * turn);
+        Frame { arms: [arm(plus, high), arm(minus, low)], jump, axes: [axes * c.normal, axes * c.tangent], share, turn }
     }
 
     /// [n t] r in the undeformed axes, and R(−s φ/2).

@@ -1,8 +1,8 @@
 //! Gaps, equilibrium and their exact derivatives, from one potential.
 //!
 //! With x± = X_b + u_b + R(θ_b)(ξ + v_b) for the two sides of a contact point, θ_c = θ⁻ + β (θ⁺ − θ⁻)
-//! (β = ½, or 0 and 1 where the point is one body's and slides on the other's face:
-//! [`Sliding`](voussoir_core::path::Sliding)), e_i = R(θ_c) n, R(θ_c) t, the gaps are g_i = g_0 + e_i·(x⁺ − x⁻) and
+//! (β = ½, or 0 and 1 where the point is one body's and slides on the other's face, and between them a function of the
+//! slip: [`Sliding`](voussoir_core::path::Sliding)), e_i = R(θ_c) n, R(θ_c) t, the gaps are g_i = g_0 + e_i·(x⁺ − x⁻) and
 //!
 //! ```text
 //! Π(r, q) = Σ_c r·g_rigid(q) + ½ r·c r + Σ_b ½ fᵀ C f + Σ F·x_rigid(q)
@@ -20,8 +20,8 @@
 
 use super::deformation::{add_elastic_gradient, add_elastic_hessian};
 use super::derivatives::{Gradient, Hessian};
-use super::geometry::{Geometry, Place};
-use voussoir_core::model::geometry::turned;
+use super::geometry::{Frame, Geometry, Place};
+use voussoir_core::model::geometry::{Vec2, turned};
 
 /// First derivatives of Π at contact forces and motions; `blocks` are the bodies that yield.
 pub(super) fn gradient(geometry: &Geometry, place: &Place) -> Gradient {
@@ -34,23 +34,20 @@ pub(super) fn gradient(geometry: &Geometry, place: &Place) -> Gradient {
         stored: 0.0,
     };
     for (index, c) in problem.contacts.iter().enumerate() {
-        let (arm_plus, arm_minus, jump, e) = geometry.frame(index, motion);
-        let r = force[index];
+        let frame = geometry.frame(index, motion);
+        let (r, e) = (force[index], frame.axes);
         let mut gap = [c.gap, 0.0];
         for i in 0..2 {
-            gap[i] += e[i].dot(&jump) + c.compliance[i] * r[i];
+            gap[i] += e[i].dot(&frame.jump) + c.compliance[i] * r[i];
             out.stored += 0.5 * c.compliance[i] * r[i] * r[i];
         }
         out.gap.push(gap);
+        let bodies = [c.plus.body, c.minus.body];
         let push = e[0] * r[0] + e[1] * r[1];
-        let turning = if geometry.finite { turned(push).dot(&jump) } else { 0.0 };
-        let share = c.sliding.share;
-        let sides = [(c.plus.body, 1.0, arm_plus, share), (c.minus.body, -1.0, arm_minus, 1.0 - share)];
-        for (body, sign, arm, share) in sides {
-            let balance = &mut out.balance[body];
-            balance[0] += sign * push.x;
-            balance[1] += sign * push.y;
-            balance[2] += sign * push.dot(&turned(arm)) + share * turning;
+        add_force(&mut out.balance, bodies, &frame, push, frame.share[0], geometry.finite);
+        if frame.share[1] != 0.0 {
+            let along = frame.mean()[1] * passing_force(&frame, push);
+            add_force(&mut out.balance, bodies, &frame, along, 0.5, true);
         }
     }
     let acceleration = loads.acceleration();
@@ -72,6 +69,90 @@ pub(super) fn gradient(geometry: &Geometry, place: &Place) -> Gradient {
     out
 }
 
+/// Adds a force of plus on minus that acts at (1 − share) x⁺ + share x⁻.
+fn add_force(balance: &mut [[f64; 3]], bodies: [usize; 2], frame: &Frame, push: Vec2, share: f64, finite: bool) {
+    let turning = if finite { turned(push).dot(&frame.jump) } else { 0.0 };
+    let sides = [(1.0, share), (-1.0, 1.0 - share)];
+    for ((body, arm), (sign, share)) in bodies.into_iter().zip(frame.arms).zip(sides) {
+        balance[body][0] += sign * push.x;
+        balance[body][1] += sign * push.y;
+        balance[body][2] += sign * push.dot(&turned(arm)) + share * turning;
+    }
+}
+
+/// Force along the mean tangent by which β changes with the slip: ∂(r·g)/∂β β'.
+fn passing_force(frame: &Frame, push: Vec2) -> f64 {
+    turned(push).dot(&frame.jump) * frame.share[1] * frame.turn
+}
+
+/// An entry and its mirror image.
+fn both(entries: &mut Vec<(usize, usize, f64)>, i: usize, j: usize, value: f64) {
+    entries.push((i, j, value));
+    entries.push((j, i, value));
+}
+
+/// Derivatives of e·(x⁺ − x⁻) by the motions of plus and minus, whose columns begin `at`; e turns with a share β.
+fn by_motion(frame: &Frame, at: [usize; 2], e: Vec2, share: f64, finite: bool) -> [(usize, f64); 6] {
+    let turning = if finite { turned(e).dot(&frame.jump) } else { 0.0 };
+    let [plus, minus] = [(1.0, share), (-1.0, 1.0 - share)];
+    let of = |at: usize, arm: Vec2, (sign, share): (f64, f64)| {
+        [(at, sign * e.x), (at + 1, sign * e.y), (at + 2, sign * e.dot(&turned(arm)) + share * turning)]
+    };
+    let [a, b, c] = of(at[0], frame.arms[0], plus);
+    let [d, e, f] = of(at[1], frame.arms[1], minus);
+    [a, b, c, d, e, f]
+}
+
+/// Adds second derivatives of P·(x⁺ − x⁻) by the motions, P turning with a share β.
+fn add_turning(entries: &mut Vec<(usize, usize, f64)>, frame: &Frame, at: [usize; 2], push: Vec2, share: f64) {
+    let (across, jump) = (turned(push), &frame.jump);
+    let [high, low] = [share, 1.0 - share];
+    let sides = [(at[0], 1.0, frame.arms[0], high), (at[1], -1.0, frame.arms[1], low)];
+    for (at, sign, arm, share) in sides {
+        for (theta, _, _, share) in sides {
+            both(entries, at, theta + 2, sign * share * across.x);
+            both(entries, at + 1, theta + 2, sign * share * across.y);
+        }
+        let own = sign * (2.0 * share - 1.0) * push.dot(&arm) - share * share * push.dot(jump);
+        entries.push((at + 2, at + 2, own));
+    }
+    let mixed = push.dot(&(frame.arms[0] * low - frame.arms[1] * high)) - high * low * push.dot(jump);
+    both(entries, at[0] + 2, at[1] + 2, mixed);
+}
+
+/// Adds what the second derivatives of r·g have beside those at a fixed β, where β changes with the slip s. With a and s
+/// the gaps in the mean axes, D = θ⁺ − θ⁻, φ = (β(s) − ½) D, ρ = (P·n_m, P·t_m), W = P·(x⁺ − x⁻) and
+/// M = ∂W/∂φ = s ρ_n − a ρ_t, ∂M/∂φ = −W:
+///
+/// ```text
+/// ∂g/∂s    (e_t, −e_n)·(x⁺ − x⁻) φ_s          W_s    M φ_s
+/// W_as     −ρ_t φ_s         W_ss    2 ρ_n φ_s − W φ_s² + M φ_ss         W_sD    M φ_sD − W φ_s φ_D
+/// ```
+fn add_passing(entries: &mut Vec<(usize, usize, f64)>, frame: &Frame, (row, at): (usize, [usize; 2]), push: Vec2) {
+    let [beta, first, second] = frame.share;
+    let [n, t] = frame.mean();
+    let (work, moment) = (push.dot(&frame.jump), turned(push).dot(&frame.jump));
+    let (by_slip, by_turn) = (first * frame.turn, beta - 0.5);
+    let [of_a, of_s] = [n, t].map(|e| by_motion(frame, at, e, 0.5, true));
+    let rotates = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0];
+    let [e_n, e_t] = frame.axes.map(|e| e.dot(&frame.jump));
+    for (i, turned) in [e_t, -e_n].into_iter().enumerate() {
+        for (column, ds) in of_s {
+            both(entries, row + i, column, turned * by_slip * ds);
+        }
+    }
+    add_turning(entries, frame, at, t * (moment * by_slip), 0.5);
+    let in_a = -push.dot(&t) * by_slip;
+    let in_s = 2.0 * push.dot(&n) * by_slip - work * by_slip * by_slip + moment * second * frame.turn;
+    let in_turn = moment * first - work * by_slip * by_turn;
+    for k in 0..6 {
+        let along = in_a * of_a[k].1 + 0.5 * in_s * of_s[k].1 + in_turn * rotates[k];
+        for (column, ds) in of_s {
+            both(entries, of_a[k].0, column, along * ds);
+        }
+    }
+}
+
 /// Second derivatives of Π.
 pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -> Hessian {
     let Place { force, motion, loads, .. } = *place;
@@ -80,38 +161,22 @@ pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -
     let size = base + 3 * problem.bodies.len();
     let by_rotations = 12 * geometry.sides.iter().map(Vec::len).sum::<usize>();
     let mut out = Hessian::zeros(geometry.pattern.clone(), size, 40 * problem.contacts.len() + by_rotations);
-    let both = |entries: &mut Vec<(usize, usize, f64)>, i: usize, j: usize, value: f64| {
-        entries.push((i, j, value));
-        entries.push((j, i, value));
-    };
     for (index, c) in problem.contacts.iter().enumerate() {
-        let (arm_plus, arm_minus, jump, e) = geometry.frame(index, motion);
-        let (plus, minus) = (base + 3 * c.plus.body, base + 3 * c.minus.body);
-        let sides = [(plus, 1.0, arm_plus, c.sliding.share), (minus, -1.0, arm_minus, 1.0 - c.sliding.share)];
-        for (i, e) in e.iter().enumerate() {
+        let frame = geometry.frame(index, motion);
+        let at = [base + 3 * c.plus.body, base + 3 * c.minus.body];
+        for (i, e) in frame.axes.iter().enumerate() {
             let row = 2 * index + i;
-            let turning = if geometry.finite { turned(*e).dot(&jump) } else { 0.0 };
-            for (at, sign, arm, share) in sides {
-                both(&mut out.entries, row, at, sign * e.x);
-                both(&mut out.entries, row, at + 1, sign * e.y);
-                both(&mut out.entries, row, at + 2, sign * e.dot(&turned(arm)) + share * turning);
+            for (column, value) in by_motion(&frame, at, *e, frame.share[0], geometry.finite) {
+                both(&mut out.entries, row, column, value);
             }
         }
         out.forces.add(index, index, [[c.compliance[0], 0.0], [0.0, c.compliance[1]]]);
         if geometry.finite {
-            let push = e[0] * force[index][0] + e[1] * force[index][1];
-            let across = turned(push);
-            for (at, sign, arm, share) in sides {
-                for (theta, _, _, share) in sides {
-                    both(&mut out.entries, at, theta + 2, sign * share * across.x);
-                    both(&mut out.entries, at + 1, theta + 2, sign * share * across.y);
-                }
-                let own = sign * (2.0 * share - 1.0) * push.dot(&arm) - share * share * push.dot(&jump);
-                out.entries.push((at + 2, at + 2, own));
+            let push = frame.axes[0] * force[index][0] + frame.axes[1] * force[index][1];
+            add_turning(&mut out.entries, &frame, at, push, frame.share[0]);
+            if frame.share[1] != 0.0 {
+                add_passing(&mut out.entries, &frame, (2 * index, at), push);
             }
-            let (high, low) = (c.sliding.share, 1.0 - c.sliding.share);
-            let mixed = push.dot(&(arm_plus * low - arm_minus * high)) - high * low * push.dot(&jump);
-            both(&mut out.entries, plus + 2, minus + 2, mixed);
         }
     }
     let growing = loads.growing();

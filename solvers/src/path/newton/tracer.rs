@@ -10,7 +10,8 @@ use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    Branching, Continuation, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
+    Branching, Continuation, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, Sliding,
+    StageStability,
 };
 
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
@@ -185,10 +186,10 @@ fn left_its_pairing(tracer: &Tracer) -> Option<String> {
     let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
     let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
     let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
-    let why = if c.sliding.share == 0.5 {
-        "contact points between corners that were together are paired for less"
-    } else {
-        "its contact point leaves the face that it slides on"
+    let why = match c.sliding {
+        Sliding { passing, .. } if passing != 0.0 => "it has lost half of its height",
+        Sliding { share: 0.5, .. } => "contact points between corners that were together are paired for less",
+        _ => "its contact point leaves the face that it slides on",
     };
     let (joint, factor) = (c.joint, tracer.state.factor);
     Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))

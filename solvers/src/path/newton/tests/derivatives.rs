@@ -79,10 +79,19 @@ fn sliding_chain() -> PathProblem {
     problem
 }
 
+/// The same, whose points pass from the middle to a corner as they slip.
+fn passing_chain() -> PathProblem {
+    let mut problem = sliding_chain();
+    for (contact, passing) in problem.contacts.iter_mut().zip([0.4, -0.9, 1.7]) {
+        contact.sliding = Sliding { passing, ..Sliding::middle(0.0) };
+    }
+    problem
+}
+
 /// The matrix and the column of λ are the derivatives of gaps and balance, and symmetric.
 #[test]
 fn the_tangent_is_the_derivative() {
-    for (problem, finite) in [(chain(), false), (chain(), true), (sliding_chain(), true)] {
+    for (problem, finite) in [(chain(), false), (chain(), true), (sliding_chain(), true), (passing_chain(), true)] {
         let geometry = Geometry::new(&problem, finite);
         let (force, mut motion) = some_state();
         let loading = &problem.load_steps[0].loading;
