@@ -22,6 +22,9 @@ use crate::contact::mode::ContactMode;
 /// Cosine of the angle to the arriving rate below which another one is the way back.
 const BACK: f64 = -1.0 + 1e-6;
 
+/// Shares of a first step ahead at which a rate is asked for its modes.
+const AHEAD: [f64; 3] = [1e-3, 1e-2, 1e-1];
+
 /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
 pub(super) fn yielding_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
     let ahead = moved_along(tracer, rate, 1e-3 * share);
@@ -75,10 +78,13 @@ pub(super) fn branch_beyond_fold(
     // A point that is about to close is open still: with the modes beyond the fold it counts among those that may turn.
     let here = tracer.state.mode.clone();
     let beyond = own.iter().map(|(_, modes)| modes.clone());
-    for modes in std::iter::once(here).chain(beyond) {
-        if let Some(found) = by_enumeration(tracer, following, modes, share) {
-            tracer.system.count("branches", 1);
-            return Ok(Some(found));
+    let active: Vec<_> = std::iter::once(here).chain(beyond).collect();
+    for leads_on in [is_onward as Onward, closes] {
+        for modes in &active {
+            if let Some(found) = by_enumeration(tracer, following, modes, leads_on, share) {
+                tracer.system.count("branches", 1);
+                return Ok(Some(found));
+            }
         }
     }
     if let Some((other, modes)) = &own
@@ -130,43 +136,65 @@ fn unloads(tracer: &Tracer, following: &Following, rate: &Tangent, modes: &[Cont
     dissipates(tracer, &tracer.state.mode) && !dissipates(tracer, modes) && !forwards(&following.branch.tangent, rate)
 }
 
-/// Whether a rate with its modes goes on along the branch on which the path has arrived, by their second-order work:
-/// the way back does not, nor does elastic unloading.
+/// Whether a rate with its modes goes on along the branch on which the path has arrived, and is no elastic unloading.
 fn continues(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
-    if unloads(tracer, following, rate, modes) {
-        return false;
-    }
+    !unloads(tracer, following, rate, modes) && keeps_orientation(tracer, following, rate, modes)
+}
+
+/// Whether a rate with its modes goes on along the branch on which the path has arrived, by their second-order work:
+/// the way back does not.
+fn keeps_orientation(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
     let Some(before) = &following.orientation else { return true };
     let turned = State { mode: modes.to_vec(), ..tracer.state.clone() };
     let after = Orientation::along(&mut tracer.system, &turned, rate, following.direction);
     after.is_none_or(|after| before.is_singular() || after.is_singular() || before.leads_over_kink_to(&after))
 }
 
-/// The one rate among all that start here, in these modes or those of points that may leave them, that goes on along the
-/// branch, and is not the way back; `None` where there are several, or none was found.
+/// Whether a rate goes on along the branch, and is not the way back.
+fn is_onward(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    cosine(&following.branch.tangent.motion, &rate.motion) > BACK && continues(tracer, following, rate, modes)
+}
+
+/// Whether on a rate that goes on along the branch a joint closes that was open, and with it all that slides comes to
+/// rest: no elastic unloading of the state, which would open it.
+fn closes(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    let open = |c: usize, mode: ContactMode| tracer.system.law(c).is_some_and(|law| law.opens(mode));
+    let mut pairs = tracer.state.mode.iter().zip(modes).enumerate();
+    pairs.any(|(c, (before, after))| open(c, *before) && !open(c, *after))
+        && cosine(&following.branch.tangent.motion, &rate.motion) > BACK
+        && keeps_orientation(tracer, following, rate, modes)
+}
+
+/// Which rates may lead on.
+type Onward = fn(&mut Tracer, &Following, &Tangent, &[ContactMode]) -> bool;
+
+/// The one rate among all that start here, in these modes or those of points that may leave them, that leads on; `None`
+/// where there are several, or none was found.
 fn by_enumeration(
     tracer: &mut Tracer,
     following: &Following,
-    modes: Vec<ContactMode>,
+    modes: &[ContactMode],
+    leads_on: Onward,
     share: f64,
 ) -> Option<(Tangent, Vec<ContactMode>)> {
     following.orientation.as_ref().filter(|before| !before.is_singular())?;
-    let state = State { mode: modes, ..tracer.state.clone() };
+    let state = State { mode: modes.to_vec(), ..tracer.state.clone() };
     let rates = all_rates(&mut tracer.system, &state)?;
-    let mut onward = rates.into_iter().filter(|(other, modes)| {
-        cosine(&following.branch.tangent.motion, &other.motion) > BACK
-            && continues(tracer, following, other, modes)
-            && agrees(tracer, other, modes, share)
-    });
+    let mut onward = rates
+        .into_iter()
+        .filter(|(other, modes)| leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, share));
     let found = onward.next()?;
     onward.next().is_none().then_some(found)
 }
 
-/// Whether a rate asks for the modes that it was computed with.
+/// Whether a rate asks for the modes that it was computed with. The nearest state to a fold lies before it by what the
+/// iterations leave, so that near by a joint that is to close may be open still: a longer way along the rate tells.
 fn agrees(tracer: &mut Tracer, rate: &Tangent, modes: &[ContactMode], share: f64) -> bool {
     let state = tracer.state.clone();
     let size = motion_size(&tracer.system, rate).max(1e-300);
-    let mut ahead = moved_along(tracer, rate, 1e-3 * share / size);
-    ahead.mode = modes.to_vec();
-    modes_ahead(&mut tracer.system, &state, &ahead) == modes
+    AHEAD.iter().any(|ahead| {
+        let mut ahead = moved_along(tracer, rate, ahead * share / size);
+        ahead.mode = modes.to_vec();
+        modes_ahead(&mut tracer.system, &state, &ahead) == modes
+    })
 }
