@@ -98,7 +98,7 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
             // Where the load was falling the path is lost at a trough: from there it may rise to a greater peak.
             let status = match (tracer.system.finite(), tangent.factor * direction > 0.0) {
                 (true, true) => Status::Collapse,
-                (true, false) => after_peak(tracer, true),
+                (true, false) => after_peak(tracer),
                 (false, _) => Status::LimitPoint,
             };
             return Some(AfterFailure::Ended(end_path(tracer, status, why)));

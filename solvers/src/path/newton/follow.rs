@@ -288,7 +288,7 @@ fn leave(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<L
             let why = format!(
                 "at factor {factor} the branch after the peak becomes unstable under its loads, and damped descent reaches no stable one"
             );
-            let status = after_peak(tracer, true);
+            let status = after_peak(tracer);
             Some(end_path(tracer, status, why))
         }
         Departure::Falls => {
@@ -462,7 +462,7 @@ fn out_of_steps(tracer: &mut Tracer, direction: f64, linear: bool) -> LoadStepEn
     }
     // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
     let factor = tracer.state.factor;
-    let status = if tracer.system.finite() { after_peak(tracer, true) } else { Status::Stalled };
+    let status = if tracer.system.finite() { after_peak(tracer) } else { Status::Stalled };
     end_path(
         tracer,
         status,

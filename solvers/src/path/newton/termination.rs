@@ -11,7 +11,7 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
-use super::tracer::{LoadStepEnding, Tracer, after_peak, end_path, moved_along};
+use super::tracer::{LoadStepEnding, MOVED_ON, Peak, Tracer, after_peak, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
 use std::sync::Arc;
@@ -21,9 +21,10 @@ use voussoir_core::path::{Continuation, LoadStep, LoadStepEnd};
 /// Share of its fall by which the load must rise for the least one to be that of a snap-through.
 const RISES: f64 = 0.1;
 
-/// Movement of the load point after a peak, as a share of the scene's size, from which on a path may end, and at which
-/// it does.
-const MOVED_ON: f64 = 0.02;
+/// Rates of load and contact forces relative to that of the motion, in units, at which they stand still.
+const STILL: [f64; 2] = [1e-9, 1e-4];
+
+/// Movement of the load point after a peak, as a share of the scene's size, at which a path ends.
 const FURTHEST: f64 = 0.1;
 
 /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
@@ -38,7 +39,12 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
     let why = format!("no step from factor {} converges: {}{who}", tracer.state.factor, failure.why);
     let falls = rate.factor * direction <= 0.0;
     if tracer.system.finite() && tracer.limit.peak.is_some() {
-        let status = after_peak(tracer, !falls);
+        if slides_on(tracer, rate) {
+            let why =
+                format!("at its peak the structure moves on under a constant load, and was not followed there: {why}");
+            return end_path(tracer, Status::Collapse, why);
+        }
+        let status = after_peak(tracer);
         return end_path(tracer, status, format!("the branch after the peak was not followed further: {why}"));
     }
     if !tracer.strategy.passes_limit_points()
@@ -51,6 +57,17 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
         tracer.record.notes.extend(tracer.limit.unproven.take().map(|why| format!("at its last state {why}")));
         ended
     }
+}
+
+/// Whether the path has ended at its peak on a rate that moves blocks while the load stands still, and contact forces
+/// change by the blocks' displacement only: elastic rates have 1.
+fn slides_on(tracer: &Tracer, rate: &Tangent) -> bool {
+    let (u, motion) = (tracer.system.units(), motion_size(&tracer.system, rate));
+    let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
+    let factor = tracer.state.factor;
+    let at_peak = |peak: &Peak| (factor - peak.factor).abs() <= 1e-9 * factor.abs();
+    let still = (rate.factor / u.factor).abs() <= STILL[0] * motion && force <= STILL[1] * motion;
+    still && tracer.limit.peak.as_ref().is_some_and(at_peak)
 }
 
 /// Whether the path goes on with a factor that does not grow.

@@ -19,6 +19,8 @@ use voussoir_core::path::{
 const APART: f64 = 1e-6;
 /// Rise of the load above a peak, relative to it, that is none of rounding.
 const ABOVE: f64 = 1e-9;
+/// Movement of the load point after a peak, as a share of the scene's size, from which on a path may end.
+pub(super) const MOVED_ON: f64 = 0.02;
 
 /// How a load step ended.
 pub(super) enum LoadStepEnding {
@@ -133,7 +135,7 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         && let Some(why) = left_its_pairing(tracer)
     {
         let rises = (tracer.state.factor - start.factor) * direction(tracer) > 0.0;
-        let status = after_peak(tracer, rises);
+        let status = after_slip(tracer, rises);
         end_path(tracer, status, why);
         return false;
     }
@@ -156,21 +158,41 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
     LoadStepEnding::Ended
 }
 
-/// How a path with finite displacements ends whose branch after a proven peak is lost.
-pub(super) fn after_peak(tracer: &Tracer, rises: bool) -> Status {
+/// How a path with finite displacements ends whose branch after a proven peak is lost: a collapse where the load has
+/// fallen to half, its point has moved on, and the load is above no peak, as where paths end by themselves. Before that
+/// a greater peak may lie ahead, whether the load falls or rises where the path is lost; above its peaks it does.
+pub(super) fn after_peak(tracer: &Tracer) -> Status {
     let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
+    let (direction, load) = (direction(tracer), tracer.state.factor);
     let trough = tracer.post_peak.trough.as_ref().map(|trough| trough.factor);
-    lost_after_peak(direction(tracer), peak.factor, trough, (tracer.state.factor, rises))
+    let moved = moved_on(tracer) && has_halved(direction, peak.factor, trough, load);
+    if moved && !is_above(direction, peak.factor, load) { Status::Collapse } else { Status::Stalled }
 }
 
-/// How a path ends that is lost at a load, `rises` there or not, after its greatest peak and a trough: a collapse where
-/// the load is above no peak, and falls or has fallen to half, where paths end; one that rises may have a greater peak
-/// ahead, and one that is above its peaks has.
-fn lost_after_peak(direction: f64, peak: f64, trough: Option<f64>, (load, rises): (f64, bool)) -> Status {
+/// How a path with finite displacements ends where a joint has slipped as far as its pairing holds: a collapse where the
+/// load falls all that way, else as where it is lost.
+fn after_slip(tracer: &Tracer, rises: bool) -> Status {
+    let above =
+        tracer.limit.peak.as_ref().is_none_or(|peak| is_above(direction(tracer), peak.factor, tracer.state.factor));
+    if !rises && !above { Status::Collapse } else { after_peak(tracer) }
+}
+
+/// Whether the point of the load has moved on since the last proven peak as far as it must where paths end.
+fn moved_on(tracer: &Tracer) -> bool {
+    let peak = tracer.limit.peak.as_ref().map(|peak| peak.state.displacement);
+    let from = tracer.limit.proven_peaks.last().map(|peak| peak.displacement).or(peak);
+    from.is_some_and(|from| (tracer.record.state.displacement - from).abs() >= MOVED_ON * tracer.system.units().length)
+}
+
+/// Whether the load is, or was in a trough, half that of the peak.
+fn has_halved(direction: f64, peak: f64, trough: Option<f64>, load: f64) -> bool {
     let lowest = trough.map_or(load, |trough| if (trough - load) * direction < 0.0 { trough } else { load });
-    let halved = (lowest - 0.5 * peak) * direction <= 0.0 && peak * direction > 0.0;
-    let above = (load - peak) * direction > ABOVE * peak.abs();
-    if !above && (halved || !rises) { Status::Collapse } else { Status::Stalled }
+    (lowest - 0.5 * peak) * direction <= 0.0 && peak * direction > 0.0
+}
+
+/// Whether the load is above the peak, by more than rounding.
+fn is_above(direction: f64, peak: f64, load: f64) -> bool {
+    (load - peak) * direction > ABOVE * peak.abs()
 }
 
 /// Sense in which the factor of the present load step is to grow.
@@ -218,26 +240,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lost_branch_is_a_collapse_where_it_falls_or_has_fallen_to_half_below_all_peaks() {
-        let end = |trough, load, rises| {
-            let up = lost_after_peak(1.0, 10.0, trough, (load, rises));
-            let down = lost_after_peak(-1.0, -10.0, trough.map(|t: f64| -t), (-load, rises));
-            assert_eq!(up, down, "{trough:?} {load} {rises}");
-            up
+    fn paths_end_below_all_peaks_where_the_load_has_fallen_to_half() {
+        let end = |trough: Option<f64>, load: f64| {
+            let of = |sign: f64| {
+                let (peak, trough, load) = (10.0 * sign, trough.map(|t| sign * t), load * sign);
+                has_halved(sign, peak, trough, load) && !is_above(sign, peak, load)
+            };
+            assert_eq!(of(1.0), of(-1.0), "{trough:?} {load}");
+            of(1.0)
         };
-        for (trough, load, rises, status) in [
-            (None, 9.0, false, Status::Collapse),
-            (None, 9.0, true, Status::Stalled),
-            (None, 4.9, true, Status::Collapse),
-            (Some(4.9), 8.0, true, Status::Collapse),
-            (Some(5.1), 8.0, true, Status::Stalled),
+        for (trough, load, ends) in [
+            (None, 9.0, false),
+            (None, 5.1, false),
+            (None, 4.9, true),
+            (Some(4.9), 8.0, true),
+            (Some(5.1), 8.0, false),
             // Above the peak there is more to come, or the greatest load itself is not known.
-            (Some(4.9), 10.1, true, Status::Stalled),
-            (Some(5.1), 10.1, false, Status::Stalled),
+            (Some(4.9), 10.1, false),
             // Rounding is not above.
-            (Some(5.1), 10.0 * (1.0 + 1e-10), false, Status::Collapse),
+            (Some(4.9), 10.0 * (1.0 + 1e-10), true),
         ] {
-            assert_eq!(end(trough, load, rises), status, "{trough:?} {load} {rises}");
+            assert_eq!(end(trough, load), ends, "{trough:?} {load}");
         }
     }
 }
