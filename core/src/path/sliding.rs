@@ -17,20 +17,22 @@
 //!   at the other end the other way round. β follows the slip s = t_m·(x⁺ − x⁻), t_m in the mean axes,
 //!
 //! ```text
-//! β(s) = ½ ± ½ sgn(s) ψ((|s| − w/10)/(w − w/10))     w = h/20
+//! β(s) = ½ + (β± − ½) ψ((|s| − w/10)/(w − w/10))     w = h/20, β+ for s > 0, β− for s < 0
 //! ψ(ξ) = ξ³ (10 − 15 ξ + 6 ξ²)     0 for ξ < 0, 1 for ξ > 1
 //! ```
 //!
 //! twice continuously differentiable, so that forces and stiffness are continuous: corners are rounded by w. What is
 //! conjugate to r is r·δg with this β, in which g depends on s through β as well: beside P acts
-//! (turned(P)·(x⁺ − x⁻)) (θ⁺ − θ⁻) β'(s) along t_m in the middle between x⁺ and x⁻. Where bodies are elastic, s and
-//! x⁺ − x⁻ in this are those of their rigid motions, and what their deformation adds to the gaps is read in the mean axes
-//! (wrong by its product with (β − ½)(θ⁺ − θ⁻)), with the forces that are conjugate to that.
+//! (turned(P)·(x⁺ − x⁻)) (θ⁺ − θ⁻) β'(s) along t_m in the middle between x⁺ and x⁻.
+//! - Where bodies are elastic, s and x⁺ − x⁻ in this are those of their rigid motions, and what their deformation adds to
+//!   the gaps is read in the mean axes (wrong by its product with (β − ½)(θ⁺ − θ⁻)), with the forces that are conjugate to
+//!   that. Without slip deformation matters and β = ½ is right for it; a point whose corner is one body's passes to that
+//!   corner with either sign of s, β+ = β−.
 //!
 //! Areas, and so the compliances of single points, are those of the undeformed joint: where it loses
 //! or gains overlap a share s/h of the joint's compliance is wrong, its equilibrium is not. A joint whose corners
-//! coincide loses overlap as it slips: half of its height is the most. Points of elastic bodies whose corners do not
-//! coincide keep β = ½, up to w.
+//! coincide loses overlap as it slips: half of its height is the most. A point at which neither body has a corner keeps
+//! β = ½, up to w.
 //! Source: the gap function of node-to-segment contact (Wriggers 2006, Computational Contact Mechanics,
 //! ch. 4), of which β = 0 and 1 are the two passes.
 
@@ -52,8 +54,9 @@ const LARGEST_SLIP: f64 = 0.5;
 pub struct Sliding {
     /// β without slip: its axes turn by θ⁻ + β (θ⁺ − θ⁻), its force acts at (1 − β) x⁺ + β x⁻.
     pub share: f64,
-    /// Slip at which β has passed to 1 \[m\], and its negative to 0: negative at the end where β passes to 0 as the slip
-    /// grows. Zero where β does not depend on slip.
+    /// β after slip of either sense, negative and positive.
+    pub corners: [f64; 2],
+    /// Slip at which β has passed to a corner's \[m\]; zero where it does not depend on slip.
     pub passing: f64,
     /// Least and greatest tangential gap that this holds for \[m\].
     pub slip: [f64; 2],
@@ -67,12 +70,17 @@ impl Sliding {
         let faces = sides.map(|side| face(&assembly.bodies[side].vertices, joint.ends, tolerance));
         let found = sliding(faces, joint.height(), position);
         let elastic = sides.iter().any(|side| assembly.is_deformable(*side));
-        if elastic && found.share != 0.5 { Sliding::middle(joint.height()) } else { found }
+        if elastic { found.from_the_middle(joint.height()) } else { found }
     }
 
     /// With one β \[-\], whatever the slip.
     pub fn fixed(share: f64) -> Self {
-        Sliding { share, passing: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] }
+        Sliding { share, corners: [share; 2], passing: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// Midway between the bodies at first, and with its own β once it has slipped, in a joint of this height \[m\].
+    fn from_the_middle(self, height: f64) -> Self {
+        if self.share == 0.5 { self } else { Sliding { share: 0.5, passing: PASSING_SLIP * height, ..self } }
     }
 
     /// Midway between the bodies, in a joint of this height \[m\]; without bounds where it has none.
@@ -91,13 +99,13 @@ impl Sliding {
         if self.passing == 0.0 {
             return [self.share, 0.0, 0.0];
         }
-        let passed = slip / self.passing;
-        let x = ((passed.abs() - BEGINS) / (1.0 - BEGINS)).clamp(0.0, 1.0);
+        let along = 1.0 - BEGINS;
+        let x = ((slip.abs() / self.passing - BEGINS) / along).clamp(0.0, 1.0);
         let psi = x * x * x * (10.0 + x * (6.0 * x - 15.0));
         let first = 30.0 * (x * (1.0 - x)).powi(2);
         let second = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x);
-        let (sense, scale) = (passed.signum(), self.passing * (1.0 - BEGINS));
-        [0.5 + 0.5 * sense * psi, 0.5 * first / scale, 0.5 * sense * second / (scale * scale)]
+        let (by, scale) = (self.corners[usize::from(slip > 0.0)] - self.share, along * self.passing);
+        [self.share + by * psi, by * slip.signum() * first / scale, by * second / (scale * scale)]
     }
 }
 
@@ -137,10 +145,13 @@ fn sliding(faces: [Option<[f64; 2]>; 2], height: f64, position: f64) -> Sliding 
 /// Where the corners of both bodies coincide at the nearer end of a joint: midway, and at a corner once that has slipped.
 /// A point in the very middle is no end's.
 fn coinciding(height: f64, position: f64) -> Sliding {
-    let width = PASSING_SLIP * height;
-    let passing = if position == 0.5 { 0.0 } else { width * (position - 0.5).signum() };
+    let corners = match position {
+        0.5 => [0.5; 2],
+        p if p > 0.5 => [0.0, 1.0],
+        _ => [1.0, 0.0],
+    };
     let most = LARGEST_SLIP * height;
-    Sliding { share: 0.5, passing, slip: [-most, most] }
+    Sliding { share: 0.5, corners, passing: PASSING_SLIP * height, slip: [-most, most] }
 }
 
 #[cfg(test)]
@@ -169,8 +180,12 @@ mod tests {
         assert_eq!([0.25, 0.75].map(|p| sliding(half, 2.0, p).share), [1.0, 0.0]);
         // Corners that coincide pass from the middle to the corner that stays on a face; without faces points stay midway.
         let same = [Some([0.0, 2.0]); 2];
-        assert_eq!(sliding(same, 2.0, 0.0), Sliding { share: 0.5, passing: -0.1, slip: [-1.0, 1.0] });
-        assert_eq!(sliding(same, 2.0, 1.0), Sliding { share: 0.5, passing: 0.1, slip: [-1.0, 1.0] });
+        let passing = |corners| Sliding { share: 0.5, corners, passing: 0.1, slip: [-1.0, 1.0] };
+        assert_eq!(sliding(same, 2.0, 0.0), passing([1.0, 0.0]));
+        assert_eq!(sliding(same, 2.0, 1.0), passing([0.0, 1.0]));
+        // Of elastic bodies all begin in the middle.
+        let own = sliding(half, 2.0, 0.25).from_the_middle(2.0);
+        assert_eq!([-0.2, 0.0, 0.2].map(|slip| own.share_at(slip)[0]), [1.0, 0.5, 1.0]);
         assert_eq!(sliding([None; 2], 2.0, 0.0), Sliding::middle(2.0));
         assert_eq!(face(&below, [Vec2::new(3.0, 0.5), Vec2::new(1.0, 0.5)], 1e-9), None);
     }
@@ -178,12 +193,10 @@ mod tests {
     /// β passes from ½ to the corner's, with the derivatives that it says.
     #[test]
     fn a_coinciding_corner_passes_to_the_one_that_stays_on_a_face() {
-        for passing in [-0.1, 0.1] {
-            let sliding = Sliding { passing, ..Sliding::middle(2.0) };
-            assert_eq!(
-                [-1.0, -0.1, 0.0, 0.1, 1.0].map(|s| sliding.share_at(s * passing / 0.1)[0]),
-                [0.0, 0.0, 0.5, 1.0, 1.0]
-            );
+        for corners in [[0.0, 1.0], [1.0, 0.0], [1.0, 1.0]] {
+            let sliding = Sliding { corners, passing: 0.1, ..Sliding::middle(2.0) };
+            let shares = [-1.0, -0.1, 0.0, 0.1, 1.0].map(|slip| sliding.share_at(slip)[0]);
+            assert_eq!(shares, [corners[0], corners[0], 0.5, corners[1], corners[1]]);
             for slip in [-0.12, -0.07, -1e-3, 0.02, 0.09, 0.2] {
                 let [_, first, second] = sliding.share_at(slip);
                 let [above, below] = [1e-6, -1e-6].map(|h| sliding.share_at(slip + h));

@@ -108,15 +108,17 @@ fn blocks(scene: &str, strategy: &str, first_step: f64) -> f64 {
 
 /// Peaks that earlier were those of other branches, or of steps that had turned back, or (scene 137, where points slide
 /// from nothing and soon come to rest) of a first step that was too long; where points slide a peak has an error that
-/// falls with the step.
+/// falls with the step. Displacement control does not follow 158, which snaps back after its peak, nor 167, which slides
+/// under a constant load and then rocks, to where paths end.
 #[test]
 fn peaks_do_not_depend_on_the_strategy_or_the_side() {
     let all = ["arc_length", "displacement_control", "dissipation"];
+    let turning = ["arc_length", "dissipation"];
     for (scene, peak, tolerance, strategies) in [
         (include_str!("peaks/137.toml"), 0.0687179, 1e-6, &all[..]),
         (include_str!("peaks/162.toml"), 0.6433313, 1e-8, &all),
-        (include_str!("peaks/158.toml"), 319.163, 5e-6, &all),
-        (include_str!("peaks/167.toml"), 0.5891709, 1e-6, &all),
+        (include_str!("peaks/158.toml"), 319.163, 5e-6, &turning),
+        (include_str!("peaks/167.toml"), 0.5891709, 1e-6, &turning),
         (include_str!("peaks/171.toml"), 0.0690287, 1e-6, &all),
         (include_str!("peaks/171m.toml"), 0.0690287, 1e-6, &all),
     ] {
@@ -157,7 +159,7 @@ fn a_load_that_dips_and_rises_again_does_so_with_finite_displacements() {
         [("arc_length", 0.1), ("arc_length", 0.003), ("displacement_control", 0.01), ("dissipation", 0.01)]
     {
         let result = answered(&format!(
-            "{}\n[solver]\nsolver = \"newton_path\"\nkinematics = \"finite\"\ncontinuation = {{ strategy = \"{strategy}\", first_step = {first_step:?} }}\n",
+            "{}\n[solver]\nsolver = \"newton_path\"\nkinematics = \"finite\"\nstop = {{ displacement = 1e-3 }}\ncontinuation = {{ strategy = \"{strategy}\", first_step = {first_step:?} }}\n",
             include_str!("peaks/3.toml")
         ));
         assert_eq!(result.status, Status::Collapse, "{strategy}: {:?}", result.notes);

@@ -205,14 +205,14 @@ fn a_path_goes_on_where_a_joint_closes_at_a_fold() {
     let result = answered(include_str!("settled/closing_at_a_fold.toml"));
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     let factor = result.load_factor.expect("a factor");
-    assert!(result.certificate.passed && (factor - 60634.23).abs() < 1e-6 * factor, "{factor}");
+    assert!(result.certificate.passed && (factor - 57633.58).abs() < 1e-6 * factor, "{factor}");
 }
 
-/// A path that arc lengths lose at a trough, far above which the greatest peak lies: where the study names no strategy another
-/// one answers, and says so; the one that is named is the one that is used.
+/// A path that arc lengths lose at 59 % of its peak, where a greater one may lie ahead: where the study names no strategy
+/// another one answers, and says so; the one that is named is the one that is used.
 #[test]
 fn where_the_usual_strategy_stalls_another_one_follows() {
-    let scene = include_str!("settled/lost_at_a_trough.toml");
+    let scene = include_str!("settled/lost_after_its_peak.toml");
     let of = |strategy: &str| {
         let named = format!("kinematics = \"finite\"\ncontinuation = {{ strategy = \"{strategy}\" }}");
         answered(&scene.replace("kinematics = \"finite\"", &named))
@@ -220,7 +220,11 @@ fn where_the_usual_strategy_stalls_another_one_follows() {
     let [usual, named] = [answered(scene), of("displacement_control")];
     assert_eq!(usual.status, Status::Collapse, "{:?}", usual.notes);
     assert!(usual.certificate.passed && usual.load_factor == named.load_factor, "{:?}", usual.load_factor);
-    assert!(usual.load_factor.is_some_and(|factor| (factor / 161_837.0 - 1.0).abs() < 1e-4), "{:?}", usual.load_factor);
+    assert!(
+        usual.load_factor.is_some_and(|factor| (factor / 12_936.5395 - 1.0).abs() < 1e-8),
+        "{:?}",
+        usual.load_factor
+    );
     let followed = |result: &CaseResult| result.notes.iter().any(|note| note.starts_with("followed by"));
     assert!(followed(&usual) && !followed(&named), "{:?}\n{:?}", usual.notes, named.notes);
     assert_eq!(of("arc_length").status, Status::Stalled);

@@ -194,37 +194,37 @@ fn shallow_arches_peak_where_their_energy_does() {
     }
 }
 
-/// Shallow and steeper arches with friction 0.6, stopped far beyond the peak: each path ends with a peak
-/// and a certified post-peak branch, as far as `stop` says or for a reason that it names. With friction a
-/// peak has an error that falls with the step. Where the branch meets many slips, which of the reasons ends it depends
-/// on rounding: 1e-13 of the thickness changes it.
+/// Shallow and steeper arches with friction 0.6, followed 0.2 m beyond the peak: each path ends with a peak
+/// and a certified post-peak branch, as far as `stop` says or for a reason that it names. Where the branch meets many slips,
+/// which of the reasons ends it depends on rounding: 1e-13 of the thickness changes it.
 /// Under a load at its crown the arch of rise 1.5 m on soft joints leans over from 170.3 on: the symmetric branch would
-/// peak at 180.0517, the load 0.1 % of the span beside the crown does at 176.8752.
+/// peak at 180.0517 (joints that slip without losing contact at their corners), the load 0.1 % of the span beside the crown
+/// does at 176.8752.
 #[test]
 fn paths_of_shallow_arches_end_for_a_reason() {
     let reasons = [
         "cycles between",
         "back and forth",
         "unloading from there has come back",
-        "are paired for less",
+        "has slipped by",
         "was not followed further",
         "steps were not enough",
     ];
     for (rise, stiffness, loads, peak) in [
-        (0.3, 1e9, &[0.5][..], 330.5285),
-        (0.3, 1e10, &[0.25], 5894.61),
-        (0.6, 1e8, &[0.5], 30.42545),
-        (0.6, 1e10, &[0.5], 7878.676),
-        (0.6, 1e10, &[0.25], 9466.51),
-        (0.9, 1e9, &[0.25], 755.823),
-        (1.5, 1e8, &[0.5], 178.81385),
-        (1.5, 1e10, &[0.25], 543.787),
+        (0.3, 1e9, &[0.5][..], 330.5274137),
+        (0.3, 1e10, &[0.25], 5894.382263),
+        (0.6, 1e8, &[0.5], 30.4253175),
+        (0.6, 1e10, &[0.5], 7878.548595),
+        (0.6, 1e10, &[0.25], 9465.684196),
+        (0.9, 1e9, &[0.25], 755.8113941),
+        (1.5, 1e8, &[0.5], 178.6029942),
+        (1.5, 1e10, &[0.25], 543.7871937),
     ] {
-        let arch = Arch { stop: 2.2 * rise + 0.3, ..Arch::shallow(rise, stiffness, loads, DRY) };
+        let arch = Arch { stop: 0.2, ..Arch::shallow(rise, stiffness, loads, DRY) };
         let result = answered(&arch.study());
         assert_eq!(result.status, Status::Collapse, "{rise} {stiffness}: {:?}", result.notes);
         assert!(result.certificate.passed, "{:?}", result.certificate);
-        assert_close(result.load_factor.expect("a peak"), peak, 2e-5);
+        assert_close(result.load_factor.expect("a peak"), peak, 1e-6);
         let curve = result.path.curve.expect("a curve");
         let highest = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
         let (top, last) = (curve.iter().position(|p| p[1] == highest).expect("a peak"), curve.len() - 1);
@@ -234,7 +234,7 @@ fn paths_of_shallow_arches_end_for_a_reason() {
         let named = result.notes.iter().any(|note| reasons.iter().any(|reason| note.contains(reason)));
         assert!(far || named, "{rise} {stiffness}: {:?}", result.notes);
         let least = curve[top..].iter().map(|p| p[1]).fold(peak, f64::min);
-        assert!(least < 0.7 * peak, "the branch falls: {least} of {peak}");
+        assert!(least < 0.75 * peak, "the branch falls: {least} of {peak}");
     }
 }
 
@@ -332,30 +332,36 @@ fn a_block_slides_a_long_way_under_the_same_load() {
     }
 }
 
-/// A long block slides over a shorter one: the points belong to the support, the load is W tan(φ + θ) with
-/// the little that the block tilts by θ, and the block tips where the resultant reaches the support's edge:
-/// after a slip of b/2 − μ y, y the height of the push, less what soft joints tilt it by, which falls as 1/k.
+/// A block slides over a shorter one, or over one as long, with which it shared both corners: the points belong to the
+/// support, or come to be corners' that stay on a face. The load is W tan(φ + θ) with the little that the block tilts by θ
+/// where all points slide on its face, down to W tan φ where they slide on the support's, and the block tips where the resultant reaches the support's edge: after a slip of b/2 − μ y, y the height of the push,
+/// less what soft joints tilt it by, which falls as 1/k. Read from a slip of h/20 on, where corners have come apart.
 #[test]
 fn a_block_that_slides_over_an_edge_tips_where_the_resultant_reaches_it() {
-    let mut short = Vec::new();
-    for stiffness in [1e8, 1e9] {
-        let text = blocks([-1.0, -0.5, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.5], [-3.0, 0.2], stiffness);
-        let (_, answer, states) = followed(&text, 2.0, None);
-        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
-        let mut tipping = None;
-        for state in states.iter().filter(|s| s.load_step == 1 && s.displacement > 0.05) {
-            let slip = -state.gap[0][1];
-            let [pressed, rubbed] = [0, 1].map(|i| state.force.iter().map(|r| r[i].abs()).sum::<f64>());
-            // Where it tips it sticks, and far beyond it slides back.
-            if rubbed > (0.5 - 1e-9) * pressed && state.factor > 25.0 {
-                let exact = 60.0 * (0.5f64.atan() + state.motion[1][2]).tan();
-                assert_close(state.factor, exact, 1e-8);
-                tipping = Some(slip);
+    let weight = 60.0;
+    for (block, own) in [([-3.0, 0.0, 3.0, 0.5], true), ([-1.0, 0.0, 1.0, 1.5], false)] {
+        let mut short = Vec::new();
+        for stiffness in [1e8, 1e9] {
+            let text = blocks([-1.0, -0.5, 1.0, 0.0], block, [block[0], 0.2], stiffness);
+            let (_, answer, states) = followed(&text, 2.0, None);
+            assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+            let mut tipping = None;
+            for state in states.iter().filter(|s| s.load_step == 1 && s.displacement > 0.11) {
+                let slip = -state.gap[0][1];
+                let [pressed, rubbed] = [0, 1].map(|i| state.force.iter().map(|r| r[i].abs()).sum::<f64>());
+                // Where it tips it sticks, and far beyond it slides back.
+                if rubbed > (0.5 - 1e-9) * pressed && state.factor > 25.0 {
+                    let exact = |share: f64| weight * (0.5f64.atan() + share * state.motion[1][2]).tan();
+                    let of_block = (state.factor - exact(0.0)) / (exact(1.0) - exact(0.0));
+                    let least = if own { 1.0 } else { 0.0 };
+                    assert!((least - 1e-4..1.0 + 1e-4).contains(&of_block), "{block:?}: {of_block}");
+                    tipping = Some(slip);
+                }
             }
+            let last = states.last().expect("states");
+            assert!(last.motion[1][2] < -0.05 && last.factor < 0.6 * answer.factor.expect("a load"), "it tips");
+            short.push(0.9 - tipping.expect("a slip"));
         }
-        let last = states.last().expect("states");
-        assert!(last.motion[1][2] < -0.05 && last.factor < 0.6 * answer.factor.expect("a load"), "it tips");
-        short.push(0.9 - tipping.expect("a slip"));
+        assert!(short[1] > 0.0 && short[1] < 0.004, "{block:?} {short:?}");
     }
-    assert!(short[1] > 0.0 && short[1] < 0.004, "{short:?}");
 }

@@ -127,10 +127,11 @@ pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) 
             return;
         }
         tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });
-        tracer.post_peak = PostPeak::default();
+        tracer.post_peak = PostPeak { far: tracer.post_peak.far, ..PostPeak::default() };
     }
     if tracer.limit.peak.as_ref().is_none_or(greatest) {
         tracer.limit.peak = Some(peak);
+        tracer.post_peak.far = false;
     }
 }
 

@@ -264,14 +264,14 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
     let settles = settles(tracer);
     let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));
     let beyond = (displacement - from).abs();
+    let halved = (factor - 0.5 * top) * direction <= 0.0;
+    let far = (halved && beyond >= MOVED_ON * length) || beyond >= FURTHEST * length;
+    tracer.post_peak.far |= far;
     let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
     let done = match (stop_displacement, stop_factor) {
         // A support that goes no further by itself: what follows is a fall.
         (None, None) if settles => true,
-        (None, None) => {
-            let halved = (factor - 0.5 * top) * direction <= 0.0;
-            (halved && beyond >= MOVED_ON * length) || beyond >= FURTHEST * length
-        }
+        (None, None) => far,
         (most, least) => {
             most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }

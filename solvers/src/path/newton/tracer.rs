@@ -10,8 +10,7 @@ use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    Branching, Continuation, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, Sliding,
-    StageStability,
+    Branching, Continuation, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
 };
 
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
@@ -79,6 +78,8 @@ pub(super) struct PostPeak {
     /// The least load, before the path rises again by a tenth of what it fell, and whether it has.
     pub trough: Option<Peak>,
     pub risen: bool,
+    /// Whether it has been, after the greatest one, where paths end that nothing else was asked of.
+    pub far: bool,
     pub cycles: CycleDetector,
 }
 
@@ -132,10 +133,10 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         return false;
     }
     if tracer.system.finite()
-        && let Some(why) = left_its_pairing(tracer)
+        && let Some((apart, why)) = left_its_pairing(tracer)
     {
         let rises = (tracer.state.factor - start.factor) * direction(tracer) > 0.0;
-        let status = after_slip(tracer, rises);
+        let status = after_slip(tracer, apart, rises);
         end_path(tracer, status, why);
         return false;
     }
@@ -159,22 +160,23 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
 }
 
 /// How a path with finite displacements ends whose branch after a proven peak is lost: a collapse where the load has
-/// fallen to half, its point has moved on, and the load is above no peak, as where paths end by themselves. Before that
-/// a greater peak may lie ahead, whether the load falls or rises where the path is lost; above its peaks it does.
+/// fallen to half, its point has moved on, and the load is above no peak, or it has been where paths end by themselves.
+/// Before that a greater peak may lie ahead, whether the load falls or rises where the path is lost; above its peaks it does.
 pub(super) fn after_peak(tracer: &Tracer) -> Status {
     let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
     let (direction, load) = (direction(tracer), tracer.state.factor);
     let trough = tracer.post_peak.trough.as_ref().map(|trough| trough.factor);
-    let moved = moved_on(tracer) && has_halved(direction, peak.factor, trough, load);
-    if moved && !is_above(direction, peak.factor, load) { Status::Collapse } else { Status::Stalled }
+    let far = tracer.post_peak.far || (moved_on(tracer) && has_halved(direction, peak.factor, trough, load));
+    if far && !is_above(direction, peak.factor, load) { Status::Collapse } else { Status::Stalled }
 }
 
-/// How a path with finite displacements ends where a joint has slipped as far as its pairing holds: a collapse where the
-/// load falls all that way, else as where it is lost.
-fn after_slip(tracer: &Tracer, rises: bool) -> Status {
+/// How a path with finite displacements ends where a joint has slipped as far as its pairing holds: above its peaks, and in a
+/// pairing for little slip also where the load rises, as where it is lost; else a collapse. Blocks that have left their
+/// faces, or share no more than half of them, are no structure any longer.
+fn after_slip(tracer: &Tracer, apart: bool, rises: bool) -> Status {
     let above =
         tracer.limit.peak.as_ref().is_none_or(|peak| is_above(direction(tracer), peak.factor, tracer.state.factor));
-    if !rises && !above { Status::Collapse } else { after_peak(tracer) }
+    if !above && (apart || !rises) { Status::Collapse } else { after_peak(tracer) }
 }
 
 /// Whether the point of the load has moved on since the last proven peak as far as it must where paths end.
@@ -202,19 +204,20 @@ fn direction(tracer: &Tracer) -> f64 {
     if target < load_step.start { -1.0 } else { 1.0 }
 }
 
-/// A pressed point that has slipped further than its pairing holds.
-fn left_its_pairing(tracer: &Tracer) -> Option<String> {
+/// A pressed point that has slipped further than its pairing holds: whether its blocks have come apart, and why.
+fn left_its_pairing(tracer: &Tracer) -> Option<(bool, String)> {
     let largest = tracer.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
     let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
     let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
-    let why = match c.sliding {
-        Sliding { passing, .. } if passing != 0.0 => "it has lost half of its height",
-        Sliding { share: 0.5, .. } => "contact points between corners that were together are paired for less",
-        _ => "its contact point leaves the face that it slides on",
+    let (apart, why) = match c.sliding.corners {
+        [low, high] if low != high => (true, "it has lost half of its height"),
+        [0.5, 0.5] if c.sliding.passing == 0.0 => (false, "a contact point away from all corners is paired for less"),
+        [0.5, 0.5] => (true, "it has lost half of its height"),
+        _ => (true, "its contact point leaves the face that it slides on"),
     };
     let (joint, factor) = (c.joint, tracer.state.factor);
-    Some(format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs()))
+    Some((apart, format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs())))
 }
 
 /// The present state a share of a rate on.

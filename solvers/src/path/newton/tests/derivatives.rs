@@ -74,7 +74,7 @@ fn sliding_chain() -> PathProblem {
     problem.load_steps[0].loading.forces[0].1 = None;
     for (contact, share) in problem.contacts.iter_mut().zip([0.0, 1.0, 0.3]) {
         (contact.minus.slot, contact.plus.slot) = (None, None);
-        contact.sliding.share = share;
+        contact.sliding = Sliding::fixed(share);
     }
     problem
 }
@@ -82,8 +82,9 @@ fn sliding_chain() -> PathProblem {
 /// The same, whose points pass from the middle to a corner as they slip.
 fn passing_chain() -> PathProblem {
     let mut problem = sliding_chain();
-    for (contact, passing) in problem.contacts.iter_mut().zip([0.4, -0.9, 1.7]) {
-        contact.sliding = Sliding { passing, ..Sliding::middle(0.0) };
+    let corners = [[0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
+    for ((contact, passing), corners) in problem.contacts.iter_mut().zip([0.4, 0.9, 1.7]).zip(corners) {
+        contact.sliding = Sliding { passing, corners, ..Sliding::middle(0.0) };
     }
     problem
 }
