@@ -192,6 +192,22 @@ impl CaseResult {
         self.status == Status::NoEquilibrium && self.proof.ray.is_some()
     }
 
+    /// Leaves out all forces and motions of blocks and joints, once certificates have read them; but for a ray that
+    /// refutes the motion of supports, which is what such an answer says.
+    pub fn leave_out_fields(&mut self) {
+        let ray = self.proof.ray.take().filter(|_| self.status == Status::NoEquilibrium);
+        self.proof = ProofFields { field_factor: self.proof.field_factor, ray, ..ProofFields::default() };
+        self.non_associated.associated_motion = None;
+        self.non_associated.lower_proof.iter_mut().for_each(|proof| proof.steps.clear());
+        (self.path.displacements, self.path.joint_states) = (None, None);
+        self.path.yielded.clear();
+    }
+
+    /// Whether nothing is left of the forces and motions that would prove it.
+    pub fn has_no_fields(&self) -> bool {
+        self.proof.field.is_none() && self.proof.motion.is_none() && self.path.displacements.is_none()
+    }
+
     /// A stalled answer that says nothing, to be filled in.
     pub fn empty() -> Self {
         CaseResult {
