@@ -150,12 +150,21 @@ impl<'a> Program<'a> {
 
     /// The same of all joints in turn; of an arch, whose variables are three redundants and a factor at the most, without
     /// loops over them.
-    fn evaluate_all(&self, point: &[f64], constant: f64, visit: impl FnMut((usize, [f64; 3]))) {
-        let joints = self.forms.values.chunks_exact(3 * (self.forms.variables + 1));
+    #[inline(always)]
+    fn evaluate_all(&self, point: &[f64], constant: f64, mut visit: impl FnMut(usize, [f64; 3])) {
         match self.forms.variables {
-            3 => joints.map(|forms| affine::<3>(forms, point, constant)).enumerate().for_each(visit),
-            4 => joints.map(|forms| affine::<4>(forms, point, constant)).enumerate().for_each(visit),
-            _ => (0..self.ends.len()).map(|joint| (joint, self.evaluate(joint, point, constant))).for_each(visit),
+            3 => self.evaluate_each::<3>(point, constant, visit),
+            4 => self.evaluate_each::<4>(point, constant, visit),
+            _ => (0..self.ends.len()).for_each(|joint| visit(joint, self.evaluate(joint, point, constant))),
+        }
+    }
+
+    /// The same of V variables.
+    #[inline(always)]
+    fn evaluate_each<const V: usize>(&self, point: &[f64], constant: f64, mut visit: impl FnMut(usize, [f64; 3])) {
+        let Some(point) = point.first_chunk::<V>() else { return };
+        for (joint, forms) in self.forms.values.chunks_exact(3 * (V + 1)).enumerate() {
+            visit(joint, affine(forms, point, constant));
         }
     }
 
@@ -229,10 +238,11 @@ impl<'a> Program<'a> {
 
     /// Calls `visit` with every column that is near or beyond its bound at `point`, and its
     /// violation; in the recession cone where `constant` is 0.
+    #[inline(always)]
     fn scan(&self, point: &[f64], constant: f64, mut visit: impl FnMut(Column, f64)) {
         let slack = self.slack_variable(point);
         let mut first = 0;
-        self.evaluate_all(point, constant, |(joint, forces)| {
+        self.evaluate_all(point, constant, |joint, forces| {
             let end = self.ends[joint];
             for (row, r) in self.rows[first..end].iter().enumerate() {
                 let carried = r.normal[0] * forces[0] + r.normal[1] * forces[1] + r.normal[2] * forces[2];
@@ -251,16 +261,17 @@ impl<'a> Program<'a> {
     }
 
     /// The column violated most.
-    fn entering(&self, point: &[f64], constant: f64, block_tolerance: f64, basis: &[Column]) -> Option<(Column, f64)> {
-        let mut worst: Option<(Column, f64)> = None;
+    fn entering(&self, point: &[f64], constant: f64, block_tolerance: f64, basis: &[Column]) -> Option<Column> {
+        let mut worst: Option<Column> = None;
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
+        let mut most = ROW_TOLERANCE * size;
         self.scan(point, constant, |column, violation| {
-            let tolerance = match column {
-                Column::Tangent { .. } if constant != 0.0 => block_tolerance,
-                _ => ROW_TOLERANCE,
-            };
-            if violation > tolerance * size && worst.is_none_or(|(_, w)| violation > w) && !basis.contains(&column) {
-                worst = Some((column, violation));
+            // Nearly all columns end here.
+            if violation > most && !basis.contains(&column) {
+                let tangent = constant != 0.0 && matches!(column, Column::Tangent { .. });
+                if !tangent || violation > block_tolerance * size {
+                    (worst, most) = (Some(column), violation);
+                }
             }
         });
         worst
@@ -360,7 +371,7 @@ impl<'a> Program<'a> {
             }
             basis.lu.solve_transposed(&mut step);
             point.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
-            let Some((column, _)) = self.entering(&point, constant, block_tolerance, &basis.columns) else {
+            let Some(column) = self.entering(&point, constant, block_tolerance, &basis.columns) else {
                 return Ending::Optimal { point, weights };
             };
             // The entering column, which the step no longer needs.
@@ -385,7 +396,7 @@ impl<'a> Program<'a> {
     /// Replaces artificials, which stand at zero, by real columns wherever some column can.
     fn drive_out(&self, basis: &mut Basis) {
         let m = self.variables;
-        let (mut row, mut gradient) = (vec![0.0; m], vec![0.0; m]);
+        let mut row = vec![0.0; m];
         for place in 0..m {
             if !matches!(basis.columns[place], Column::Artificial { .. }) || !basis.lu.factorise(&basis.matrix) {
                 continue;
@@ -394,12 +405,10 @@ impl<'a> Program<'a> {
             row[place] = 1.0;
             basis.lu.solve_transposed(&mut row);
             let mut best: (f64, Option<Column>) = (1e-9, None);
-            let origin = vec![0.0; m];
-            self.scan(&origin, 0.0, |column, _| {
-                self.write(column, &mut gradient);
-                let size = inner(&row, &gradient).abs();
-                if size > best.0 && !basis.columns.contains(&column) {
-                    best = (size, Some(column));
+            // In the recession cone the violation at a point is its product with the column.
+            self.scan(&row, 0.0, |column, product| {
+                if product.abs() > best.0 && !basis.columns.contains(&column) {
+                    best = (product.abs(), Some(column));
                 }
             });
             if let Some(column) = best.1 {
@@ -549,8 +558,8 @@ fn can_be_slack(row: &ForceRow) -> bool {
 }
 
 /// The three forms of a joint at a point of V variables.
-fn affine<const V: usize>(forms: &[f64], point: &[f64], constant: f64) -> [f64; 3] {
-    let Some(point) = point.first_chunk::<V>() else { return [0.0; 3] };
+#[inline(always)]
+fn affine<const V: usize>(forms: &[f64], point: &[f64; V], constant: f64) -> [f64; 3] {
     let mut rows = forms.chunks_exact(V + 1);
     std::array::from_fn(|_| {
         let Some((form, last)) = rows.next().and_then(|row| row.split_first_chunk::<V>()) else { return 0.0 };
