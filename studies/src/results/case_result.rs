@@ -9,7 +9,7 @@ use super::sensitivity::SensitivityEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
-use voussoir_core::limit::{Counters, LowerProof, Status};
+use voussoir_core::limit::{BracketPoint, Counters, LowerProof, Status};
 
 /// Which case of its study it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -39,6 +39,9 @@ pub struct NonAssociatedAnswer {
     /// What the lower bound rests on where joints flow as their laws say, with what `verify` needs to check it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_proof: Option<LowerProof>,
+    /// The bracket of the least load over the work of those who closed it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bracket: Vec<BracketPoint>,
 }
 
 /// Forces and velocities that prove an answer.
