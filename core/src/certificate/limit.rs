@@ -274,19 +274,18 @@ impl Check<'_> {
     /// Greatest violation \[N\] of what the joints admit, of sliding as the distance from its facet.
     fn violation(&self, forces: &[ContactForce], admitted: Admitted) -> f64 {
         let strengths = admitted == Admitted::Strength;
-        let mut resultants: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+        let mut resultants: Vec<Option<[f64; 3]>> = vec![None; self.assembly.joints.len()];
         for contact in forces {
             let joint = &self.assembly.joints[contact.joint];
             let lever = (contact.point - joint.middle()).dot(&joint.frame().1);
-            let sum = resultants.entry(contact.joint).or_default();
+            let sum = resultants[contact.joint].get_or_insert_default();
             sum[0] += contact.force[0];
             sum[1] += contact.force[1];
             sum[2] += contact.force[0] * lever;
         }
         let mut worst = 0.0f64;
-        for (index, [n, t, m]) in resultants {
-            let joint = &self.assembly.joints[index];
-            let Bond::Law(law) = joint.bond else { continue };
+        for (joint, resultant) in self.assembly.joints.iter().zip(resultants) {
+            let (Some([n, t, m]), Bond::Law(law)) = (resultant, joint.bond) else { continue };
             let (height, area) = (joint.height(), joint.height() * self.assembly.width);
             let polygon = &self.polygons[law];
             let scale = if strengths { area } else { 0.0 };

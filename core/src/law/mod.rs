@@ -25,7 +25,7 @@ pub use self::isotropic::{Isotropic, von_mises};
 pub use self::material::BulkMaterial;
 pub use self::plane::{PlanarPoint, PlanarUpdate, Plane, PlaneElasticity};
 pub use self::response::{InterfaceResponse, TractionPoint};
-pub use self::strength::{ForceRow, JointStrength, StressBlock, Tangential, integrate};
+pub use self::strength::{ForceRow, JointStrength, StressBlock, Tangential, UnitStrength};
 pub use self::stress::{StressPoint, StressUpdate, Voigt};
 pub use self::update::{BatchFailure, UpdateContext, UpdateFailure};
 pub use self::yield_polygon::YieldPolygon;

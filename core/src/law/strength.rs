@@ -115,14 +115,33 @@ fn bounds_sliding(facet: &Facet, sense: f64) -> bool {
     facet.normal[1] * sense > 0.0 && -facet.normal[0] < NO_SLIDING * facet.normal[1].abs()
 }
 
-/// Integrates facets over a joint of area `area` \[m²\]. An error says what cannot be integrated.
-pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
+/// The strength of one square metre of a joint with some law, of which that of any area is a multiple.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitStrength(JointStrength);
+
+impl UnitStrength {
+    /// Integrates facets. An error says what cannot be integrated.
+    pub fn of(facets: &[Facet]) -> Result<Self, String> {
+        integrate(facets).map(UnitStrength)
+    }
+
+    /// What a joint of an area \[m²\] carries.
+    pub fn over(&self, area: f64) -> JointStrength {
+        let UnitStrength(JointStrength { rows, block }) = self;
+        JointStrength {
+            rows: rows.iter().map(|row| ForceRow { bound: row.bound * area, ..*row }).collect(),
+            block: block.map(|block| StressBlock { tension: block.tension * area, total: block.total * area }),
+        }
+    }
+}
+
+fn integrate(facets: &[Facet]) -> Result<JointStrength, String> {
     let polygon = YieldPolygon::of(facets);
     let (least, greatest) = (polygon.least_normal(), polygon.greatest_normal());
     if least == f64::NEG_INFINITY {
         return Err("its tensile strength is unlimited".into());
     }
-    let tension = -least * area;
+    let tension = -least;
     let mut rows = Vec::new();
     if greatest.is_infinite() {
         rows.extend(opening(tension));
@@ -147,7 +166,7 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
                 let f = bounding.first().copied().unwrap_or(on_side[0]);
                 rows.push(ForceRow {
                     normal: [f.normal[0], f.normal[0], f.normal[1]],
-                    bound: f.bound * area,
+                    bound: f.bound,
                     mode: FacetMode::Sliding,
                     flow: [f.flow[0], f.flow[0], f.flow[1]],
                 });
@@ -160,13 +179,17 @@ pub fn integrate(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
             }
         }
     }
-    let block = greatest.is_finite().then_some(StressBlock { tension, total: (greatest - least) * area });
+    let block = greatest.is_finite().then_some(StressBlock { tension, total: greatest - least });
     Ok(JointStrength { rows, block })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn of_area(facets: &[Facet], area: f64) -> Result<JointStrength, String> {
+        Ok(UnitStrength::of(facets)?.over(area))
+    }
 
     fn mohr_coulomb(f_t: f64, f_c: f64, c: f64, mu: f64) -> Vec<Facet> {
         let [left, right] = Facet::friction(mu, c, mu);
@@ -176,7 +199,7 @@ mod tests {
     #[test]
     fn dry_friction_has_opening_rows_and_two_sliding_rows() {
         let [left, right] = Facet::friction(0.6, 0.0, 0.0);
-        let strength = integrate(&[Facet::opening(0.0), left, right], 2.0).unwrap();
+        let strength = of_area(&[Facet::opening(0.0), left, right], 2.0).unwrap();
         assert_eq!(strength.block, None);
         assert_eq!(strength.rows.len(), 4);
         assert_eq!(strength.tangential(), Tangential::Friction);
@@ -186,7 +209,7 @@ mod tests {
     #[test]
     fn rows_carry_the_flow_of_their_facets() {
         let [left, right] = Facet::friction(0.6, 3.0, 0.25);
-        let strength = integrate(&[Facet::opening(0.0), left, right], 2.0).unwrap();
+        let strength = of_area(&[Facet::opening(0.0), left, right], 2.0).unwrap();
         for row in &strength.rows {
             match row.mode {
                 FacetMode::Sliding => assert_eq!(row.flow, [-0.25, -0.25, row.normal[2]]),
@@ -197,7 +220,7 @@ mod tests {
 
     #[test]
     fn the_tension_bound_is_the_polygon_s_apex_where_cohesion_ends_first() {
-        let strength = integrate(&mohr_coulomb(5.0, 100.0, 1.0, 0.5), 1.0).unwrap();
+        let strength = of_area(&mohr_coulomb(5.0, 100.0, 1.0, 0.5), 1.0).unwrap();
         let block = strength.block.unwrap();
         assert!((block.tension - 2.0).abs() < 1e-12 && (block.total - 102.0).abs() < 1e-12);
     }
@@ -205,7 +228,7 @@ mod tests {
     #[test]
     fn the_stress_block_is_the_parabola_of_the_design() {
         let (f_t, f_c, h, area) = (0.3, 10.0, 0.6, 1.2);
-        let block = integrate(&mohr_coulomb(f_t, f_c, 4.0, 0.5), area).unwrap().block.unwrap();
+        let block = of_area(&mohr_coulomb(f_t, f_c, 4.0, 0.5), area).unwrap().block.unwrap();
         for n in [0.0, 1.0, 5.0, 11.0] {
             let limit = (n + f_t * area) * (f_c * area - n) * h / (2.0 * area * (f_c + f_t));
             let (n_0, n_1) = (n / 2.0 - limit / h, n / 2.0 + limit / h);
@@ -217,8 +240,8 @@ mod tests {
     #[test]
     fn frictionless_and_stuck_joints_are_recognised() {
         let [left, right] = Facet::friction(0.0, 0.0, 0.0);
-        assert_eq!(integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap().tangential(), Tangential::Free);
-        let stuck = integrate(&[Facet::opening(0.0)], 1.0).unwrap();
+        assert_eq!(of_area(&[Facet::opening(0.0), left, right], 1.0).unwrap().tangential(), Tangential::Free);
+        let stuck = of_area(&[Facet::opening(0.0)], 1.0).unwrap();
         assert_eq!((stuck.tangential(), stuck.block, stuck.rows.len()), (Tangential::Stuck, None, 2));
     }
 
@@ -226,7 +249,7 @@ mod tests {
     fn friction_beyond_rounding_does_not_slide() {
         for (mu, rows) in [(1e9, 4), (1e12, 2), (1e30, 2)] {
             let [left, right] = Facet::friction(mu, 0.0, mu);
-            let strength = integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap();
+            let strength = of_area(&[Facet::opening(0.0), left, right], 1.0).unwrap();
             assert_eq!(strength.rows.len(), rows, "{mu:e}");
         }
     }
@@ -236,11 +259,11 @@ mod tests {
     fn strengths_out_of_reach_leave_opening_and_friction() {
         let [left, right] = Facet::friction(0.6, 0.0, 0.6);
         let facets = [Facet::opening(0.0), Facet::crushing(1e15), left, right];
-        let strong = integrate(&facets, 1.0).unwrap();
+        let strong = of_area(&facets, 1.0).unwrap();
         assert_eq!(strong.within_reach(1e8), None);
-        let dry = integrate(&[Facet::opening(0.0), left, right], 1.0).unwrap();
+        let dry = of_area(&[Facet::opening(0.0), left, right], 1.0).unwrap();
         assert_eq!(strong.within_reach(1e3), Some(dry));
-        let glued = integrate(&mohr_coulomb(0.0, 1e6, 1e12, 0.6), 1.0).unwrap();
+        let glued = of_area(&mohr_coulomb(0.0, 1e6, 1e12, 0.6), 1.0).unwrap();
         let left = glued.within_reach(1e3).unwrap();
         assert_eq!((left.tangential(), left.block), (Tangential::Stuck, glued.block));
     }
@@ -249,6 +272,6 @@ mod tests {
     fn two_facets_in_one_sense_are_refused() {
         let mut facets = mohr_coulomb(0.1, 10.0, 1.0, 0.5);
         facets.push(Facet::associated(FacetMode::Sliding, [0.0, 1.0], 2.0));
-        assert!(integrate(&facets, 1.0).is_err());
+        assert!(of_area(&facets, 1.0).is_err());
     }
 }

@@ -22,6 +22,35 @@ pub enum LowerProofKind {
     Start,
 }
 
+/// Who has moved an end of a bracket.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BracketWork {
+    /// The local search for states: 10⁹ matrix entries swept.
+    Local,
+    /// The exhaustive search: 10⁹ matrix entries swept.
+    Search,
+    /// The interior-point program of products: its iterations.
+    Products,
+    /// The program of all products by splitting: 10⁹ multiplications.
+    Splitting,
+    /// The sequence of linear programs, which is not counted.
+    Sequence,
+}
+
+/// A point of the curve along which a bracket has closed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BracketPoint {
+    /// Who was at work.
+    pub by: BracketWork,
+    /// Its work until then, in its own unit.
+    pub work: f64,
+    /// The factor below which nothing is: proved until then.
+    pub lower: f64,
+    /// The least factor found until then, if any.
+    pub found: Option<f64>,
+}
+
 /// The proof of a lower bound.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LowerProof {

@@ -4,6 +4,6 @@ mod lower_proof;
 mod problem;
 mod solver;
 
-pub use self::lower_proof::{FIRST, LAST, LowerProof, LowerProofKind, ProductStep};
+pub use self::lower_proof::{BracketPoint, BracketWork, FIRST, LAST, LowerProof, LowerProofKind, ProductStep};
 pub use self::problem::{JointForce, LimitJoint, LimitProblem, Velocity};
 pub use self::solver::{Counters, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer, Status};

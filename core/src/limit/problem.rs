@@ -6,7 +6,7 @@
 //! Rows carry the flow of their facets too ([`crate::law::ForceRow::flow`]). Solvers that read
 //! it answer with [`NonAssociated`]; all others read joints with associated flow.
 
-use crate::law::{Facet, FacetMode, ForceRow, JointStrength, Tangential, integrate, is_associated};
+use crate::law::{FacetMode, ForceRow, JointStrength, Tangential, UnitStrength, is_associated};
 use crate::model::geometry::{Vec2, bounding_box, cross, turned};
 use crate::model::{Assembly, Bond, StageLoads, Wrenches, add_force};
 use std::collections::BTreeMap;
@@ -95,7 +95,7 @@ impl LimitProblem {
         let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
         let (low, high) = bounding_box(points);
         let pole = if assembly.joints.is_empty() { Vec2::zeros() } else { (low + high) / 2.0 };
-        let mut read: BTreeMap<usize, Vec<Facet>> = BTreeMap::new();
+        let mut read: BTreeMap<usize, UnitStrength> = BTreeMap::new();
         let mut non_associated = false;
         let mut joints = Vec::new();
         for (index, joint) in assembly.joints.iter().enumerate() {
@@ -112,11 +112,9 @@ impl LimitProblem {
                     format!("joint law \"{name}\" is not given by facets: limit analysis cannot read it")
                 })?;
                 non_associated |= !is_associated(&facets);
-                place.insert(facets);
+                place.insert(UnitStrength::of(&facets).map_err(|why| format!("joint law \"{name}\": {why}"))?);
             }
-            let facets = &read[&law];
-            let strength = integrate(facets, joint.height() * assembly.width)
-                .map_err(|why| format!("joint law \"{name}\": {why}"))?;
+            let strength = read[&law].over(joint.height() * assembly.width);
             let (normal, tangent) = joint.frame();
             joints.push(LimitJoint {
                 joint: index,

@@ -1,6 +1,6 @@
 //! What is asked of a limit solver, and what it answers.
 
-use super::lower_proof::LowerProof;
+use super::lower_proof::{BracketPoint, LowerProof};
 use super::problem::{JointForce, LimitProblem, Velocity};
 use crate::law::FlowRule;
 use crate::model::Wrenches;
@@ -80,6 +80,8 @@ pub struct NonAssociated {
     pub proved_lower: Option<f64>,
     /// What that rests on.
     pub lower_proof: Option<LowerProof>,
+    /// How the bracket closed, where it did not at once.
+    pub bracket: Vec<BracketPoint>,
     /// The greatest factor of associated flow, above which nothing can be.
     pub associated_factor: Option<f64>,
     /// Its mechanism, scaled as `motion`, which proves it.

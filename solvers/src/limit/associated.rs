@@ -28,6 +28,7 @@ pub fn associated_bound(answer: &LimitAnswer) -> NonAssociated {
     NonAssociated {
         proved_lower: None,
         lower_proof: None,
+        bracket: Vec::new(),
         associated_factor: answer.factor.filter(|_| collapse),
         associated_motion: answer.motion.clone().filter(|_| collapse),
     }

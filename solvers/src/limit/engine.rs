@@ -41,6 +41,11 @@ pub trait Engine {
     /// Can these loads be carried?
     fn admissible(&mut self, loads: &Wrenches) -> Equilibrium;
 
+    /// The same where any field will do.
+    fn carried(&mut self, loads: &Wrenches) -> Equilibrium {
+        self.admissible(loads)
+    }
+
     /// Can `fixed + λ varying` be carried for some λ of either sign?
     fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium;
 

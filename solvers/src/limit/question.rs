@@ -45,12 +45,22 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
     // Nothing is carried by no forces: a solver would scale them by nothing.
     let idle = problem.magnitude(&base) == 0.0;
     let nothing = || Equilibrium::Field(vec![JointForce::default(); problem.joints.len()]);
-    match if idle { nothing() } else { engine.admissible(&base) } {
+    let carries = |engine: &mut dyn Engine| if grows { engine.carried(&base) } else { engine.admissible(&base) };
+    match if idle { nothing() } else { carries(engine) } {
         Equilibrium::Field(field) => {
             answer.field = Some(field);
             answer.status = Status::Stands;
             if matches!(question, LimitQuestion::Collapse { .. }) {
                 collapse(problem, engine, &base, start, max, &mut answer);
+            }
+            // A field at the start is shown: the one that is furthest from all bounds.
+            if grows
+                && !idle
+                && answer.field_factor == start
+                && matches!(answer.status, Status::Unbounded | Status::Stalled)
+                && let Equilibrium::Field(field) = engine.admissible(&base)
+            {
+                answer.field = Some(field);
             }
         }
         Equilibrium::Motion(motion) => {

@@ -197,7 +197,7 @@ fn found(own: &Map<String, Json>) -> String {
 }
 
 /// What `verify` has done with each case.
-pub(super) const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver; then every number \
+pub(super) const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver (nothing where [output] fields = false has left them out); then every number \
 and word against solving the case again (the histories of paths are not stored); tables and figures against results.json. \
 Not checked: counters, seconds, version";
 

@@ -9,7 +9,7 @@ use super::sensitivity::SensitivityEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
-use voussoir_core::limit::{Counters, LowerProof, Status};
+use voussoir_core::limit::{BracketPoint, Counters, LowerProof, Status};
 
 /// Which case of its study it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -39,6 +39,9 @@ pub struct NonAssociatedAnswer {
     /// What the lower bound rests on where joints flow as their laws say, with what `verify` needs to check it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_proof: Option<LowerProof>,
+    /// The bracket of the least load over the work of those who closed it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bracket: Vec<BracketPoint>,
 }
 
 /// Forces and velocities that prove an answer.
@@ -190,6 +193,22 @@ impl CaseResult {
     /// Whether rigid blocks cannot follow their supports: its ray then refutes their motion, not the loads.
     pub fn supports_cannot_move(&self) -> bool {
         self.status == Status::NoEquilibrium && self.proof.ray.is_some()
+    }
+
+    /// Leaves out all forces and motions of blocks and joints, once certificates have read them; but for a ray that
+    /// refutes the motion of supports, which is what such an answer says.
+    pub fn leave_out_fields(&mut self) {
+        let ray = self.proof.ray.take().filter(|_| self.status == Status::NoEquilibrium);
+        self.proof = ProofFields { field_factor: self.proof.field_factor, ray, ..ProofFields::default() };
+        self.non_associated.associated_motion = None;
+        self.non_associated.lower_proof.iter_mut().for_each(|proof| proof.steps.clear());
+        (self.path.displacements, self.path.joint_states) = (None, None);
+        self.path.yielded.clear();
+    }
+
+    /// Whether nothing is left of the forces and motions that would prove it.
+    pub fn has_no_fields(&self) -> bool {
+        self.proof.field.is_none() && self.proof.motion.is_none() && self.path.displacements.is_none()
     }
 
     /// A stalled answer that says nothing, to be filled in.

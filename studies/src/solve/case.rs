@@ -87,6 +87,10 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     if !case.output_curve {
         result.path.curve = None;
     }
+    // Last: everything above reads them.
+    if !case.output_fields {
+        result.leave_out_fields();
+    }
     result.seconds = started.elapsed().as_secs_f64();
     result
 }

@@ -76,6 +76,7 @@ pub(super) fn certified(
         non_associated: NonAssociatedAnswer {
             associated_load_factor: own.and_then(|own| own.associated_factor),
             associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
+            bracket: own.map(|own| own.bracket.clone()).unwrap_or_default(),
             lower_proof: solved.non_associated.and_then(|own| own.lower_proof),
         },
         certificate,

@@ -46,6 +46,10 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
             let states = resolved.get("output").and_then(|output| output["states"].as_u64());
             let differentiated = resolved.get("output").is_some_and(|output| output["sensitivities"] == true);
             let output_accuracy = resolved.get("output").is_some_and(|output| output["accuracy"] == "estimate");
+            let output_fields = resolved.get("output").is_none_or(|output| output["fields"] != false);
+            if !output_fields && resolved.get("output").is_some_and(|output| output["vtu"] == true) {
+                notes.push("output.vtu is not used: output.fields = false leaves nothing to write there".into());
+            }
             let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
@@ -65,6 +69,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
                 output_states,
                 output_sensitivities,
                 output_accuracy,
+                output_fields,
                 notes,
                 brief,
                 resolved,

@@ -121,6 +121,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         "of an envelope: figures/moving-load.svg, the load on its way with the mechanism at each place",
     ),
     key("vtu", Shape::Boolean, Need::Default("false"), "files for ParaView of the end of each path"),
+    key(
+        "fields",
+        Shape::Boolean,
+        Need::Default("true"),
+        "the forces and motions that prove each answer; false: they are checked and not kept, and drawings show the scene alone",
+    ),
 ];
 
 /// `[output]` of studies without writers.

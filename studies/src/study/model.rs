@@ -57,6 +57,8 @@ pub struct Case {
     pub output_sensitivities: Vec<NumericKey>,
     /// Whether the error of the load factor is estimated.
     pub output_accuracy: bool,
+    /// Whether results keep the forces and motions that prove them.
+    pub output_fields: bool,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
     /// One of many made from another case, which has the weights that both have: its results leave them out.

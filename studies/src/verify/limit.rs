@@ -89,6 +89,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let (certificate, bounds) = certify(assembly, loads, &claim, case.solver.settings.tolerance);
     verify_certificate(result, &certificate, bounds, findings);
     verify_factors(result, (stage, loads), &claim, last, findings);
+    verify_bracket(result, findings);
     let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
     verify_mechanism(assembly, result, &stored, reading, last, findings);
     let fits = result.flow_read_as.as_deref().is_none_or(|word| word == "associated" && non_associated);
@@ -120,6 +121,30 @@ fn verify_certificate(
         _ => false,
     };
     findings.expect(bounds_match, "bounds are not those of field and mechanism");
+}
+
+/// The curve along which the bracket has closed: it never opens, and ends at the bounds.
+fn verify_bracket(result: &CaseResult, findings: &mut Findings) {
+    let curve = &result.non_associated.bracket;
+    let closes = curve.windows(2).all(|pair| {
+        let fell = match (pair[0].found, pair[1].found) {
+            (Some(before), Some(after)) => after <= before,
+            (before, _) => before.is_none(),
+        };
+        let later = pair[0].by != pair[1].by || pair[0].work <= pair[1].work;
+        pair[0].lower <= pair[1].lower && fell && later
+    });
+    let ends = curve.last().is_none_or(|end| {
+        // What rounding of multipliers may cost is taken off the bound.
+        let lower =
+            result.bounds.is_some_and(|bounds| (0.0..=2e-6 * end.lower.abs()).contains(&(end.lower - bounds[0])));
+        lower
+            && end
+                .found
+                .zip(result.load_factor)
+                .is_some_and(|(found, factor)| (found - factor).abs() <= 1e-6 * factor.abs())
+    });
+    findings.expect(closes && ends, "the curve of the bracket does not close to its bounds");
 }
 
 /// The factors of the last stage, of the field and of the feasible interval.

@@ -103,6 +103,17 @@ fn a_bound_by_splitting_is_confirmed() {
         assert!(!findings(&study, &changed).is_empty(), "{path} was changed and not found");
     };
     change("bounds/0", json!(low * (1.0 + 1e-4)));
+    // The curve along which the bracket closed ends at the bounds and never opens.
+    let curve = case["bracket"].as_array().expect("a curve");
+    let end = curve.len() - 1;
+    assert!(
+        curve.iter().any(|point| point["by"] == "splitting" && point["lower"].as_f64() > Some(0.9 * high)),
+        "{curve:?}"
+    );
+    change(&format!("bracket/{end}/lower"), json!(low * (1.0 + 1e-4)));
+    change(&format!("bracket/{end}/found"), json!(high * (1.0 - 1e-4)));
+    change("bracket/0/found", json!(0.9 * high));
+    change("bracket/0/lower", json!(low * (1.0 + 1e-4)));
     let last = case["lower_proof"]["steps"].as_array().expect("steps").len() - 1;
     change(&format!("lower_proof/steps/{last}/range/1"), json!(0.9 * high));
     change(&format!("lower_proof/steps/{last}/range/0"), json!(low));

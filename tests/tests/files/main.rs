@@ -6,6 +6,7 @@ mod forged_tables;
 mod forgery;
 mod gates;
 mod labels;
+mod left_out;
 mod lower_bound;
 mod pages;
 mod report;

@@ -35,6 +35,10 @@ fn least_of(number: usize) {
     let [low, high] = result.bounds.expect("a bracket");
     assert!(0.0 <= low && low <= least * (1.0 + 2e-8) && high == found);
     println!("wall {number}: [{low:.8}, {high:.8}] in {:.1} s, {:?}", result.seconds, result.counters);
+    let end = result.non_associated.bracket.last().expect("a curve");
+    assert_eq!((end.lower, end.found), (low, Some(found)));
+    // The search knows that it is hopeless.
+    assert!(low > 0.0 || result.notes.iter().any(|note| note.contains("given up")), "{:?}", result.notes);
     assert_eq!(result.flow_read_as, None);
     assert!(result.certificate.residuals["complementarity"] < 1e-12, "{:?}", result.certificate);
 }

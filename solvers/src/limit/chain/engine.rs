@@ -23,12 +23,13 @@ impl<'a> ChainEngine<'a> {
         Some(ChainEngine { problem, trees: trees(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
     }
 
-    /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given.
-    fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>) -> Equilibrium {
+    /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given; or `any` field.
+    fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>, any: bool) -> Equilibrium {
         let force = force_unit(self.problem, fixed);
         let columns: Vec<_> = varying.iter().map(|v| (*v, force / force_unit(self.problem, v))).collect();
         let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &columns, force);
-        let program = Program::new(self.problem, &forms, force).with_margin();
+        let program = Program::new(self.problem, &forms, force);
+        let program = if any { program.with_any_margin() } else { program.with_margin() };
         match self.run(&program) {
             Outcome::Optimal(solved) if solved.value >= -1e-12 => Equilibrium::Field(program.forces(&solved.point)),
             Outcome::Optimal(solved) => {
@@ -53,11 +54,15 @@ impl<'a> ChainEngine<'a> {
 
 impl Engine for ChainEngine<'_> {
     fn admissible(&mut self, loads: &Wrenches) -> Equilibrium {
-        self.margin(loads, None)
+        self.margin(loads, None, false)
+    }
+
+    fn carried(&mut self, loads: &Wrenches) -> Equilibrium {
+        self.margin(loads, None, true)
     }
 
     fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium {
-        self.margin(fixed, Some(varying))
+        self.margin(fixed, Some(varying), false)
     }
 
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 use std::collections::VecDeque;
-use voussoir_core::limit::LimitProblem;
+use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 
 /// With more closing joints sparse programs are faster.
@@ -37,18 +37,17 @@ pub fn trees(problem: &LimitProblem) -> Option<Trees> {
     if problem.joints.len() > problem.groups + MOST_CUTS || problem.joints.iter().any(|joint| joint.fill.is_some()) {
         return None;
     }
-    let mut joints_of: Vec<Vec<usize>> = vec![Vec::new(); problem.groups];
     let mut queue: VecDeque<(usize, Option<usize>)> = VecDeque::new();
     for (index, joint) in problem.joints.iter().enumerate() {
-        [joint.minus, joint.plus].into_iter().flatten().for_each(|group| joints_of[group].push(index));
         match (joint.minus, joint.plus) {
             (None, None) => return None,
             (None, _) | (_, None) => queue.push_back((index, None)),
             _ => {}
         }
     }
+    let touching = Touching::of(problem);
     let (mut reached, mut used) = (vec![false; problem.groups], vec![false; problem.joints.len()]);
-    let mut trees = Trees { links: Vec::new(), cuts: Vec::new() };
+    let mut trees = Trees { links: Vec::with_capacity(problem.groups), cuts: Vec::new() };
     while let Some((joint, behind)) = queue.pop_front() {
         if std::mem::replace(&mut used[joint], true) {
             continue;
@@ -59,13 +58,44 @@ pub fn trees(problem: &LimitProblem) -> Option<Trees> {
             Some(ahead) => {
                 reached[ahead] = true;
                 trees.links.push(Link { joint, behind, ahead });
-                queue.extend(joints_of[ahead].iter().filter(|next| !used[**next]).map(|next| (*next, Some(ahead))));
+                queue.extend(
+                    touching.joints(ahead).iter().filter(|next| !used[**next]).map(|next| (*next, Some(ahead))),
+                );
             }
             None => trees.cuts.push(joint),
         }
     }
     // Groups never reached touch no support.
     (reached.iter().all(|&r| r) && trees.cuts.len() <= MOST_CUTS).then_some(trees)
+}
+
+/// The joints of every group, one group after the other.
+struct Touching {
+    joints: Vec<usize>,
+    ends: Vec<usize>,
+}
+
+impl Touching {
+    fn of(problem: &LimitProblem) -> Self {
+        let groups = |joint: &LimitJoint| [joint.minus, joint.plus].into_iter().flatten();
+        let mut places = vec![0; problem.groups + 1];
+        problem.joints.iter().flat_map(groups).for_each(|group| places[group + 1] += 1);
+        (0..problem.groups).for_each(|group| places[group + 1] += places[group]);
+        let mut joints = vec![0; places[problem.groups]];
+        for (index, joint) in problem.joints.iter().enumerate() {
+            for group in groups(joint) {
+                joints[places[group]] = index;
+                places[group] += 1;
+            }
+        }
+        // Each place has come to the end of its group.
+        Touching { joints, ends: places }
+    }
+
+    fn joints(&self, group: usize) -> &[usize] {
+        let first = if group == 0 { 0 } else { self.ends[group - 1] };
+        &self.joints[first..self.ends[group]]
+    }
 }
 
 /// (N_0, N_1, T) of every joint as affine forms of the variables, in units of the force scale.

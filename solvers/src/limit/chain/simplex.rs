@@ -51,6 +51,8 @@ pub struct Program<'a> {
     /// Whether any joint crushes.
     crushes: bool,
     margin: bool,
+    /// Whether any point with a margin will do.
+    any_field: bool,
     cap: f64,
     /// Number of variables.
     pub variables: usize,
@@ -96,6 +98,8 @@ enum Ending {
         point: Vec<f64>,
         weights: Vec<f64>,
     },
+    /// Any point would do, and this one keeps all rows.
+    Enough(Vec<f64>),
     /// A column that enters for ever, with its weight and those of the basis that go with it.
     NoLeaving(Vec<(Column, f64)>),
     Stuck(String),
@@ -116,7 +120,7 @@ impl<'a> Program<'a> {
         }
         let crushes = problem.joints.iter().any(|joint| joint.strength.block.is_some());
         let (variables, cap) = (forms.variables, f64::INFINITY);
-        Program { problem, forms, force, rows, ends, crushes, margin: false, cap, variables }
+        Program { problem, forms, force, rows, ends, crushes, margin: false, any_field: false, cap, variables }
     }
 
     /// Maximises the least slack of all rows instead, up to 1.
@@ -125,6 +129,13 @@ impl<'a> Program<'a> {
         self.cap = 1.0;
         self.variables += 1;
         self
+    }
+
+    /// With a margin, ended at the first point that keeps all rows without it: what it takes from each is then more than what the
+    /// worst of them lacks. Not where some row can have no slack, nor where tangents stand for stress blocks within a tolerance.
+    pub fn with_any_margin(mut self) -> Self {
+        self.any_field = !self.crushes && self.rows.iter().all(|row| row.margin == 1.0);
+        self.with_margin()
     }
 
     /// With an upper bound of the objective.
@@ -148,15 +159,15 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// The same of all joints in turn; of an arch, whose variables are three redundants and a factor at the most, without
-    /// loops over them.
-    fn evaluate_all(&self, point: &[f64], constant: f64, visit: impl FnMut((usize, [f64; 3]))) {
-        let joints = self.forms.values.chunks_exact(3 * (self.forms.variables + 1));
-        match self.forms.variables {
-            3 => joints.map(|forms| affine::<3>(forms, point, constant)).enumerate().for_each(visit),
-            4 => joints.map(|forms| affine::<4>(forms, point, constant)).enumerate().for_each(visit),
-            _ => (0..self.ends.len()).map(|joint| (joint, self.evaluate(joint, point, constant))).for_each(visit),
-        }
+    /// The same of V variables.
+    #[inline(always)]
+    fn affine<const V: usize>(&self, joint: usize, point: &[f64], constant: f64) -> [f64; 3] {
+        let (Some(point), length) = (point.first_chunk::<V>(), 3 * (V + 1)) else { return [0.0; 3] };
+        let mut forms = self.forms.values[joint * length..(joint + 1) * length].chunks_exact(V + 1);
+        std::array::from_fn(|_| {
+            let Some((form, last)) = forms.next().and_then(|form| form.split_first_chunk::<V>()) else { return 0.0 };
+            (0..V).map(|k| form[k] * point[k]).sum::<f64>() + constant * last[0]
+        })
     }
 
     fn slack_variable(&self, point: &[f64]) -> f64 {
@@ -227,41 +238,76 @@ impl<'a> Program<'a> {
         beta
     }
 
-    /// Calls `visit` with every column that is near or beyond its bound at `point`, and its
-    /// violation; in the recession cone where `constant` is 0.
-    fn scan(&self, point: &[f64], constant: f64, mut visit: impl FnMut(Column, f64)) {
+    /// Calls `visit` with every column whose violation at `point`, as `measure` reads it, is above `least`, and goes on with
+    /// what it returns; in the recession cone where `constant` is 0. Of an arch, whose variables are three redundants and a factor
+    /// at the most, without loops over them.
+    fn scan(
+        &self,
+        (point, constant): (&[f64], f64),
+        measure: impl Fn(f64) -> f64 + Copy,
+        least: f64,
+        visit: &mut dyn FnMut(Column, f64) -> f64,
+    ) {
+        let at = (point, constant);
+        match self.forms.variables {
+            3 => self.scan_by(at, |joint| self.affine::<3>(joint, point, constant), measure, least, visit),
+            4 => self.scan_by(at, |joint| self.affine::<4>(joint, point, constant), measure, least, visit),
+            _ => self.scan_by(at, |joint| self.evaluate(joint, point, constant), measure, least, visit),
+        }
+    }
+
+    /// The same with the forces of each joint by `evaluate`.
+    #[inline(always)]
+    fn scan_by(
+        &self,
+        (point, constant): (&[f64], f64),
+        evaluate: impl Fn(usize) -> [f64; 3],
+        measure: impl Fn(f64) -> f64 + Copy,
+        mut least: f64,
+        visit: &mut dyn FnMut(Column, f64) -> f64,
+    ) {
         let slack = self.slack_variable(point);
         let mut first = 0;
-        self.evaluate_all(point, constant, |(joint, forces)| {
-            let end = self.ends[joint];
+        for (joint, &end) in self.ends.iter().enumerate() {
+            let forces = evaluate(joint);
             for (row, r) in self.rows[first..end].iter().enumerate() {
                 let carried = r.normal[0] * forces[0] + r.normal[1] * forces[1] + r.normal[2] * forces[2];
-                visit(Column::Row { joint, row }, carried + r.margin * slack - constant * r.bound);
+                let size = measure(carried + r.margin * slack - constant * r.bound);
+                if size > least {
+                    least = visit(Column::Row { joint, row }, size);
+                }
             }
             first = end;
             if self.crushes
                 && let Some(block) = self.block(joint)
             {
-                tangents(joint, &block, forces, constant, slack, &mut visit);
+                tangents(joint, &block, forces, constant, slack, &mut |column, violation| {
+                    let size = measure(violation);
+                    if size > least {
+                        least = visit(column, size);
+                    }
+                });
             }
-        });
+        }
         if self.cap.is_finite() {
-            visit(Column::Cap, point[self.variables - 1] - constant * self.cap);
+            let size = measure(point[self.variables - 1] - constant * self.cap);
+            if size > least {
+                visit(Column::Cap, size);
+            }
         }
     }
 
-    /// The column violated most.
+    /// The column violated most, and by how much.
     fn entering(&self, point: &[f64], constant: f64, block_tolerance: f64, basis: &[Column]) -> Option<(Column, f64)> {
         let mut worst: Option<(Column, f64)> = None;
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
-        self.scan(point, constant, |column, violation| {
-            let tolerance = match column {
-                Column::Tangent { .. } if constant != 0.0 => block_tolerance,
-                _ => ROW_TOLERANCE,
-            };
-            if violation > tolerance * size && worst.is_none_or(|(_, w)| violation > w) && !basis.contains(&column) {
+        let least = ROW_TOLERANCE * size;
+        self.scan((point, constant), |violation| violation, least, &mut |column, violation| {
+            let tangent = constant != 0.0 && matches!(column, Column::Tangent { .. });
+            if !basis.contains(&column) && (!tangent || violation > block_tolerance * size) {
                 worst = Some((column, violation));
             }
+            worst.map_or(least, |(_, violation)| violation)
         });
         worst
     }
@@ -270,10 +316,10 @@ impl<'a> Program<'a> {
     pub fn active(&self, point: &[f64]) -> Vec<Column> {
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
         let mut active = Vec::new();
-        self.scan(point, 1.0, |column, violation| {
-            if violation > -ACTIVE_TOLERANCE * size {
-                active.push(column);
-            }
+        let least = -ACTIVE_TOLERANCE * size;
+        self.scan((point, 1.0), |violation| violation, least, &mut |column, _| {
+            active.push(column);
+            least
         });
         active
     }
@@ -307,7 +353,7 @@ impl<'a> Program<'a> {
                     return (Outcome::Unbounded(point.iter().map(|x| x / point[m - 1]).collect()), work);
                 }
                 Ending::Optimal { .. } => {}
-                Ending::NoLeaving(_) => {
+                Ending::NoLeaving(_) | Ending::Enough(_) => {
                     return (Outcome::Failed("phase one has no optimum".into()), work);
                 }
                 Ending::Stuck(why) => return (Outcome::Failed(why), work),
@@ -319,6 +365,9 @@ impl<'a> Program<'a> {
             let last = Some(&block_tolerance) == BLOCK_TOLERANCES.last();
             outcome = match self.iterate(&mut basis, false, block_tolerance, &mut work) {
                 Ending::Optimal { point, weights } => self.finish(&basis, point, weights, last, &mut work),
+                Ending::Enough(point) => {
+                    Outcome::Optimal(Solved { value: point[m - 1], point, columns: Vec::new(), capped: false })
+                }
                 Ending::NoLeaving(refutation) => Outcome::Infeasible(refutation),
                 Ending::Stuck(why) => Outcome::Failed(why),
             };
@@ -360,9 +409,12 @@ impl<'a> Program<'a> {
             }
             basis.lu.solve_transposed(&mut step);
             point.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
-            let Some((column, _)) = self.entering(&point, constant, block_tolerance, &basis.columns) else {
+            let Some((column, violation)) = self.entering(&point, constant, block_tolerance, &basis.columns) else {
                 return Ending::Optimal { point, weights };
             };
+            if self.any_field && violation <= self.slack_variable(&point) {
+                return Ending::Enough(point);
+            }
             // The entering column, which the step no longer needs.
             let entering = &mut step;
             let beta = self.write(column, entering);
@@ -385,7 +437,7 @@ impl<'a> Program<'a> {
     /// Replaces artificials, which stand at zero, by real columns wherever some column can.
     fn drive_out(&self, basis: &mut Basis) {
         let m = self.variables;
-        let (mut row, mut gradient) = (vec![0.0; m], vec![0.0; m]);
+        let mut row = vec![0.0; m];
         for place in 0..m {
             if !matches!(basis.columns[place], Column::Artificial { .. }) || !basis.lu.factorise(&basis.matrix) {
                 continue;
@@ -394,13 +446,12 @@ impl<'a> Program<'a> {
             row[place] = 1.0;
             basis.lu.solve_transposed(&mut row);
             let mut best: (f64, Option<Column>) = (1e-9, None);
-            let origin = vec![0.0; m];
-            self.scan(&origin, 0.0, |column, _| {
-                self.write(column, &mut gradient);
-                let size = inner(&row, &gradient).abs();
-                if size > best.0 && !basis.columns.contains(&column) {
-                    best = (size, Some(column));
+            // In the recession cone the violation at a point is its product with the column.
+            self.scan((&row, 0.0), f64::abs, best.0, &mut |column, product| {
+                if !basis.columns.contains(&column) {
+                    best = (product, Some(column));
                 }
+                best.0
             });
             if let Some(column) = best.1 {
                 basis.columns[place] = column;
@@ -494,7 +545,15 @@ impl<'a> Program<'a> {
             }
         }
         let mut worst = 0.0f64;
-        self.scan(point, 1.0, |_, violation| worst = worst.max(violation));
+        self.scan(
+            (point, 1.0),
+            |violation| if violation.is_nan() { f64::INFINITY } else { violation },
+            0.0,
+            &mut |_, violation| {
+                worst = violation;
+                violation
+            },
+        );
         let least = columns.iter().map(|(_, weight)| *weight).fold(f64::INFINITY, f64::min);
         if worst > 1e-11 || least < -1e-11 || !worst.is_finite() {
             return Err(format!(
@@ -546,16 +605,6 @@ impl<'a> Program<'a> {
 /// A row that pins T to zero can have no slack.
 fn can_be_slack(row: &ForceRow) -> bool {
     !(row.normal[0] == 0.0 && row.normal[1] == 0.0 && row.bound == 0.0)
-}
-
-/// The three forms of a joint at a point of V variables.
-fn affine<const V: usize>(forms: &[f64], point: &[f64], constant: f64) -> [f64; 3] {
-    let Some(point) = point.first_chunk::<V>() else { return [0.0; 3] };
-    let mut rows = forms.chunks_exact(V + 1);
-    std::array::from_fn(|_| {
-        let Some((form, last)) = rows.next().and_then(|row| row.split_first_chunk::<V>()) else { return 0.0 };
-        (0..V).map(|k| form[k] * point[k]).sum::<f64>() + constant * last[0]
-    })
 }
 
 /// Visits the tangents of a stress block next to the forces of its joint.

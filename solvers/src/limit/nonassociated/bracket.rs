@@ -5,8 +5,10 @@
 //! that are too cheap or too dear for the range. What is left is searched.
 
 use super::conflict_search::{Ending, Search};
+use super::curve::Curve;
 use crate::limit::systems::Systems;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
+use voussoir_core::limit::BracketWork;
 
 /// A range ends this far below a known state, relative to it; where rounding finds that state again, up
 /// to [`WIDEST`].
@@ -15,6 +17,9 @@ pub const GAP: f64 = 1e-8;
 pub const WIDEST: f64 = 1e-6;
 /// Ends of the ranges as shares of what is open; they close at about equal cost.
 const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
+
+/// Where not even this share of what is open closes with that share of the work, nothing will.
+const PROBE: [f64; 2] = [0.01, 0.1];
 
 /// What the search found in a range.
 pub enum Range {
@@ -26,8 +31,8 @@ pub enum Range {
     Open,
 }
 
-/// Work done, in counts.
-#[derive(Debug, Clone, Copy, Default)]
+/// Work done, in counts, and what it led to.
+#[derive(Debug, Clone, Default)]
 pub struct Work {
     /// Pivots.
     pub pivots: u64,
@@ -41,6 +46,22 @@ pub struct Work {
     pub iterations: u64,
     /// Multiplications of the program of all products.
     pub multiplications: u64,
+    /// The bracket over the work.
+    pub curve: Curve,
+    /// Whether the search was given up before its limit.
+    pub given_up: bool,
+}
+
+impl Work {
+    /// None below this was proved by the search.
+    fn searched(&mut self, theta: f64) {
+        self.curve.proved(BracketWork::Search, self.swept(), theta);
+    }
+
+    /// 10⁹ entries swept by the search.
+    pub fn swept(&self) -> f64 {
+        self.entries as f64 / 1e9
+    }
 }
 
 /// The bounds of the dissipation d_i·r on each pair where it yields, and the pairs that cannot.
@@ -141,20 +162,33 @@ pub enum Proof {
 
 /// The whole range below a known state at once, where that is cheap.
 pub fn at_once(systems: &Systems, top: f64, most: u64, work: &mut Work) -> Proof {
-    match search(systems, [0.0, top], (most / 50).min(200_000_000), work) {
+    let proof = match search(systems, [0.0, top], (most / 50).min(200_000_000), work) {
         Range::Closed => Proof::Below(top),
         Range::State(moving) => Proof::State(0.0, moving),
         Range::Open => Proof::Open(0.0),
-    }
+    };
+    work.searched(if matches!(proof, Proof::Below(_)) { top } else { 0.0 });
+    proof
 }
 
-/// The range from `proved` to `top` in parts from below. At most `most` matrix entries are swept.
+/// The range from `proved` to `top` in parts from below. At most `most` matrix entries are swept, and a tenth of that where
+/// the search is hopeless.
 pub fn in_parts(systems: &Systems, [mut proved, top]: [f64; 2], most: u64, work: &mut Work) -> Proof {
     let first = proved;
-    for share in SHARES {
+    let left = most.saturating_sub(work.entries);
+    work.given_up = false;
+    for share in std::iter::once(PROBE[0]).chain(SHARES) {
         let end = if share == 1.0 { top } else { first + share * (top - first) };
-        match search(systems, [proved, end], most.saturating_sub(work.entries), work) {
-            Range::Closed => proved = end,
+        let probes = share == PROBE[0];
+        let most = if probes { (PROBE[1] * left as f64) as u64 } else { most.saturating_sub(work.entries) };
+        let found = search(systems, [proved, end], most, work);
+        work.given_up = probes && left > 0 && matches!(found, Range::Open);
+        if matches!(found, Range::Closed) {
+            proved = end;
+        }
+        work.searched(proved);
+        match found {
+            Range::Closed => {}
             Range::State(moving) => return Proof::State(proved, moving),
             Range::Open => return Proof::Open(proved),
         }

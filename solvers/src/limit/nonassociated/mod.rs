@@ -3,6 +3,7 @@
 
 mod bracket;
 mod conflict_search;
+mod curve;
 mod descent;
 mod products;
 mod solver;

@@ -1,6 +1,7 @@
 //! The solver `limit_least`: local search for the least state, then a proof that nothing lies below.
 
 use super::bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
+use super::curve::Curve;
 use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
 use super::splitting::split_bound;
@@ -13,8 +14,8 @@ use crate::optimise::dense_simplex::Feasibility;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
-    LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated, SettlementAnswer,
-    Status,
+    BracketWork, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated,
+    SettlementAnswer, Status,
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -104,6 +105,10 @@ voussoir_core::inventory::submit! {
 /// Said where the loads before the stage are at a limit state.
 const MOVES_ALREADY: &str = "the loads present before this stage are at a limit state of the laws' own flow, with a mechanism \
      on which they do work: blocks stand by wedging alone, and whether they do depends on how the joints were compressed";
+
+/// Why a bracket is left open.
+const AT_LIMIT: &str = "the search ended at its limit";
+const GIVEN_UP: &str = "with a tenth of its work the search could not exclude even the lowest hundredth of what was open, and was given up";
 
 /// A reproducible sequence of numbers in [0, 1) (xorshift, Marsaglia 2003).
 struct Irregular(u64);
@@ -204,6 +209,8 @@ impl Least<'_> {
             if let Some(state) = found
                 && best.as_ref().is_none_or(|b| state.theta < b.theta)
             {
+                let swept = (statics.work() + kinematics.work()) as f64 / 1e9;
+                self.work.curve.found(BracketWork::Local, swept, state.theta);
                 if present.is_finite() && state.theta < present {
                     let next = state.theta * (1.0 - 1e-7);
                     statics.shift(self.systems.upper_slack(), next - present);
@@ -249,6 +256,7 @@ impl LimitSolver for LimitNonassociated {
                     let from = answer.motion.as_ref().map(|motion| least.systems.multipliers(problem, motion));
                     let found = least.local(most, from);
                     least.take(found.map(|state| state.moving), &mut best);
+                    best.iter().for_each(|b| least.work.curve.known(b.0));
                 }
                 lower = least.prove(self, most, &mut best);
             }
@@ -258,6 +266,7 @@ impl LimitSolver for LimitNonassociated {
             let from = answer.field.clone().unwrap_or_default();
             match sequence(problem, &base, &from, &mut answer.counters) {
                 Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
+                    least.work.curve.found(BracketWork::Sequence, 0.0, state.factor / unit);
                     best = Some((state.factor / unit, state));
                 }
                 Sequence::Converged(_) => {}
@@ -279,7 +288,8 @@ impl LimitSolver for LimitNonassociated {
             answer.counters.insert("product_multiplications".into(), least.work.multiplications);
         }
         own.lower_proof = Some(lower.proof(&least.systems, problem, start));
-        finish(answer, own, best, lower.theta, (start, max, unit))
+        let why = if least.work.given_up { GIVEN_UP } else { AT_LIMIT };
+        finish(answer, (own, least.work.curve, why), best, lower.theta, (start, max, unit))
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
@@ -360,7 +370,8 @@ impl Least<'_> {
                     lower.product(self.products(known, limits.product_rows, false));
                     if lower.theta < known * (1.0 - WIDEST) && limits.product_limit > 0.0 {
                         let multiplications = (limits.product_limit * 1e9).min(1e18) as u64;
-                        let (bound, work) = split_bound(&self.systems, known, multiplications);
+                        let curve = &mut self.work.curve;
+                        let (bound, work) = split_bound(&self.systems, known, multiplications, curve);
                         self.work.multiplications += work;
                         lower.product(bound.filter(|bound| bound.theta > lower.theta));
                     }
@@ -368,6 +379,8 @@ impl Least<'_> {
                 Proof::State(proved, moving) => {
                     lower.search(proved);
                     if self.take(Some(moving), best) {
+                        let (swept, theta) = (self.work.swept(), best.as_ref().map_or(known, |b| b.0));
+                        self.work.curve.found(BracketWork::Search, swept, theta);
                         continue;
                     }
                     // The known state itself, to rounding: the proof ends further below it.
@@ -386,6 +399,10 @@ impl Least<'_> {
     fn products(&mut self, known: f64, most: usize, widest_only: bool) -> Option<Bound> {
         let (bound, iterations) = lower_bound(&self.systems, self.problem, known, most, widest_only);
         self.work.iterations += iterations;
+        if iterations > 0 {
+            let proved = bound.as_ref().map_or(0.0, |bound| bound.theta);
+            self.work.curve.proved(BracketWork::Products, self.work.iterations as f64, proved);
+        }
         bound
     }
 }
@@ -431,7 +448,7 @@ impl Lower {
 /// The answer with the best state and the proved bound.
 fn finish(
     mut answer: LimitAnswer,
-    mut own: NonAssociated,
+    (mut own, curve, why): (NonAssociated, Curve, &str),
     best: Option<(f64, FlowState)>,
     lower: f64,
     (start, max, unit): (f64, f64, f64),
@@ -441,9 +458,10 @@ fn finish(
         Some((_, state)) if start + state.factor <= max => {
             let factor = start + state.factor;
             own.proved_lower = Some(proved.min(factor));
+            own.bracket = curve.factors(start, unit, [proved.min(factor), factor]);
             if lower * unit < state.factor * (1.0 - 2.0 * WIDEST) {
                 answer.notes.push(format!(
-                    "the least load factor of the laws' own flow lies between {proved:.9} (proved) and {factor:.9} (found): the search ended at its limit"
+                    "the least load factor of the laws' own flow lies between {proved:.9} (proved) and {factor:.9} (found): {why}"
                 ));
             }
             answer.status = Status::Collapse;

@@ -10,9 +10,11 @@
 //! the Douglas–Rachford iteration, and what is left is taken out by changes M ∘ (U y Vᵀ), where M vanishes with Λ, by conjugate
 //! residuals. Where Λ stays ≥ 0, β is proved, and the next is half the way to the estimate, else half the way down.
 
+use super::curve::Curve;
 use super::products::{Bound, Kind, Step};
 use crate::limit::systems::Systems;
 use nalgebra::{DMatrix, DVector};
+use voussoir_core::limit::BracketWork;
 
 /// The first range takes this share of the work, the next the same of what is left.
 const RANGE: f64 = 0.6;
@@ -47,6 +49,8 @@ const FIRST_SHARE: f64 = 0.85;
 const CLOSE: f64 = 1e-3;
 /// Largest residual of multipliers, relative to the greatest.
 const EXACT: f64 = 1e-14;
+/// What rounding may cost is left out where the next range begins.
+const LEFT_OUT: f64 = 1e-6;
 /// Columns shorter than this share of the longest are none.
 const RANK: f64 = 1e-10;
 /// t lies so far above the known state.
@@ -363,8 +367,8 @@ impl Products {
         Step { raw: self.range[0] + bound, range: self.range, multipliers: kinds }
     }
 
-    /// The greatest bound that so much work proves.
-    fn greatest(&mut self, limit: u64) -> Option<Step> {
+    /// The greatest bound that so much work proves; `raised` hears of each on the way, with the work until then.
+    fn greatest(&mut self, limit: u64, raised: &mut dyn FnMut(u64, f64)) -> Option<Step> {
         let before = self.work;
         let once = self.objective.clone();
         self.project(&once);
@@ -379,6 +383,7 @@ impl Products {
             match self.prove(bound, &mut near, iterations(TRIAL)) {
                 Some(exact) => {
                     low = bound;
+                    raised(self.work, self.range[0] + bound);
                     best = Some(self.step(bound, &exact));
                     bound = 0.5 * (low + high);
                 }
@@ -390,7 +395,7 @@ impl Products {
 }
 
 /// The greatest lower bound of θ, for states with θ ≤ `most`, that so many multiplications prove; with the work it took.
-pub fn split_bound(systems: &Systems, most: f64, limit: u64) -> (Option<Bound>, u64) {
+pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) -> (Option<Bound>, u64) {
     let most = most * (1.0 + ABOVE);
     let (mut steps, mut proved, mut work) = (Vec::new(), 0.0, 0u64);
     while !systems.pairs.is_empty() && proved < most * (1.0 - CLOSE) {
@@ -398,11 +403,14 @@ pub fn split_bound(systems: &Systems, most: f64, limit: u64) -> (Option<Bound>, 
         let own = (RANGE * limit.saturating_sub(work) as f64) as u64;
         // No motion of the flow rule has p·q̇ = 1, or there is too little work left to try.
         let hopeless = products.power.norm() < RANK || own < (FEWEST as u64) * products.work;
-        let found = if hopeless { None } else { products.greatest(own) };
+        let mut raised = |own: u64, theta: f64| {
+            curve.proved(BracketWork::Splitting, (work + own) as f64 / 1e9, theta * (1.0 - LEFT_OUT));
+        };
+        let found = if hopeless { None } else { products.greatest(own, &mut raised) };
         work += products.work;
+        curve.proved(BracketWork::Splitting, work as f64 / 1e9, 0.0);
         let Some(step) = found else { break };
-        // What rounding may cost is left out where the next range begins.
-        proved = step.raw * (1.0 - 1e-6);
+        proved = step.raw * (1.0 - LEFT_OUT);
         steps.push(step);
     }
     let bound = (!steps.is_empty()).then_some(Bound { theta: proved, steps });

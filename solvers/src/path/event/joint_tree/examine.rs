@@ -16,6 +16,11 @@ const NEIGHBOURHOOD: f64 = 0.3;
 const SIGN: f64 = 0.8;
 /// By how much a room is widened at most.
 const WIDEST: f64 = 1e4;
+/// The share of a room that is left of it at least.
+const NARROWEST: f64 = 0.02;
+/// Mean arcs between events for which a joint is to be left alone: rates that leave narrow rooms are noticed at less cost
+/// than that of examining their joint again.
+const QUIET: f64 = 30.0;
 /// Relative violation up to which a rate keeps to its modes.
 const INEQUALITY: f64 = 1e-10;
 /// Changes of a rate below this share of the greatest rate are rounding.
@@ -113,29 +118,35 @@ pub fn examine(run: &mut Run, trace: &mut Trace, e: usize, changes: &mut Vec<Cha
         let mut looked = Looked { c, row: 2 * k, force, gap, axes, hits: &mut run.hits, ahead: &mut ahead };
         examine_point(trace, &mut looked, run.sizes);
     }
-    let earliest = widen(&mut room, &signed, &ahead);
+    let earliest = fit(&mut room, &signed, &ahead, QUIET * run.spacing);
     let deadline = run.arc() + earliest;
     run.quiet.own[e] = Own { reference: out, room, deadline, always, sizes };
     run.hits[first..].iter().map(|hit| hit.0).fold(f64::INFINITY, f64::min)
 }
 
-/// Makes rooms so wide that what may come within them comes as late as what comes first; returns when that is. Rates that
-/// must keep their sign keep their room.
-fn widen(room: &mut [f64], signed: &[bool], ahead: &[(f64, f64, f64, [usize; 2])]) -> f64 {
-    let when = |&(distance, rate, more, _): &(f64, f64, f64, [usize; 2])| match rate + more {
-        most if most > 0.0 => distance / most,
-        _ => f64::INFINITY,
+/// Makes rooms so wide that what may come within them comes as late as what comes first, which narrower rooms put off
+/// to an arc that is `wanted`; returns when that is. Rates that must keep their sign are given no wider room.
+fn fit(room: &mut [f64], signed: &[bool], ahead: &[(f64, f64, f64, [usize; 2])], wanted: f64) -> f64 {
+    let earliest = |share: f64| {
+        let when = |&(distance, rate, more, _): &(f64, f64, f64, [usize; 2])| match rate + share * more {
+            most if most > 0.0 => distance / most,
+            _ => f64::INFINITY,
+        };
+        ahead.iter().map(when).fold(f64::INFINITY, f64::min)
     };
-    let earliest = ahead.iter().map(when).fold(f64::INFINITY, f64::min);
+    let mut until = earliest(1.0);
+    if until < wanted {
+        until = earliest(NARROWEST).min(wanted);
+    }
     let mut factors = vec![WIDEST; room.len()];
     for &(distance, rate, more, rows) in ahead {
-        let factor = if more > 0.0 { (distance / earliest - rate) / more } else { WIDEST };
+        let factor = if more > 0.0 { ((distance / until - rate) / more).max(NARROWEST) } else { WIDEST };
         rows.into_iter().filter(|row| *row < room.len()).for_each(|row| factors[row] = factors[row].min(factor));
     }
-    for ((room, factor), _) in room.iter_mut().zip(factors).zip(signed).filter(|(_, signed)| !**signed) {
-        *room *= factor.max(1.0);
+    for ((room, factor), signed) in room.iter_mut().zip(factors).zip(signed) {
+        *room *= if *signed { factor.min(1.0) } else { factor };
     }
-    earliest
+    until
 }
 
 /// What is ahead of a point.

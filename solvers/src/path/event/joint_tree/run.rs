@@ -14,6 +14,8 @@ use std::collections::BinaryHeap;
 
 /// Share of a room that may be used up before a joint or a node is looked at.
 const USED: f64 = 0.5;
+/// Share of the last step in the mean arc between events.
+const SPACING: f64 = 0.05;
 /// Forces below this share of the gaps: a mechanism is near.
 const NEAR_MECHANISM: f64 = 1e-4;
 
@@ -196,6 +198,7 @@ fn advance(run: &mut Run, trace: &mut Trace, going: &Going, (step, sense): (f64,
     moved.pending.iter_mut().zip(&going.rates).for_each(|(pending, rate)| *pending += step * rate);
     moved.any = true;
     run.progress.place.iter_mut().zip(&going.rates).for_each(|(place, rate)| *place += step * rate);
+    run.spacing += SPACING * (step - run.spacing);
     let before = trace.state.factor;
     trace.state.factor += sense * step;
     let moved = sense * going.displacement * step;

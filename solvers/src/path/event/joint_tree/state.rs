@@ -49,6 +49,8 @@ pub struct Run {
     pub fresh: Vec<usize>,
     /// Modes before the present event.
     pub before: Vec<(usize, ContactMode)>,
+    /// Mean arc between the last events.
+    pub spacing: f64,
     /// Memory that is used again and again.
     pub memory: Memory,
 }
@@ -96,6 +98,7 @@ impl Run {
             stale: (0..count).collect(),
             fresh: Vec::new(),
             before: Vec::new(),
+            spacing: 0.0,
             memory: Memory::default(),
         })
     }
