@@ -25,21 +25,11 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before NumPy and GetFEM are loaded: waiting threads count as processor time
 
 from limit_load import by_voussoir, report
-from scenes import RING, area_and_centre, ring
+from scenes import RING, area_and_centre, ring, ring_joints
 
 YOUNG, POISSON = 5e9, 0.3
 MESH = (6, 4, 2)  # elements along a voussoir, across it, order
 INCREMENTS, AUGMENTATIONS, TOLERANCES = [100.0, 400.0, 2000.0], [0.1, 0.3, 1.0], [1e-3, 1e-6, 1e-9]
-
-
-def polygons(count):
-    """Inside, outside and angle of the ring's joints, as `scenes.ring` has them."""
-    s, r, t = RING["span"], RING["rise"], RING["thickness"]
-    radius = (s * s / 4 + r * r) / (2 * r)
-    half = math.asin(s / 2 / radius)
-    angles = [-half + 2 * half * k / count for k in range(count + 1)]
-    at = lambda radius_, a: (radius_ * math.sin(a), radius_ * math.cos(a) - radius + r)
-    return [at(radius, a) for a in angles], [at(radius + t, a) for a in angles], angles
 
 
 def elastic(count, solver):
@@ -69,7 +59,7 @@ class GetfemRing:
         getfem.util("trace level", 0)
         getfem.util("warning level", 0)
         self.count, self.order = count, order
-        self.inside, self.outside, self.angles = polygons(count)
+        self.inside, self.outside, self.angles = ring_joints(count)
         corners = [[self.inside[k], self.outside[k], self.inside[k + 1], self.outside[k + 1]] for k in range(count)]
         outlines = [[c[2], c[3], c[1], c[0]] for c in corners]
         self.unit = max(area_and_centre(outline)[0] for outline in outlines) * RING["density"] * 9.81

@@ -67,16 +67,21 @@ def area_and_centre(polygon):
     return twice / 2, (x / (3 * twice), y / (3 * twice))
 
 
-def ring(count):
-    """A segmental ring of equal voussoirs with straight sides, jointed to its abutments; a load above quarter span."""
+def ring_joints(count):
+    """Inside and outside ends of the ring's joints, and their angles from the vertical."""
     s, r, t = RING["span"], RING["rise"], RING["thickness"]
     radius = (s * s / 4 + r * r) / (2 * r)
     half = math.asin(s / 2 / radius) if r <= s / 2 else math.pi - math.asin(s / 2 / radius)
     angles = [-half + 2 * half * k / count for k in range(count + 1)]
-    inside = [(radius * math.sin(a), radius * math.cos(a) - radius + r) for a in angles]
-    outside = [((radius + t) * math.sin(a), (radius + t) * math.cos(a) - radius + r) for a in angles]
+    at = lambda radius_, a: (radius_ * math.sin(a), radius_ * math.cos(a) - radius + r)
+    return [at(radius, a) for a in angles], [at(radius + t, a) for a in angles], angles
+
+
+def ring(count):
+    """A segmental ring of equal voussoirs with straight sides, jointed to its abutments; a load above quarter span."""
+    inside, outside, angles = ring_joints(count)
     polygons = [[inside[k + 1], outside[k + 1], outside[k], inside[k]] for k in range(count)]
-    weights, load_x = [], -s / 4
+    weights, load_x = [], -RING["span"] / 4
     for polygon in polygons:
         area, centre = area_and_centre(polygon)
         weights.append((area * RING["density"] * 9.81, centre))

@@ -67,7 +67,11 @@ impl Sliding {
     /// \[m\] are ends of the joint.
     pub fn of(assembly: &Assembly, joint: &Joint, position: f64, tolerance: f64) -> Self {
         let sides = [joint.minus, joint.plus];
-        let faces = sides.map(|side| face(&assembly.bodies[side].vertices, joint.ends, tolerance));
+        // An abutment without a polygon has the face of its joint.
+        let faces = sides.map(|side| match &assembly.bodies[side].vertices[..] {
+            [] => Some([0.0, joint.height()]),
+            vertices => face(vertices, joint.ends, tolerance),
+        });
         let found = sliding(faces, joint.height(), position);
         let elastic = sides.iter().any(|side| assembly.is_deformable(*side));
         if elastic { found.from_the_middle(joint.height()) } else { found }
