@@ -151,23 +151,26 @@ fn trough(notes: &[String]) -> f64 {
 
 /// Two thick blocks hinge at the intrados of the supports and the extrados of the crown and snap through:
 /// peak and trough of the energy, with springs along all of a joint and along what touches of it. At the
-/// troughs one point touches in each joint.
+/// troughs one point touches in each joint; in the second case it has slipped so far that its corner has left the face,
+/// which that energy does not know.
 #[test]
 fn two_thick_blocks_snap_through_at_the_extremes_of_their_energy() {
     for (law, stiffness, peak, low) in [
-        (STUCK, 1e8, 22.594774717, -41.444908413),
-        (STUCK, 1e9, 313.922138411, -327.591054661),
-        (STUCK, 1e10, 3227.196225769, -3189.053173702),
-        (ROUGH, 1e8, 22.590219654, -41.481686134),
-        (ROUGH, 1e9, 313.886632213, -328.197372721),
-        (ROUGH, 1e10, 3226.851006952, -3195.354287655),
+        (STUCK, 1e8, 22.594774717, Some(-41.444908413)),
+        (STUCK, 1e9, 313.922138411, Some(-327.591054661)),
+        (STUCK, 1e10, 3227.196225769, Some(-3189.053173702)),
+        (ROUGH, 1e8, 22.590219654, None),
+        (ROUGH, 1e9, 313.886632213, None),
+        (ROUGH, 1e10, 3226.851006952, None),
     ] {
         let arch = Arch::thick(stiffness, law);
-        let (_, answer, states) = followed(&arch.study(), 0.62, None);
+        let (_, answer, states) = followed(&arch.study(), if low.is_some() { 0.62 } else { 0.1 }, None);
         assert_eq!(answer.status, Status::Collapse, "{law} {stiffness}: {:?}", answer.notes);
         assert_close(answer.factor.expect("a peak"), peak, 1e-9);
-        assert_close(trough(&answer.notes), low, 1e-9);
-        assert!(states.last().expect("states").factor > 0.8 * low, "the post-peak branch rises");
+        if let Some(low) = low {
+            assert_close(trough(&answer.notes), low, 1e-9);
+            assert!(states.last().expect("states").factor > 0.8 * low, "the post-peak branch rises");
+        }
         for state in &states {
             assert!((state.motion[1][2] + state.motion[2][2]).abs() < 1e-9, "the arch stays symmetric");
         }
