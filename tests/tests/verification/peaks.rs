@@ -108,16 +108,16 @@ fn blocks(scene: &str, strategy: &str, stop: &str) -> f64 {
 
 /// Peaks that earlier were those of other branches, or of steps that had turned back, or (scene 137, where points slide
 /// from nothing and soon come to rest) of a first step that was too long; where points slide a peak has an error that
-/// falls with the step. Displacement control does not follow 158, which snaps back after its peak, to where paths end; 137,
-/// whose load falls to twelve times the peak upwards, and 167, which slides on under a constant load, where rounding decides
-/// when it rocks instead, are not followed far.
+/// falls with the step. Displacement control does not follow 158, which snaps back after its peak, to where paths end
+/// (it does 137, by arc lengths at last); 167, which slides on under a constant load, where rounding decides when it rocks
+/// instead, is not followed far.
 #[test]
 fn peaks_do_not_depend_on_the_strategy_or_the_side() {
     let all = ["arc_length", "displacement_control", "dissipation"];
     let turning = ["arc_length", "dissipation"];
     let near = "stop = { displacement = 1e-3 }";
     for (scene, peak, tolerance, strategies, stop) in [
-        (include_str!("peaks/137.toml"), 0.0687179, 1e-6, &all[..], near),
+        (include_str!("peaks/137.toml"), 0.0687179, 1e-6, &all[..], ""),
         (include_str!("peaks/162.toml"), 0.6433313, 1e-8, &all, ""),
         (include_str!("peaks/158.toml"), 319.163, 5e-6, &turning, ""),
         (include_str!("peaks/167.toml"), 0.5891709, 1e-6, &all, near),

@@ -162,6 +162,9 @@ fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failur
         note_peak(tracer, &tangent, following.direction);
         return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
     }
+    if following.takes_arc_lengths(tracer) {
+        return AfterFailure::CutBack(following.length);
+    }
     AfterFailure::Ended(if linear && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &failure.why);
         if no_peak && tracer.limit.peak.is_some() {

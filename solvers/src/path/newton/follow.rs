@@ -133,6 +133,9 @@ fn strategy_stopped(tracer: &mut Tracer, following: &mut Following) -> StepEnd {
     if per_tangent(tracer, &following.branch.tangent, None) > 0.0 {
         return StepEnd::CutBack(following.length);
     }
+    if following.takes_arc_lengths(tracer) {
+        return StepEnd::CutBack(following.length);
+    }
     let why = StepFailure::new("what the continuation strategy controls stopped changing");
     StepEnd::Ended(no_step(tracer, &why, &following.branch.tangent, following.direction))
 }
@@ -156,7 +159,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     following.refinements = 0;
     let (direction, rate, next) = (following.direction, &following.branch.tangent, &trial.next);
     let Some(tangent) = tangent_at(&mut tracer.system, &tracer.state, next, &trial.control) else {
-        return cut_back(tracer, following, "the state has no rate", rate);
+        return cut_back(tracer, following, "the state has no rate", None);
     };
     let (unit, finite) = (tracer.system.units().factor, tracer.system.finite());
     let gained = next.factor - tracer.state.factor;
@@ -172,7 +175,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         return StepEnd::CutBack(shorter);
     }
     if jumps {
-        return cut_back(tracer, following, "the state jumps to another branch", &following.branch.tangent);
+        return cut_back(tracer, following, "the state jumps to another branch", None);
     }
     let folded = folds_back(tracer, following, &trial, &tangent);
     let tangent = if folded { tangent.scaled(-1.0) } else { tangent };
@@ -183,7 +186,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let falls = tangent.factor * direction < if finite { still } else { -still };
     let softens = !tracer.system.laws.responses.is_empty();
     if (fell || falls) && softens && !tracer.strategy.passes_limit_points() {
-        return cut_back(tracer, following, "the load falls in the step", &tangent);
+        return cut_back(tracer, following, "the load falls in the step", Some(&tangent));
     }
     let falls = fell || (falls && following.slope > 0.0);
     let orientation = Orientation::along(&mut tracer.system, &trial.next, &tangent, direction);
@@ -313,11 +316,16 @@ fn begin_anew(tracer: &mut Tracer, following: &mut Following) -> Option<LoadStep
     }
 }
 
-/// Shortens a step that converged and is none along the path, or ends the path where it is too short for that.
-fn cut_back(tracer: &mut Tracer, following: &Following, why: &str, rate: &Tangent) -> StepEnd {
+/// Shortens a step that converged and is none along the path, or ends the path where it is too short for that; with the
+/// rate at its end, if that is what is wrong.
+fn cut_back(tracer: &mut Tracer, following: &mut Following, why: &str, end: Option<&Tangent>) -> StepEnd {
     tracer.system.count("cutbacks", 1);
     let length = 0.3 * following.length;
     if length < SHORTEST * following.limits.first {
+        if following.takes_arc_lengths(tracer) {
+            return StepEnd::CutBack(following.length);
+        }
+        let rate = end.unwrap_or(&following.branch.tangent);
         return StepEnd::Ended(no_step(tracer, &StepFailure::new(why), rate, following.direction));
     }
     StepEnd::CutBack(length)

@@ -13,9 +13,10 @@ use crate::contact::mode::ContactMode;
 use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
+use std::any::Any;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
+use voussoir_core::path::{Continuation, Increment, LoadStep, LoadStepEnd};
 
 /// Length of the first step on another branch, relative to that of the load step.
 const BRANCH: f64 = 0.1;
@@ -31,6 +32,8 @@ const FROM_NOTHING: f64 = 1e-3;
 pub(super) struct StepLimits {
     /// Length of the first step.
     pub first: f64,
+    /// The same by arc lengths.
+    pub by_arc: f64,
     /// Greatest motion of a step.
     pub largest: f64,
     /// Weight of the factor in a mixed control.
@@ -159,8 +162,11 @@ impl<'d> Following<'d> {
             _ if tracer.system.finite() => LARGEST_FINITE_STEP,
             step => step,
         };
+        let arc = ArcLength::default();
         let limits = StepLimits {
             first: length,
+            by_arc: arc.first_step()
+                * arc.constraint(&increment_along(&tracer.system, &tracer.state, &tangent), None).value,
             largest: largest * units.length / units.displacement,
             mixed_weight,
             linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
@@ -185,6 +191,25 @@ impl<'d> Following<'d> {
             arrest: None,
             tried: Tried::default(),
         })
+    }
+
+    /// Goes on by arc lengths where another strategy has lost a path with finite displacements beyond a peak: what it
+    /// measures may turn back there. Whether it does.
+    pub fn takes_arc_lengths(&mut self, tracer: &mut Tracer) -> bool {
+        let follows = tracer.system.finite() && tracer.limit.peak.is_some() && tracer.system.laws.responses.is_empty();
+        let strategy: &dyn Any = &*tracer.strategy;
+        if !follows || !tracer.strategy.passes_limit_points() || strategy.is::<ArcLength>() {
+            return false;
+        }
+        tracer.strategy = Arc::new(ArcLength::default());
+        let factor = tracer.state.factor;
+        tracer.record.notes.push(format!(
+            "at factor {factor}, beyond its peak, the path is lost by its strategy, whose measure turns back: arc lengths follow it on"
+        ));
+        self.limits.first = self.limits.by_arc;
+        self.length = BRANCH * self.limits.first;
+        (self.previous, self.arrest, self.tried) = (None, None, Tried::default());
+        true
     }
 
     /// Goes on along another branch, with short steps at first.
