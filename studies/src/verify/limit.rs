@@ -135,14 +135,10 @@ fn verify_bracket(result: &CaseResult, findings: &mut Findings) {
         pair[0].lower <= pair[1].lower && fell && later
     });
     let ends = curve.last().is_none_or(|end| {
-        // What rounding of multipliers may cost is taken off the bound.
-        let lower =
-            result.bounds.is_some_and(|bounds| (0.0..=2e-6 * end.lower.abs()).contains(&(end.lower - bounds[0])));
-        lower
-            && end
-                .found
-                .zip(result.load_factor)
-                .is_some_and(|(found, factor)| (found - factor).abs() <= 1e-6 * factor.abs())
+        let (Some([lower, _]), Some(factor)) = (result.bounds, result.load_factor) else { return false };
+        // What rounding of multipliers may cost is taken off the bound: up to 1e-6 of the factor.
+        let near = 2e-6 * factor.abs();
+        (end.lower - lower).abs() <= near && end.found.is_some_and(|found| (found - factor).abs() <= near)
     });
     findings.expect(closes && ends, "the curve of the bracket does not close to its bounds");
 }
