@@ -8,9 +8,9 @@
 //! ([`Sliding`](crate::path::Sliding); β = ½ is the middle). Bodies balance about their displaced poles.
 
 use crate::law::{Facet, FacetMode};
+use crate::linear::vectors::add_product;
 use crate::model::geometry::{Vec2, cross, turned};
 use crate::path::{Attachment, Contact, PathProblem, PathState, PointLaw};
-use nalgebra::DVector;
 
 /// A state with the deformations of its bodies.
 pub struct Displaced<'a> {
@@ -39,8 +39,10 @@ impl<'a> Displaced<'a> {
                 (None, ..) => Vec::new(),
                 (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
                 (Some(flexibility), ..) => {
-                    let flat = DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
-                    of((&**flexibility * flat).as_slice())
+                    let flat: Vec<f64> = f.iter().flat_map(|f| [f.x, f.y]).collect();
+                    let mut u = vec![0.0; flat.len()];
+                    add_product(&mut u, flexibility.nrows(), flexibility.as_slice(), &flat);
+                    of(&u)
                 }
             });
         let deformation = deformation.collect();
@@ -123,8 +125,12 @@ impl<'a> Displaced<'a> {
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
             let [n, t] = self.axes(contact);
             let push = n * r[0] + t * r[1];
-            let share = if self.finite { contact.sliding.share } else { 0.5 };
-            let at = self.side(contact, contact.plus) * (1.0 - share) + self.side(contact, contact.minus) * share;
+            let share = contact.sliding.share;
+            // With small displacements at its place, wherever that moves.
+            let at = match self.finite {
+                true => self.side(contact, contact.plus) * (1.0 - share) + self.side(contact, contact.minus) * share,
+                false => Vec2::zeros(),
+            };
             add(contact.plus.body, at, contact.position, push);
             add(contact.minus.body, at, contact.position, -push);
         }
