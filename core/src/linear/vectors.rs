@@ -40,3 +40,27 @@ pub fn add_four<S: Simd>(simd: S, out: &mut [f64], columns: [&[f64]; 4], factors
         *out += (a * w + b * x) + (c * y + d * z);
     }
 }
+
+/// out += A x, A column by column, over the first `out.len()` of `rows` rows and as many columns as x has entries, for
+/// code with the vectors of the processor; zeros of x cost nothing.
+#[inline(always)]
+pub fn add_columns<S: Simd>(simd: S, out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
+    let (a4, x4) = (a.chunks_exact(4 * rows), x.chunks_exact(4));
+    let whole = (a.len() / (4 * rows)).min(x.len() / 4);
+    let (a1, x1) = (&a[4 * rows * whole..], &x[4 * whole..]);
+    for (a, x) in a4.zip(x4).filter(|(_, x)| **x != [0.0; 4]) {
+        let (a, b) = a.split_at(2 * rows);
+        let ((a, b), (c, d)) = (a.split_at(rows), b.split_at(rows));
+        add_four(simd, out, [a, b, c, d], [x[0], x[1], x[2], x[3]]);
+    }
+    for (a, x) in a1.chunks_exact(rows).zip(x1).filter(|(_, x)| **x != 0.0) {
+        out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
+    }
+}
+
+/// The same, called from anywhere.
+pub fn add_product(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
+    if !out.is_empty() {
+        with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());
+    }
+}

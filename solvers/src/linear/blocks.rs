@@ -145,16 +145,18 @@ impl BlockMatrix {
             let (x, y) = c.as_slice()[2 * slot * slots..][..2 * slots].split_at(slots);
             let target = &mut block[2 * (point - pattern.start[b]) * height..][..2 * height];
             let (normal, tangent) = target.split_at_mut(height);
+            // Written out: closures over pairs are not taken into the loop, which is most of the assembly.
+            let [n00, n10, n01, n11] = [n[(0, 0)], n[(1, 0)], n[(0, 1)], n[(1, 1)]];
             for (point, slot, m) in rows {
                 let (k, s) = (2 * point - own.start, 2 * slot);
-                let [p, q] = [0, 1].map(|j| {
-                    let turned = [x[s] * n[(0, j)] + y[s] * n[(1, j)], x[s + 1] * n[(0, j)] + y[s + 1] * n[(1, j)]];
-                    [0, 1].map(|i| m[(0, i)] * turned[0] + m[(1, i)] * turned[1])
-                });
-                normal[k] += p[0];
-                normal[k + 1] += p[1];
-                tangent[k] += q[0];
-                tangent[k + 1] += q[1];
+                let (x0, x1, y0, y1) = (x[s], x[s + 1], y[s], y[s + 1]);
+                let (p0, p1) = (x0 * n00 + y0 * n10, x1 * n00 + y1 * n10);
+                let (q0, q1) = (x0 * n01 + y0 * n11, x1 * n01 + y1 * n11);
+                let [m00, m10, m01, m11] = [m[(0, 0)], m[(1, 0)], m[(0, 1)], m[(1, 1)]];
+                normal[k] += m00 * p0 + m10 * p1;
+                normal[k + 1] += m01 * p0 + m11 * p1;
+                tangent[k] += m00 * q0 + m10 * q1;
+                tangent[k + 1] += m01 * q0 + m11 * q1;
             }
         }
     }

@@ -87,9 +87,15 @@ impl Equations {
     }
 
     /// A sum of both rows of a contact point over the unknowns that are no forces.
-    fn others(&self, contact: usize, weights: [f64; 2]) -> impl Iterator<Item = (usize, f64)> {
-        let row = move |k: usize| self.gaps.others.row(2 * contact + k).iter().map(move |&(j, v)| (j, weights[k] * v));
-        row(0).chain(row(1)).filter(|e| e.1 != 0.0)
+    fn others(&self, contact: usize, weights: [f64; 2], mut each: impl FnMut(usize, f64)) {
+        for (k, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
+            for &(j, v) in self.gaps.others.row(2 * contact + k) {
+                let value = weight * v;
+                if value != 0.0 {
+                    each(j, value);
+                }
+            }
+        }
     }
 
     /// Weights of the gaps of a row of a point, what is added among them.
@@ -127,7 +133,7 @@ impl Equations {
                 if self.place[j] != usize::MAX {
                     add(j, v);
                 } else if let Some(weights) = self.condensed(j / 2, if j % 2 == 0 { [v, 0.0] } else { [0.0, v] }) {
-                    self.others(j / 2, weights).for_each(|(j, v)| add(j, v));
+                    self.others(j / 2, weights, &mut add);
                 }
             }
             add(forces + i, self.bodies.diagonal + self.bodies.shift);
@@ -180,7 +186,7 @@ impl FrontRows for Equations {
             .beside(pattern.group(i / 2))
             .filter_map(|group| self.forces_of[group].clone().next())
             .for_each(&mut *each);
-        self.others(i / 2, weights).for_each(|(j, _)| each(self.place[j]));
+        self.others(i / 2, weights, |j, _| each(self.place[j]));
     }
 
     fn unknowns(&self, rows: &[usize], each: &mut dyn FnMut(usize)) {
@@ -199,7 +205,7 @@ impl FrontRows for Equations {
             }
             for i in run.iter().map(|k| self.kept[*k]) {
                 self.own_places(i).for_each(&mut *each);
-                self.others(i / 2, self.gap_weights(i)).for_each(|(j, _)| each(self.place[j]));
+                self.others(i / 2, self.gap_weights(i), |j, _| each(self.place[j]));
             }
         }
     }
@@ -231,7 +237,7 @@ impl FrontRows for Equations {
                     let own = rows.force[i % 2][l] + rows.force_shift[i % 2][l];
                     add(self.place[2 * c + l], own + weight * self.gaps.forces.diagonal(2 * c + l));
                 }
-                self.others(c, weights).for_each(|(j, v)| add(self.place[j], v));
+                self.others(c, weights, |j, v| add(self.place[j], v));
             }
         }
     }

@@ -1,23 +1,18 @@
 //! Products of small dense matrices with few columns, with the vectors of the processor.
 
 use nalgebra::DMatrix;
-use voussoir_core::linear::vectors::{Simd, add_four};
+use voussoir_core::linear::vectors::{self, Simd, add_columns, add_four};
 use voussoir_core::with_vectors;
 
 /// out += A x over the first rows and columns of A, four columns at a time; zeros of x cost nothing.
 pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
-    if !out.is_empty() {
-        let (rows, a) = (a.nrows(), a.as_slice());
-        with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());
-    }
+    vectors::add_product(out, a.nrows(), a.as_slice(), x);
 }
 
 /// out += A x, A column by column.
 pub fn add_block(out: &mut [f64], a: &[f64], x: &[f64]) {
-    if !out.is_empty() {
-        let rows = out.len();
-        with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());
-    }
+    let rows = out.len();
+    vectors::add_product(out, rows, a, x);
 }
 
 /// out += A x, A column by column, and the sizes of what adds up.
@@ -63,22 +58,6 @@ fn add_row_columns<S: Simd>(_: S, out: &mut [f64], w: &[f64], a: &[f64]) {
     }
 }
 
-/// out += A x for code with the vectors of the processor; the order of operations does not depend on them.
-#[inline(always)]
-fn add_columns<S: Simd>(simd: S, out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
-    let (a4, x4) = (a.chunks_exact(4 * rows), x.chunks_exact(4));
-    let whole = (a.len() / (4 * rows)).min(x.len() / 4);
-    let (a1, x1) = (&a[4 * rows * whole..], &x[4 * whole..]);
-    for (a, x) in a4.zip(x4).filter(|(_, x)| **x != [0.0; 4]) {
-        let (a, b) = a.split_at(2 * rows);
-        let ((a, b), (c, d)) = (a.split_at(rows), b.split_at(rows));
-        add_four(simd, out, [a, b, c, d], [x[0], x[1], x[2], x[3]]);
-    }
-    for (a, x) in a1.chunks_exact(rows).zip(x1).filter(|(_, x)| **x != 0.0) {
-        out.iter_mut().zip(a).for_each(|(out, a)| *out += a * x);
-    }
-}
-
 /// A times two columns added to two: each number of A is read once.
 #[inline(always)]
 fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
@@ -120,6 +99,9 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// A times columns, of which the first entries count.
 pub fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(a.nrows(), columns.ncols());
+    if all.is_empty() || columns.is_empty() {
+        return all;
+    }
     let out = &mut all;
     with_vectors!('a, add_matrix(out: &'a mut DMatrix<f64>, a: &'a DMatrix<f64>, columns: &'a DMatrix<f64>) -> ());
     all
@@ -141,6 +123,9 @@ fn add_matrix<S: Simd>(simd: S, out: &mut DMatrix<f64>, a: &DMatrix<f64>, column
 /// Rows, given as columns, times A, again as columns: of A's rows as many count as they have entries.
 pub fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(a.ncols(), rows.ncols());
+    if all.is_empty() || rows.is_empty() {
+        return all;
+    }
     let out = &mut all;
     with_vectors!('a, set_row_product(out: &'a mut DMatrix<f64>, rows: &'a DMatrix<f64>, a: &'a DMatrix<f64>) -> ());
     all
@@ -191,6 +176,10 @@ mod tests {
         let close = |x: &DMatrix<f64>, y: DMatrix<f64>| (x - y).amax() < 1e-14;
         assert!(close(&product(&a, &b), &a * &b));
         assert!(close(&row_product(&a.columns(0, 3).clone_owned(), &a), a.transpose() * a.columns(0, 3)));
+        let empty = DMatrix::zeros(0, 3);
+        assert_eq!(product(&a.columns(0, 0).clone_owned(), &empty), DMatrix::zeros(7, 3));
+        assert_eq!(product(&a.rows(0, 0).clone_owned(), &b), empty);
+        assert_eq!(row_product(&empty, &a.rows(0, 0).clone_owned()), DMatrix::zeros(9, 3));
         let mut sum = a.clone();
         add_outer(&mut sum, &a.columns(0, 2).clone_owned(), &b.columns(0, 2).clone_owned());
         assert!(close(&sum, &a + a.columns(0, 2) * b.columns(0, 2).transpose()));

@@ -5,12 +5,13 @@
 //! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
 //! axes. A contact's n and t turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are those of x⁺ − x⁻ in them, and its force
 //! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
-//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle; where β follows the slip a force along t goes with that). Bodies balance about their displaced poles.
+//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle; where β follows the slip a force along t goes with that).
+//! Bodies balance about their displaced poles.
 
 use crate::law::{Facet, FacetMode};
+use crate::linear::vectors::add_product;
 use crate::model::geometry::{Vec2, cross, turned};
 use crate::path::{Attachment, Contact, PathProblem, PathState, PointLaw};
-use nalgebra::DVector;
 
 /// A state with the deformations of its bodies.
 pub struct Displaced<'a> {
@@ -39,8 +40,10 @@ impl<'a> Displaced<'a> {
                 (None, ..) => Vec::new(),
                 (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
                 (Some(flexibility), ..) => {
-                    let flat = DVector::from_iterator(2 * f.len(), f.iter().flat_map(|f| [f.x, f.y]));
-                    of((&**flexibility * flat).as_slice())
+                    let flat: Vec<f64> = f.iter().flat_map(|f| [f.x, f.y]).collect();
+                    let mut u = vec![0.0; flat.len()];
+                    add_product(&mut u, flexibility.nrows(), flexibility.as_slice(), &flat);
+                    of(&u)
                 }
             });
         let deformation = deformation.collect();
@@ -77,11 +80,10 @@ impl<'a> Displaced<'a> {
     }
 
     /// β of a contact point and its derivative by the slip, at its slip in the mean axes.
-    fn share(&self, contact: &Contact) -> [f64; 2] {
+    fn share(&self, contact: &Contact, [plus, minus]: &[[Vec2; 2]; 2]) -> [f64; 2] {
         if !self.finite {
             return [0.5, 0.0];
         }
-        let [plus, minus] = self.sides(contact);
         let slip = (plus[0] - minus[0]).dot(&self.axes(contact, 0.5)[1]);
         let [share, first, _] = contact.sliding.share_at(slip);
         [share, first]
@@ -90,8 +92,10 @@ impl<'a> Displaced<'a> {
     /// Gaps (n, t) of all contact points from motions, forces and loads \[m\].
     pub fn gaps(&self) -> Vec<[f64; 2]> {
         let gap = |(contact, force): (&Contact, &[f64; 2])| {
-            let [plus, minus] = self.sides(contact);
-            let [of_motion, of_deformation] = [self.axes(contact, self.share(contact)[0]), self.axes(contact, 0.5)];
+            let sides = self.sides(contact);
+            let [share, _] = self.share(contact, &sides);
+            let ([plus, minus], [of_motion, of_deformation]) =
+                (sides, [share, 0.5].map(|share| self.axes(contact, share)));
             let of = |k: usize| {
                 let read = (plus[0] - minus[0]).dot(&of_motion[k]) + (plus[1] - minus[1]).dot(&of_deformation[k]);
                 read + contact.compliance[k] * force[k]
@@ -142,8 +146,9 @@ impl<'a> Displaced<'a> {
             }
         }
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
-            let [share, by_slip] = self.share(contact);
-            let [plus, minus] = self.sides(contact);
+            // With small displacements at its place, wherever that moves.
+            let sides = if self.finite { self.sides(contact) } else { [[Vec2::zeros(); 2]; 2] };
+            let ([plus, minus], [share, by_slip]) = (sides, self.share(contact, &sides));
             let [n, t] = self.axes(contact, share);
             let by_motion = n * r[0] + t * r[1];
             let mut both = |at: Vec2, push: Vec2| {

@@ -9,7 +9,7 @@ pub(super) struct EnergyBalance {
     /// The worst of the stages before.
     worst: f64,
     stage: usize,
-    /// The last state, and the energy stored there \[J\].
+    /// What is needed of the last state, and the energy stored there \[J\].
     last: Option<(PathState, f64)>,
     /// Σ|work|, dissipated, and what is left over in the stage: all of it, and in its worst step \[J\].
     work: f64,
@@ -34,7 +34,9 @@ impl EnergyBalance {
         self.dissipated += dissipated.abs();
         self.left += left;
         self.step = self.step.max(left.abs());
-        self.last = Some((state.clone(), stored));
+        let PathState { load_step, factor, work, dissipated, .. } = *state;
+        let motion = state.motion.clone();
+        self.last = Some((PathState { load_step, factor, work, dissipated, motion, ..PathState::default() }, stored));
         self.share(stored, floor)
     }
 

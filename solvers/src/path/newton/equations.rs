@@ -70,18 +70,21 @@ impl Equations {
             false if (i - base) % 3 == 2 => Some((system.column(i)?.0, u.force * u.length)),
             false => Some((system.column(i)?.0, u.force)),
         };
+        let unknowns = 0..hessian.factor.len();
+        let rows: Vec<Option<(usize, f64)>> = unknowns.clone().map(row_of).collect();
+        let columns: Vec<Option<(usize, f64)>> = unknowns.map(|j| system.column(j)).collect();
         let mut place = |row: usize, column: usize, value: f64| match row < base {
             true => gaps.push((row, column, value)),
             false => bodies.push((row - base, column, value)),
         };
         for &(i, j, value) in &hessian.entries {
-            if let (Some((row, by)), Some((column, unit))) = (row_of(i), system.column(j)) {
+            if let (Some((row, by)), Some((column, unit))) = (rows[i], columns[j]) {
                 place(row, column, value * unit / by);
             }
         }
         let mut factor = vec![0.0; last];
         for (i, value) in hessian.factor.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-            if let Some((row, by)) = row_of(i) {
+            if let Some((row, by)) = rows[i] {
                 factor[row] = value * u.factor / by;
                 place(row, last, factor[row]);
             }

@@ -16,7 +16,7 @@
 use super::super::elastic_chain::Joint;
 use crate::contact::facet::across;
 use crate::contact::mode::ContactMode;
-use crate::linear::dense::{add_outer, add_product, row_product};
+use crate::linear::dense::{add_outer, add_product, product, row_product};
 use crate::path::system::System;
 use nalgebra::{DMatrix, Matrix3xX};
 use voussoir_core::law::Facet;
@@ -210,7 +210,7 @@ impl Table {
         let (free, held): (Vec<usize>, Vec<usize>) = (0..self.free.len()).partition(|i| self.free[*i]);
         let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| own[(free[i], free[j])]);
         let inverse = matrix.clone().try_inverse()?;
-        let error = (&matrix * &inverse - DMatrix::identity(free.len(), free.len())).amax();
+        let error = (product(&matrix, &inverse) - DMatrix::identity(free.len(), free.len())).amax();
         if error.is_nan() || error > INVERSE {
             return None;
         }
@@ -220,11 +220,11 @@ impl Table {
             DMatrix::from_fn(held.len(), free.len(), |i, j| own_held[(i, free[j])]),
             DMatrix::from_fn(held.len(), held.len(), |i, j| own_held[(i, held[j])]),
         );
-        let forces = &inverse * crossing.transpose();
-        let solved = &inverse * &by_free;
-        let gaps = &by_held - &crossing * &solved;
-        let schur = square - &crossing * &forces;
-        self.handed = beyond - by_free.tr_mul(&solved);
+        let forces = product(&inverse, &crossing.transpose());
+        let solved = product(&inverse, &by_free);
+        let gaps = &by_held - product(&crossing, &solved);
+        let schur = square - product(&crossing, &forces);
+        self.handed = beyond - row_product(&solved, &by_free);
         self.local = DMatrix::zeros(n, n);
         self.by_outer = DMatrix::zeros(n, outer.ncols());
         for (i, row) in free.iter().enumerate() {

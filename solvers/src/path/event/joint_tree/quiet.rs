@@ -116,9 +116,19 @@ fn stress(table: &Table, areas: &[f64], forces: &[f64]) -> f64 {
     areas.iter().enumerate().map(of).fold(0.0, f64::max)
 }
 
-/// The greatest product of an absolute value and a weight.
+/// The greatest product of an absolute value and a weight; not NaN where one of them is.
 fn greatest(values: &[f64], weights: &[f64]) -> f64 {
-    values.iter().zip(weights).fold(0.0, |most: f64, (value, weight)| most.max(value.abs() * weight))
+    let mut most = [0.0f64; 4];
+    let (values, weights) = (values.chunks_exact(4), weights.chunks_exact(4));
+    let rest = values.remainder().iter().zip(weights.remainder());
+    let last = rest.fold(0.0, |most: f64, (value, weight)| most.max(value.abs() * weight));
+    for (value, weight) in values.zip(weights) {
+        for k in 0..4 {
+            let size = value[k].abs() * weight[k];
+            most[k] = if size > most[k] { size } else { most[k] };
+        }
+    }
+    most.into_iter().fold(last, f64::max)
 }
 
 /// The greatest share of what is left of the room.
@@ -155,27 +165,34 @@ impl Quiet {
         })
     }
 
-    /// Which share of all room below a node is used up at most by its present rates from outside.
-    pub fn use_up(&mut self, tree: &Tree, m: usize) -> f64 {
+    /// Which share of all room below a node is used up at most by its present rates from outside; any share above `enough`
+    /// where it is more.
+    pub fn use_up(&mut self, tree: &Tree, m: usize, enough: f64) -> f64 {
         let mut change = std::mem::take(&mut self.change);
         self.used[m] = match self.below[m].always || tree.dirty[m] {
             true => f64::INFINITY,
-            false => self.find_used(tree, m, &mut change),
+            false => self.find_used(tree, m, &mut change, enough),
         };
         self.change = change;
         self.used[m]
     }
 
-    fn find_used(&self, tree: &Tree, m: usize, change: &mut Vec<f64>) -> f64 {
+    fn find_used(&self, tree: &Tree, m: usize, change: &mut Vec<f64>, enough: f64) -> f64 {
         let below = &self.below[m];
         change.clear();
         change.extend(tree.moved[m].rates.iter().zip(&below.reference).map(|(now, then)| now - then));
         let [a, b] = tree.outer(m);
         let n = tree.redundants();
         let (forces, others) = change.split_at_mut(a + b);
-        let mut used = 0.0;
+        let twists = others[n + 1..].iter().zip(&below.by_twist);
+        let mut used = twists.map(|(change, by)| change.abs() * by).sum::<f64>();
+        for k in 0..n / 3 {
+            let own = &others[3 * k..3 * k + 3];
+            let change = self.spans[m].to_centre * Vector3::new(own[0], own[1], own[2]);
+            used += (0..3).map(|i| below.by_resultant[3 * k + i] * change[i].abs()).sum::<f64>();
+        }
         for (side, own) in [(0, 0..a), (1, a..a + b)] {
-            let Some(e) = tree.places[m].outer[side] else { continue };
+            let Some(e) = tree.places[m].outer[side].filter(|_| used <= enough) else { continue };
             let own = &mut forces[own];
             let shape = self.norms[m].shapes[side].as_slice().chunks_exact(own.len());
             for (shape, redundant) in shape.zip(&others[..n]) {
@@ -183,12 +200,7 @@ impl Quiet {
             }
             used += below.by_force[side] * greatest(own, &self.spans[e].by_area);
         }
-        for k in 0..n / 3 {
-            let own = &others[3 * k..3 * k + 3];
-            let change = self.spans[m].to_centre * Vector3::new(own[0], own[1], own[2]);
-            used += (0..3).map(|i| below.by_resultant[3 * k + i] * change[i].abs()).sum::<f64>();
-        }
-        used + others[n + 1..].iter().zip(&below.by_twist).map(|(change, by)| change.abs() * by).sum::<f64>()
+        used
     }
 
     /// Norms of a node's equations, which have changed.
@@ -253,14 +265,9 @@ impl Quiet {
     /// Bounds a node anew at its present rates, those below being bounded.
     pub fn bound(&mut self, tree: &mut Tree, m: usize, out: &[f64]) {
         let own = &self.own[m];
-        let mut below = Below {
-            deadline: own.deadline,
-            always: own.always,
-            sizes: own.sizes,
-            reference: tree.moved[m].rates.clone(),
-            ..Below::default()
-        };
-        let last = &self.below[m];
+        let mut below = Below { deadline: own.deadline, always: own.always, sizes: own.sizes, ..Below::default() };
+        let last = &mut self.below[m];
+        below.reference = std::mem::take(&mut last.reference);
         (below.rests, below.patience) = match last.rests {
             0 if self.events > last.event + 1 => (0, 1),
             0 => (last.patience, (2 * last.patience).clamp(1, MOST_RESTS)),
@@ -275,6 +282,7 @@ impl Quiet {
             below.sizes = [0, 1].map(|i| below.sizes[i].max(child.sizes[i]));
         }
         if !below.always {
+            below.reference.clone_from(&tree.moved[m].rates);
             self.bound_shares(tree, m, out, &mut below);
         }
         tree.dirty[m] = false;

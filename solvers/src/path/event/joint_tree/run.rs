@@ -1,7 +1,7 @@
 //! The run on the tree: from event to event.
 
 use super::examine::{examine, may_leave};
-use super::state::Run;
+use super::state::{Run, Waiting};
 use crate::contact::mode::ContactMode;
 use crate::path::event::event_run::{
     Change, EventRun, Followed, Hit, ROUNDS, add_work_between, changes_of_round, follow_events,
@@ -9,7 +9,6 @@ use crate::path::event::event_run::{
 use crate::path::event::next_event::{MOMENT, arrive, stepped};
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Share of a room that may be used up before a joint or a node is looked at.
@@ -18,28 +17,6 @@ const USED: f64 = 0.5;
 const SPACING: f64 = 0.05;
 /// Forces below this share of the gaps: a mechanism is near.
 const NEAR_MECHANISM: f64 = 1e-4;
-
-/// What waits until a deadline: a joint, or all joints of a node.
-#[derive(Clone, Copy, PartialEq)]
-struct Waiting {
-    deadline: f64,
-    node: usize,
-    own: bool,
-}
-
-impl Eq for Waiting {}
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.deadline.total_cmp(&self.deadline).then(other.node.cmp(&self.node)).then(other.own.cmp(&self.own))
-    }
-}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
 
 /// The rates at an event.
 pub struct Going {
@@ -137,12 +114,16 @@ fn look(run: &mut Run, trace: &mut Trace, rates: &[f64], bound: f64, changes: &m
     run.tree.moved[root].rates.copy_from_slice(rates);
     let mut best = bound;
     let mut open = vec![root];
-    let mut waiting: BinaryHeap<Waiting> = BinaryHeap::new();
+    let (mut found, mut waiting) = (std::mem::take(&mut run.memory.waiting), BinaryHeap::new());
     loop {
         while let Some(m) = open.pop() {
-            best = best.min(visit(run, trace, m, (&mut open, &mut waiting), changes));
+            best = best.min(visit(run, trace, m, (&mut open, &mut found), changes));
         }
+        // Most wait for longer than until the nearest event that is known by now.
+        let until = run.arc() + best;
+        waiting.extend(found.drain(..).filter(|next| next.deadline < until));
         let Some(next) = waiting.pop().filter(|next| changes.is_empty() && next.deadline - run.arc() < best) else {
+            run.memory.waiting = found;
             return best;
         };
         match next.own {
@@ -157,29 +138,16 @@ fn visit(
     run: &mut Run,
     trace: &mut Trace,
     m: usize,
-    (open, waiting): (&mut Vec<usize>, &mut BinaryHeap<Waiting>),
+    (open, waiting): (&mut Vec<usize>, &mut Vec<Waiting>),
     changes: &mut Vec<Change>,
 ) -> f64 {
     run.seen.push(m);
     let outer = std::mem::take(&mut run.tree.moved[m].rates);
     run.tree.tables[m].answer(&outer, &mut run.out[m]);
-    let mut forces = std::mem::take(&mut run.memory.forces);
-    run.tree.tables[m].forces(&run.out[m], &mut forces);
-    for (side, child) in run.tree.places[m].children.into_iter().enumerate() {
-        let Some(child) = child else { continue };
-        let mut below = std::mem::take(&mut run.tree.moved[child].rates);
-        below.clear();
-        run.tree.hand_down((m, side), &outer, &forces).into_iter().for_each(|part| below.extend_from_slice(part));
-        run.tree.moved[child].rates = below;
-        let used = run.quiet.use_up(&run.tree, child);
-        if used.is_nan() || used > USED {
-            open.push(child);
-        } else {
-            waiting.push(Waiting { deadline: run.quiet.below[child].deadline, node: child, own: false });
-        }
+    if run.tree.places[m].children != [None, None] {
+        ask_below(run, m, &outer, (open, waiting));
     }
     run.tree.moved[m].rates = outer;
-    run.memory.forces = forces;
     let own = &run.quiet.own[m];
     let left = || {
         let rates = run.out[m].iter().zip(&own.reference).zip(&own.room);
@@ -190,6 +158,26 @@ fn visit(
     }
     waiting.push(Waiting { deadline: own.deadline, node: m, own: true });
     f64::INFINITY
+}
+
+/// Finds the rates from outside of the nodes below one, which are to be looked at or wait.
+fn ask_below(run: &mut Run, m: usize, outer: &[f64], (open, waiting): (&mut Vec<usize>, &mut Vec<Waiting>)) {
+    let mut forces = std::mem::take(&mut run.memory.forces);
+    run.tree.tables[m].forces(&run.out[m], &mut forces);
+    for (side, child) in run.tree.places[m].children.into_iter().enumerate() {
+        let Some(child) = child else { continue };
+        let mut below = std::mem::take(&mut run.tree.moved[child].rates);
+        below.clear();
+        run.tree.hand_down((m, side), outer, &forces).into_iter().for_each(|part| below.extend_from_slice(part));
+        run.tree.moved[child].rates = below;
+        let used = run.quiet.use_up(&run.tree, child, USED);
+        if used.is_nan() || used > USED {
+            open.push(child);
+        } else {
+            waiting.push(Waiting { deadline: run.quiet.below[child].deadline, node: child, own: false });
+        }
+    }
+    run.memory.forces = forces;
 }
 
 fn advance(run: &mut Run, trace: &mut Trace, going: &Going, (step, sense): (f64, f64), hits: &[Hit]) {

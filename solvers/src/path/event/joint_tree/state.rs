@@ -9,6 +9,7 @@ use crate::path::event::event_run::Hit;
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 use nalgebra::Vector3;
+use std::cmp::Ordering;
 use voussoir_core::law::FacetMode;
 
 /// How far a run has come.
@@ -55,13 +56,40 @@ pub struct Run {
     pub memory: Memory,
 }
 
-/// Of one joint.
+/// What waits until a deadline: a joint, or all joints of a node.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Waiting {
+    /// The arc.
+    pub deadline: f64,
+    /// The node.
+    pub node: usize,
+    /// Whether its joint alone.
+    pub own: bool,
+}
+
+impl Eq for Waiting {}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.deadline.total_cmp(&self.deadline).then(other.node.cmp(&self.node)).then(other.own.cmp(&self.own))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Of one joint, or of all.
 #[derive(Default)]
 pub struct Memory {
     /// Forces of its points.
     pub forces: Vec<f64>,
     /// What it did.
     gained: Vec<f64>,
+    /// What waits until a deadline.
+    pub waiting: Vec<Waiting>,
 }
 
 impl Run {
