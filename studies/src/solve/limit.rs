@@ -50,6 +50,8 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
             Ok(problem) => {
                 let mut result = solve_stage(input, index, &problem, &loads[index]);
                 let hinges = settled_hinges(input, index, (&problem, &loads[index]), &mut result);
+                // How blocks have followed their supports may take back that the flow was read otherwise.
+                result.notes.extend(readings(assembly, &problem, &result));
                 (result, hinges)
             }
             Err(why) => (CaseResult::stalled(why), Vec::new()),
@@ -158,7 +160,6 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
         result.bounds = None;
         result.notes = notes;
     }
-    result.notes.extend(readings(input.assembly, problem, &result));
     result
 }
 

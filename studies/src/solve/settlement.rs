@@ -154,7 +154,8 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
             FlowRule::NonAssociated => (
                 None,
                 "blocks follow their supports with the laws' own flow: a state in balance, within the strengths, that moves only \
-                 where it yields; there may be others",
+                 where it yields; there may be others, with other forces and motions, and only a path of joints that have a \
+                 stiffness tells to which of them blocks come",
             ),
         };
         result.flow_read_as = read;

@@ -158,10 +158,14 @@ fn build_settlements(
     for (number, entry) in list.as_array().into_iter().flatten().enumerate() {
         let support = entry["support"].as_str().unwrap_or_default();
         let fixed: Vec<&str> = assembly.bodies.iter().filter(|b| b.fixed).map(|b| b.name.as_str()).collect();
-        let Some(body) = assembly.body(support).filter(|body| assembly.bodies[*body].fixed) else {
-            let path = format!("{at}.settlement.{number}.support");
+        let block = assembly.body(support);
+        let Some(body) = block.filter(|body| assembly.bodies[*body].fixed) else {
+            let message = match block {
+                Some(_) => format!("\"{support}\" is no support: the block is free and moves by itself"),
+                None => format!("there is no support \"{support}\""),
+            };
             let help = suggest(support, &fixed, "supports here");
-            diagnostics.wrong(&path, format!("there is no support \"{support}\""), help);
+            diagnostics.wrong(&format!("{at}.settlement.{number}.support"), message, help);
             continue;
         };
         let joint = assembly.joints.iter().find(|joint| joint.minus == body || joint.plus == body);

@@ -19,6 +19,7 @@ mod force_method;
 mod lourenco_rots;
 mod new_laws;
 mod newton;
+mod once_wrong;
 mod optimise;
 mod orthotropic;
 mod path_certificate;

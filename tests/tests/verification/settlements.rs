@@ -360,6 +360,62 @@ fn rigid_blocks_slip_after_a_settlement_as_stiff_joints_let_them() {
     }
 }
 
+/// A block between ground and ceiling that a piston pushes along: slip that dilates has no room, the law's own has. With H and V
+/// on the piston, V ≤ μ H, statics say H = μ (W + V + N) with the ceiling's N ≥ 0: more than one state, as the result says, and
+/// whichever solver is asked it does not say as well that joints were read otherwise.
+#[test]
+fn a_block_in_a_slot_follows_a_piston_by_its_own_flow_only() {
+    let text = r#"name = "slot"
+[scene]
+scene = "blocks"
+width = 1.0
+material = "stone"
+joint = "dry"
+blocks = [
+ { name = "ground", vertices = [[-1.0, -1.0], [3.0, -1.0], [3.0, 0.0], [-1.0, 0.0]], fixed = true },
+ { name = "ceiling", vertices = [[0.2, 1.0], [3.0, 1.0], [3.0, 2.0], [0.2, 2.0]], fixed = true },
+ { name = "piston", vertices = [[-1.0, 0.2], [0.0, 0.2], [0.0, 0.8], [-1.0, 0.8]], fixed = true },
+ { name = "block", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] },
+]
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = 0.5
+[[stages]]
+name = "dead"
+gravity = 10.0
+[[stages]]
+name = "settle"
+settlement = [{ support = "piston", displacement = [0.01, 0.0] }]
+[solver]
+solver = "auto"
+"#;
+    let (weight, friction) = (20e3, 0.5);
+    for solver in ["auto", "limit_conic", "limit_sequential"] {
+        let case = first_case(&changed(text, "\"auto\"", &format!("\"{solver}\"")));
+        let result = solve_case(&case);
+        assert_eq!((result.status, result.flow_read_as.as_deref()), (Status::Stands, None), "{solver}");
+        passes(&result);
+        assert_eq!(verify_case(&case, &result), Vec::<String>::new());
+        let says = |words: &str| result.notes.iter().any(|note| note.contains(words));
+        assert!(says("there may be others") && !says("read with associated flow"), "{solver} {:?}", result.notes);
+        let motion = result.path.displacements.expect("displacements");
+        let block = motion.iter().find(|entry| entry.body == "block").expect("the block").displacement;
+        (0..3).for_each(|i| assert!((block[i] - [0.01, 0.0, 0.0][i]).abs() < 1e-12, "{block:?}"));
+        let field = result.proof.field.expect("a field");
+        let sum = |joint: usize, i: usize| -> f64 {
+            field.iter().filter(|entry| entry.joint == joint).map(|entry| entry.force[i]).sum()
+        };
+        let (ground, ceiling, push) = (sum(0, 0), sum(1, 0), sum(2, 0));
+        assert_close(push, friction * (ground + ceiling), 1e-9);
+        let vertical = ground - ceiling - weight;
+        assert!(vertical.abs() <= friction * push * (1.0 + 1e-9), "{ground} {ceiling} {push}");
+        assert_close(vertical.abs(), sum(2, 1).abs(), 1e-9);
+    }
+}
+
 /// A support that moves in against five voussoirs of high friction jams them: forces grow as stiff as joints are made, so that rigid
 /// blocks have no state on the way. Limit analysis refuses, and says why.
 #[test]
