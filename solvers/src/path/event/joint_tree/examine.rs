@@ -17,7 +17,7 @@ const SIGN: f64 = 0.8;
 /// By how much a room is widened at most.
 const WIDEST: f64 = 1e4;
 /// The share of a room that is left of it at least.
-const NARROWEST: f64 = 0.02;
+const NARROWEST: f64 = 0.1;
 /// Mean arcs between events for which a joint is to be left alone: rates that leave narrow rooms are noticed at less cost
 /// than that of examining their joint again.
 const QUIET: f64 = 30.0;
@@ -118,7 +118,7 @@ pub fn examine(run: &mut Run, trace: &mut Trace, e: usize, changes: &mut Vec<Cha
         let mut looked = Looked { c, row: 2 * k, force, gap, axes, hits: &mut run.hits, ahead: &mut ahead };
         examine_point(trace, &mut looked, run.sizes);
     }
-    let earliest = fit(&mut room, &signed, &ahead, QUIET * run.spacing);
+    let earliest = fit(&mut room, &signed, &ahead, QUIET * run.progress.spacing);
     let deadline = run.arc() + earliest;
     run.quiet.own[e] = Own { reference: out, room, deadline, always, sizes };
     run.hits[first..].iter().map(|hit| hit.0).fold(f64::INFINITY, f64::min)

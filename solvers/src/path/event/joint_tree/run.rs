@@ -186,7 +186,7 @@ fn advance(run: &mut Run, trace: &mut Trace, going: &Going, (step, sense): (f64,
     moved.pending.iter_mut().zip(&going.rates).for_each(|(pending, rate)| *pending += step * rate);
     moved.any = true;
     run.progress.place.iter_mut().zip(&going.rates).for_each(|(place, rate)| *place += step * rate);
-    run.spacing += SPACING * (step - run.spacing);
+    run.progress.spacing += SPACING * (step - run.progress.spacing);
     let before = trace.state.factor;
     trace.state.factor += sense * step;
     let moved = sense * going.displacement * step;

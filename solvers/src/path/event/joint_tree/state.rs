@@ -24,6 +24,8 @@ pub struct Progress {
     pub motions: Vec<f64>,
     /// Work by the trapezoidal rule, displacement at the load and factor since the last record.
     pub since: [f64; 3],
+    /// Mean arc between the last events.
+    pub spacing: f64,
 }
 
 /// One load step, or a part of it.
@@ -50,8 +52,6 @@ pub struct Run {
     pub fresh: Vec<usize>,
     /// Modes before the present event.
     pub before: Vec<(usize, ContactMode)>,
-    /// Mean arc between the last events.
-    pub spacing: f64,
     /// Memory that is used again and again.
     pub memory: Memory,
 }
@@ -113,6 +113,7 @@ impl Run {
             twists: vec![Vector3::zeros(); count],
             motions: trace.state.x[2 * trace.system.contacts..].to_vec(),
             since: [0.0, 0.0, trace.state.factor],
+            spacing: 0.0,
         };
         Some(Run {
             quiet: Quiet::new(&tree, trace.problem)?,
@@ -126,7 +127,6 @@ impl Run {
             stale: (0..count).collect(),
             fresh: Vec::new(),
             before: Vec::new(),
-            spacing: 0.0,
             memory: Memory::default(),
         })
     }
