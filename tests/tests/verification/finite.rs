@@ -198,7 +198,7 @@ density = 2000.0
 law = "coulomb"
 friction = 5.0
 normal_stiffness = 1e8
-shear_stiffness = 5e7
+shear_stiffness = 5e9
 [solver]
 solver = "newton_path"
 kinematics = "finite"
