@@ -74,7 +74,7 @@ impl Sliding {
         });
         let found = sliding(faces, joint.height(), position);
         let elastic = sides.iter().any(|side| assembly.is_deformable(*side));
-        if elastic { found.from_the_middle(joint.height()) } else { found }
+        if elastic { found.begun_midway(joint.height()) } else { found }
     }
 
     /// With one β \[-\], whatever the slip.
@@ -83,7 +83,7 @@ impl Sliding {
     }
 
     /// Midway between the bodies at first, and with its own β once it has slipped, in a joint of this height \[m\].
-    fn from_the_middle(self, height: f64) -> Self {
+    fn begun_midway(self, height: f64) -> Self {
         if self.share == 0.5 { self } else { Sliding { share: 0.5, passing: PASSING_SLIP * height, ..self } }
     }
 
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(sliding(same, 2.0, 0.0), passing([1.0, 0.0]));
         assert_eq!(sliding(same, 2.0, 1.0), passing([0.0, 1.0]));
         // Of elastic bodies all begin in the middle.
-        let own = sliding(half, 2.0, 0.25).from_the_middle(2.0);
+        let own = sliding(half, 2.0, 0.25).begun_midway(2.0);
         assert_eq!([-0.2, 0.0, 0.2].map(|slip| own.share_at(slip)[0]), [1.0, 0.5, 1.0]);
         assert_eq!(sliding([None; 2], 2.0, 0.0), Sliding::middle(2.0));
         assert_eq!(face(&below, [Vec2::new(3.0, 0.5), Vec2::new(1.0, 0.5)], 1e-9), None);

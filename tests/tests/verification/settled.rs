@@ -221,7 +221,7 @@ fn where_the_usual_strategy_stalls_another_one_follows() {
     assert_eq!(usual.status, Status::Collapse, "{:?}", usual.notes);
     assert!(usual.certificate.passed && usual.load_factor == named.load_factor, "{:?}", usual.load_factor);
     assert!(
-        usual.load_factor.is_some_and(|factor| (factor / 12_936.5395 - 1.0).abs() < 1e-8),
+        usual.load_factor.is_some_and(|factor| (factor / 12_936.539_5 - 1.0).abs() < 1e-8),
         "{:?}",
         usual.load_factor
     );
