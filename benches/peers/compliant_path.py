@@ -11,18 +11,15 @@ and the load as what keeps the displacement of its block, so that the limit is a
 within the tolerance. Several first increments and solvers are tried; told is the least processor time to an error.
 """
 
-import argparse
 import dataclasses
 import math
 import os
-import platform
-import subprocess
 import time
 
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before NumPy is loaded: waiting threads count as processor time
 
-from limit_load import by_voussoir, report
+from limit_load import arguments, by_paths, by_voussoir, report
 from scenes import QUIET, RING, area_and_centre, ring, ring_joints, studies
 
 STIFFNESS = (2e10, 1e10)  # across and along a joint, Pa/m
@@ -132,11 +129,9 @@ def measure(count, program, ops, rounds):
     reference = by_voussoir(program, rigid)[0]
     error = lambda factor: abs(factor / reference - 1.0)
     peer = OpenSeesRing(count)
-    results = {"event_path, certified": [], "newton_path, certified": []}
+    results = {}
     for _ in range(rounds):
-        for solver in ("event_path", "newton_path"):
-            factor, seconds = by_voussoir(program, compliant(count, solver))
-            results[f"{solver}, certified"].append((seconds, error(factor)))
+        by_paths(program, reference, lambda solver: compliant(count, solver), results)
         settings = [(i, t, s) for i in INCREMENTS for t in TOLERANCES for s in SYSTEMS] if ops else []
         for setting in settings:
             seconds, factor = by_opensees(ops, peer, setting)
@@ -145,13 +140,7 @@ def measure(count, program, ops, rounds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", default=["ring:13"])
-    parser.add_argument("--voussoir", default="voussoir", help="the program")
-    parser.add_argument("--rounds", type=int, default=2)
-    options = parser.parse_args()
-    version = subprocess.run([options.voussoir, "--version"], check=True, capture_output=True, text=True).stdout.strip()
-    print(f"{version}; Python {platform.python_version()}; {platform.machine()}, {platform.system()}")
+    options = arguments(__doc__, ["ring:13"], 2)
     try:
         import openseespy.opensees as ops
 

@@ -13,18 +13,15 @@ With small displacements and strengths of the joints' ends alone the limit load 
 gives (`limit_load.py`): that is the reference, and it is no answer of a path solver. A program that is not installed is left out.
 """
 
-import argparse
 import dataclasses
 import math
 import os
-import platform
-import subprocess
 import time
 
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before NumPy and GetFEM are loaded: waiting threads count as processor time
 
-from limit_load import by_voussoir, report
+from limit_load import arguments, by_paths, by_voussoir, report
 from scenes import RING, area_and_centre, ring, ring_joints
 
 YOUNG, POISSON = 5e9, 0.3
@@ -200,11 +197,9 @@ def measure(count, program, getfem, rounds):
     reference = by_voussoir(program, ring(count))[0]
     error = lambda factor: abs(factor / reference - 1.0)
     peer = GetfemRing(count) if getfem else None
-    results = {"event_path, certified": [], "newton_path, certified": []}
+    results = {}
     for _ in range(rounds):
-        for solver in ("event_path", "newton_path"):
-            factor, seconds = by_voussoir(program, elastic(count, solver))
-            results[f"{solver}, certified"].append((seconds, error(factor)))
+        by_paths(program, reference, lambda solver: elastic(count, solver), results)
         settings = [(i, a, t) for i in INCREMENTS for a in AUGMENTATIONS for t in TOLERANCES] if getfem else []
         for setting in settings:
             seconds, factor = by_getfem(peer, *setting)
@@ -213,13 +208,7 @@ def measure(count, program, getfem, rounds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", default=["ring:13"])
-    parser.add_argument("--voussoir", default="voussoir", help="the program")
-    parser.add_argument("--rounds", type=int, default=2)
-    options = parser.parse_args()
-    version = subprocess.run([options.voussoir, "--version"], check=True, capture_output=True, text=True).stdout.strip()
-    print(f"{version}; Python {platform.python_version()}; {platform.machine()}, {platform.system()}")
+    options = arguments(__doc__, ["ring:13"], 2)
     try:
         import getfem
 

@@ -102,14 +102,27 @@ def report(scene, reference, results):
         print(f"  {name:22}" + "".join(f" | {cell:>22}" for cell in cells) + f" | {least:.1e}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", default=["ring:13", "ring:1000", "wall:10"])
+def arguments(doc, scenes, rounds):
+    """The words of the command line, and who measures."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="*", default=scenes)
     parser.add_argument("--voussoir", default="voussoir", help="the program")
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=rounds)
     options = parser.parse_args()
     version = subprocess.run([options.voussoir, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     print(f"{version}; Python {platform.python_version()}; {platform.machine()}, {platform.system()}")
+    return options
+
+
+def by_paths(program, reference, scene, results):
+    """Adds seconds and error of both path solvers on their own scenes to name → [(seconds, error)]."""
+    for solver in ("event_path", "newton_path"):
+        factor, seconds = by_voussoir(program, scene(solver))
+        results.setdefault(f"{solver}, certified", []).append((seconds, abs(factor / reference - 1.0)))
+
+
+def main():
+    options = arguments(__doc__, ["ring:13", "ring:1000", "wall:10"], 3)
     contestants = {}
     for name, (package, solve) in CONTESTANTS.items():
         try:
