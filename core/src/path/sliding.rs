@@ -46,6 +46,9 @@ const PASSING_SLIP: f64 = 0.05;
 /// Share of that slip at which it begins to pass.
 const BEGINS: f64 = 0.1;
 
+/// Places of points this near to half of their joint are its middle.
+const MIDDLE: f64 = 1e-9;
+
 /// Most slip of a joint whose corners coincide, as a share of it: what it has lost of its overlap.
 const LARGEST_SLIP: f64 = 0.5;
 
@@ -80,6 +83,15 @@ impl Sliding {
     /// With one β \[-\], whatever the slip.
     pub fn fixed(share: f64) -> Self {
         Sliding { share, corners: [share; 2], passing: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// What two ends of a joint have in common: midway where each has its own corners, as long as both hold.
+    fn in_common(self, other: Sliding, height: f64) -> Self {
+        if self.corners == other.corners && self.share == other.share {
+            return self;
+        }
+        let slip = [self.slip[0].max(other.slip[0]), self.slip[1].min(other.slip[1])];
+        Sliding { slip, passing: PASSING_SLIP * height, ..Sliding::fixed(0.5) }
     }
 
     /// Midway between the bodies at first, and with its own β once it has slipped, in a joint of this height \[m\].
@@ -132,28 +144,32 @@ fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option<[f64; 2]> 
     })
 }
 
-/// How a point of rigid bodies at a share `position` of a joint slides; `faces` of (minus, plus). An end belongs to the body whose corner it is, a point between to the nearer end.
+/// How a point of rigid bodies at a share `position` of a joint slides; `faces` of (minus, plus). An end belongs to the
+/// body whose corner it is, a point between to the nearer end, the very middle to what both ends have in common.
 fn sliding(faces: [Option<[f64; 2]>; 2], height: f64, position: f64) -> Sliding {
+    let of = |end: usize| at_end(faces, height, position, end);
+    match position - 0.5 {
+        off if off.abs() <= MIDDLE => of(0).in_common(of(1), height),
+        off => of(usize::from(off > 0.0)),
+    }
+}
+
+/// The same of a point that goes with an end of its joint.
+fn at_end(faces: [Option<[f64; 2]>; 2], height: f64, position: f64, end: usize) -> Sliding {
     let [Some(minus), Some(plus)] = faces else { return Sliding::middle(height) };
-    let end = usize::from(position > 0.5);
     let own = [0.0, height][end];
     let at = position * height;
     match (minus[end] == own, plus[end] == own) {
         (false, true) => Sliding { slip: [minus[0] - at, minus[1] - at], ..Sliding::fixed(0.0) },
         (true, false) => Sliding { slip: [at - plus[1], at - plus[0]], ..Sliding::fixed(1.0) },
-        (true, true) => coinciding(height, position),
+        (true, true) => coinciding(height, end),
         _ => Sliding::middle(height),
     }
 }
 
-/// Where the corners of both bodies coincide at the nearer end of a joint: midway, and at a corner once that has slipped.
-/// A point in the very middle is no end's.
-fn coinciding(height: f64, position: f64) -> Sliding {
-    let corners = match position {
-        0.5 => [0.5; 2],
-        p if p > 0.5 => [0.0, 1.0],
-        _ => [1.0, 0.0],
-    };
+/// Where the corners of both bodies coincide at an end of a joint: midway, and at a corner once that has slipped.
+fn coinciding(height: f64, end: usize) -> Sliding {
+    let corners = [[1.0, 0.0], [0.0, 1.0]][end];
     let most = LARGEST_SLIP * height;
     Sliding { share: 0.5, corners, passing: PASSING_SLIP * height, slip: [-most, most] }
 }
@@ -191,6 +207,15 @@ mod tests {
         let own = sliding(half, 2.0, 0.25).begun_midway(2.0);
         assert_eq!([-0.2, 0.0, 0.2].map(|slip| own.share_at(slip)[0]), [1.0, 0.5, 1.0]);
         assert_eq!(sliding([None; 2], 2.0, 0.0), Sliding::middle(2.0));
+        // In the middle of a joint no end goes before the other, wherever rounding puts it.
+        for (faces, slip) in [(same, [-1.0, 1.0]), (half, [-1.0, 2.0])] {
+            for position in [0.5 - 1e-16, 0.5, 0.5 + 2e-16] {
+                let midway = sliding(faces, 2.0, position);
+                assert_eq!((midway.corners, midway.share), ([0.5; 2], 0.5));
+                assert!((midway.slip[0] - slip[0]).abs() + (midway.slip[1] - slip[1]).abs() < 1e-12, "{midway:?}");
+            }
+        }
+        assert_eq!(sliding(faces, 2.0, 0.5).corners, [0.0; 2]);
         assert_eq!(face(&below, [Vec2::new(3.0, 0.5), Vec2::new(1.0, 0.5)], 1e-9), None);
     }
 
