@@ -50,6 +50,11 @@ pub fn answered_within(text: &str, uncertain: f64) -> CaseResult {
     result
 }
 
+/// The certificate of a result is good.
+pub fn passes(result: &CaseResult) {
+    assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
+}
+
 /// Whether a result names a bifurcation. That a branch was lost, or a step fell on another one, names none.
 pub fn names_bifurcation(result: &CaseResult) -> bool {
     let lost = ["the branch after the peak", "to another branch"];

@@ -42,15 +42,15 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
     }
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
-            let output_curve = resolved.get("output").is_some_and(|output| output["curve"] == true);
-            let states = resolved.get("output").and_then(|output| output["states"].as_u64());
-            let differentiated = resolved.get("output").is_some_and(|output| output["sensitivities"] == true);
-            let output_accuracy = resolved.get("output").is_some_and(|output| output["accuracy"] == "estimate");
-            let output_fields = resolved.get("output").is_none_or(|output| output["fields"] != false);
-            if !output_fields && resolved.get("output").is_some_and(|output| output["vtu"] == true) {
+            let output = resolved.get("output").unwrap_or(&Json::Null);
+            let output_curve = output["curve"] == true;
+            let output_states = output["states"].as_u64().unwrap_or(0) as usize;
+            let differentiated = output["sensitivities"] == true;
+            let output_accuracy = output["accuracy"] == "estimate";
+            let output_fields = output["fields"] != false;
+            if !output_fields && output["vtu"] == true {
                 notes.push("output.vtu is not used: output.fields = false leaves nothing to write there".into());
             }
-            let output_states = states.unwrap_or(0) as usize;
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let resolved = Json::Object(resolved);

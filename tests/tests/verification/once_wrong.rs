@@ -1,12 +1,7 @@
 //! Scenes that were once answered wrongly, or not at all, by what is known of them.
 
 use voussoir::core::limit::Status;
-use voussoir::results::CaseResult;
-use voussoir_tests::{answered, assert_close, changed};
-
-fn passes(result: &CaseResult) {
-    assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
-}
+use voussoir_tests::{answered, assert_close, changed, passes};
 
 /// The reference arch, elastic, with dry joints of friction .6; its rise, ends, mesh, stages and solver.
 fn bridge(rise: f64, ends: &str, mesh: &str, stages: &str, solver: &str) -> String {

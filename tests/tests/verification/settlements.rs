@@ -6,7 +6,7 @@ use voussoir::core::limit::Status;
 use voussoir::results::{CaseResult, Proof};
 use voussoir::solve_case;
 use voussoir::verify::case::verify_case;
-use voussoir_tests::{answered, assert_close, changed, first_case};
+use voussoir_tests::{answered, assert_close, changed, first_case, passes};
 
 /// The reference arch of 15 elastic voussoirs: dead load, a settlement, a load at the quarter.
 fn arch(solver: &str, settlement: &str, after: &str) -> String {
@@ -47,10 +47,6 @@ const LIVE: &str = "[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [
 
 /// Limit load of the rigid blocks, without any settlement.
 const LOAD: f64 = 698.0226652123788;
-
-fn passes(result: &CaseResult) {
-    assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
-}
 
 /// Out, in, down, both, turned: with small displacements rigid-block limit analysis does not see where supports are.
 #[test]

@@ -128,7 +128,7 @@ impl<'a> Displaced<'a> {
     pub fn unbalanced(&self) -> Vec<[f64; 3]> {
         let problem = self.problem;
         let mut wrench = vec![[0.0; 3]; problem.bodies.len()];
-        let mut add = |body: usize, displacement: Vec2, point: Vec2, force: Vec2| {
+        let add = |wrench: &mut [[f64; 3]], body: usize, displacement: Vec2, point: Vec2, force: Vec2| {
             let [x, y, _] = self.state.motion[body];
             let moved = if self.finite { displacement - Vec2::new(x, y) } else { Vec2::zeros() };
             let moment = cross(point + moved - problem.bodies[body].pole, force);
@@ -138,11 +138,17 @@ impl<'a> Displaced<'a> {
             problem.load_steps.iter().zip(problem.applied(self.state.load_step, self.state.factor))
         {
             for &(body, slot, point, force) in &load_step.loading.forces {
-                add(body, self.displacement(body, slot, point), point, force * factor);
+                add(&mut wrench, body, self.displacement(body, slot, point), point, force * factor);
             }
             for (index, body) in problem.bodies.iter().enumerate() {
                 let [x, y, _] = self.state.motion[index];
-                add(index, Vec2::new(x, y), body.pole, load_step.loading.acceleration * (body.mass * factor));
+                add(
+                    &mut wrench,
+                    index,
+                    Vec2::new(x, y),
+                    body.pole,
+                    load_step.loading.acceleration * (body.mass * factor),
+                );
             }
         }
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
@@ -152,31 +158,24 @@ impl<'a> Displaced<'a> {
             let [n, t] = self.axes(contact, share);
             let by_motion = n * r[0] + t * r[1];
             let mut both = |at: Vec2, push: Vec2| {
-                add(contact.plus.body, at, contact.position, push);
-                add(contact.minus.body, at, contact.position, -push);
+                add(&mut wrench, contact.plus.body, at, contact.position, push);
+                add(&mut wrench, contact.minus.body, at, contact.position, -push);
             };
             both(plus[0] * (1.0 - share) + minus[0] * share, by_motion);
+            let mean = self.axes(contact, 0.5);
             if by_slip != 0.0 {
                 // What β does as the slip grows: r·∂g/∂β β' along the mean tangent.
                 let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
                 let passing = cross(by_motion, plus[0] - minus[0]) * (high - low) * by_slip;
-                both((plus[0] + minus[0]) * 0.5, self.axes(contact, 0.5)[1] * passing);
+                both((plus[0] + minus[0]) * 0.5, mean[1] * passing);
+            }
+            if self.finite {
+                // The levers that the deformation of the blocks adds.
+                let moment = cross((plus[1] + minus[1]) * 0.5, mean[0] * r[0] + mean[1] * r[1]);
+                wrench[contact.plus.body][2] += moment;
+                wrench[contact.minus.body][2] -= moment;
             }
         }
-        if self.finite {
-            self.add_deformed_levers(&mut wrench);
-        }
         wrench
-    }
-
-    /// Adds the moments of contact forces about what the deformation of bodies adds to their places.
-    fn add_deformed_levers(&self, wrench: &mut [[f64; 3]]) {
-        for (contact, r) in self.problem.contacts.iter().zip(&self.state.force) {
-            let [n, t] = self.axes(contact, 0.5);
-            let [plus, minus] = self.sides(contact);
-            let moment = cross((plus[1] + minus[1]) * 0.5, n * r[0] + t * r[1]);
-            wrench[contact.plus.body][2] += moment;
-            wrench[contact.minus.body][2] -= moment;
-        }
     }
 }

@@ -133,11 +133,16 @@ fn strategy_stopped(tracer: &mut Tracer, following: &mut Following) -> StepEnd {
     if per_tangent(tracer, &following.branch.tangent, None) > 0.0 {
         return StepEnd::CutBack(following.length);
     }
+    let rate = following.branch.tangent.clone();
+    lost(tracer, following, "what the continuation strategy controls stopped changing", &rate)
+}
+
+/// What follows where a strategy has lost the path: arc lengths, if they may follow on, else the path ends.
+fn lost(tracer: &mut Tracer, following: &mut Following, why: &str, rate: &Tangent) -> StepEnd {
     if following.takes_arc_lengths(tracer) {
         return StepEnd::CutBack(following.length);
     }
-    let why = StepFailure::new("what the continuation strategy controls stopped changing");
-    StepEnd::Ended(no_step(tracer, &why, &following.branch.tangent, following.direction))
+    StepEnd::Ended(no_step(tracer, &StepFailure::new(why), rate, following.direction))
 }
 
 /// How far a gain of λ is from those of a path whose rates at both ends of the step would give `before` and
@@ -322,11 +327,8 @@ fn cut_back(tracer: &mut Tracer, following: &mut Following, why: &str, end: Opti
     tracer.system.count("cutbacks", 1);
     let length = 0.3 * following.length;
     if length < SHORTEST * following.limits.first {
-        if following.takes_arc_lengths(tracer) {
-            return StepEnd::CutBack(following.length);
-        }
-        let rate = end.unwrap_or(&following.branch.tangent);
-        return StepEnd::Ended(no_step(tracer, &StepFailure::new(why), rate, following.direction));
+        let rate = end.unwrap_or(&following.branch.tangent).clone();
+        return lost(tracer, following, why, &rate);
     }
     StepEnd::CutBack(length)
 }

@@ -11,7 +11,9 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
-use super::tracer::{LoadStepEnding, MOVED_ON, Peak, Tracer, after_peak, end_path, moved_along};
+use super::tracer::{
+    LoadStepEnding, MOVED_ON, Peak, Tracer, after_peak, beyond_last_peak, end_path, is_above, moved_along,
+};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
 use std::sync::Arc;
@@ -63,11 +65,17 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
 /// change by the blocks' displacement only: elastic rates have 1.
 fn slides_on(tracer: &Tracer, rate: &Tangent) -> bool {
     let (u, motion) = (tracer.system.units(), motion_size(&tracer.system, rate));
-    let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
+    let force = greatest_force(&tracer.system, rate);
     let factor = tracer.state.factor;
     let at_peak = |peak: &Peak| (factor - peak.factor).abs() <= 1e-9 * factor.abs();
     let still = (rate.factor / u.factor).abs() <= STILL[0] * motion && force <= STILL[1] * motion;
     still && tracer.limit.peak.as_ref().is_some_and(at_peak)
+}
+
+/// The greatest rate of a contact force in units.
+fn greatest_force(system: &StepSystem, rate: &Tangent) -> f64 {
+    let unit = system.units().force;
+    rate.force.iter().flatten().map(|r| (r / unit).abs()).fold(0.0, f64::max)
 }
 
 /// Whether the path goes on with a factor that does not grow.
@@ -95,7 +103,7 @@ pub(super) fn turns_back(tracer: &mut Tracer, rate: &Tangent, direction: f64) ->
 pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, target: f64) -> bool {
     let u = tracer.system.units();
     let motion = motion_size(&tracer.system, rate);
-    let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
+    let force = greatest_force(&tracer.system, rate);
     let factor = rate.factor / u.factor * direction;
     let still = force <= 1e-9 * motion && factor.abs() <= 1e-9 * motion;
     let force_unit = if still { f64::INFINITY } else { force.max(factor.abs()) * u.force };
@@ -260,10 +268,9 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
     let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
         return false;
     };
-    let last = tracer.limit.proven_peaks.last();
     let settles = settles(tracer);
-    let (from, top) = last.map_or((place, greatest), |peak| (peak.displacement, peak.factor));
-    let beyond = (displacement - from).abs();
+    let top = tracer.limit.proven_peaks.last().map_or(greatest, |peak| peak.factor);
+    let beyond = beyond_last_peak(tracer, place);
     let halved = (factor - 0.5 * top) * direction <= 0.0;
     let far = (halved && beyond >= MOVED_ON * length) || beyond >= FURTHEST * length;
     tracer.post_peak.far |= far;
@@ -276,7 +283,7 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
             most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
-    if done && (factor - greatest) * direction > 1e-9 * greatest.abs() {
+    if done && is_above(direction, greatest, factor) {
         end_path(
             tracer,
             Status::Stalled,

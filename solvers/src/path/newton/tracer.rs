@@ -166,7 +166,8 @@ pub(super) fn after_peak(tracer: &Tracer) -> Status {
     let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
     let (direction, load) = (direction(tracer), tracer.state.factor);
     let trough = tracer.post_peak.trough.as_ref().map(|trough| trough.factor);
-    let far = tracer.post_peak.far || (moved_on(tracer) && has_halved(direction, peak.factor, trough, load));
+    let moved_on = beyond_last_peak(tracer, peak.state.displacement) >= MOVED_ON * tracer.system.units().length;
+    let far = tracer.post_peak.far || (moved_on && has_halved(direction, peak.factor, trough, load));
     if far && !is_above(direction, peak.factor, load) { Status::Collapse } else { Status::Stalled }
 }
 
@@ -179,11 +180,10 @@ fn after_slip(tracer: &Tracer, apart: bool, rises: bool) -> Status {
     if !above && (apart || !rises) { Status::Collapse } else { after_peak(tracer) }
 }
 
-/// Whether the point of the load has moved on since the last proven peak as far as it must where paths end.
-fn moved_on(tracer: &Tracer) -> bool {
-    let peak = tracer.limit.peak.as_ref().map(|peak| peak.state.displacement);
-    let from = tracer.limit.proven_peaks.last().map(|peak| peak.displacement).or(peak);
-    from.is_some_and(|from| (tracer.record.state.displacement - from).abs() >= MOVED_ON * tracer.system.units().length)
+/// Movement of the point of the load since the last proven peak \[m\], or since the greatest one, at `peak`.
+pub(super) fn beyond_last_peak(tracer: &Tracer, peak: f64) -> f64 {
+    let from = tracer.limit.proven_peaks.last().map_or(peak, |last| last.displacement);
+    (tracer.record.state.displacement - from).abs()
 }
 
 /// Whether the load is, or was in a trough, half that of the peak.
@@ -193,7 +193,7 @@ fn has_halved(direction: f64, peak: f64, trough: Option<f64>, load: f64) -> bool
 }
 
 /// Whether the load is above the peak, by more than rounding.
-fn is_above(direction: f64, peak: f64, load: f64) -> bool {
+pub(super) fn is_above(direction: f64, peak: f64, load: f64) -> bool {
     (load - peak) * direction > ABOVE * peak.abs()
 }
 
