@@ -167,6 +167,11 @@ impl YieldPolygon {
         }
     }
 
+    /// How far a force is outside the polygon \[N\]; 0 inside.
+    pub fn excess(&self, r: [f64; 2], area: f64) -> f64 {
+        self.outside(r, area, None)
+    }
+
     /// How far a force is outside the polygon, one facet apart.
     fn outside(&self, r: [f64; 2], area: f64, except: Option<usize>) -> f64 {
         let others = self.facets.iter().enumerate().filter(|(i, _)| Some(*i) != except);

@@ -38,6 +38,9 @@ const BALANCED: f64 = 1e-10;
 const INNER: f64 = 1e-10;
 /// Greatest difference of forces from their laws of tractions: a tenth of what certificates allow.
 const LAW_HOLDS: f64 = 1e-9;
+/// Greatest excess of a contact force over its strength, relative to the greatest force, with finite displacements: a
+/// third of what certificates allow.
+const ADMISSIBLE: f64 = 3e-9;
 
 /// Newton's method from a guess: how many times all modes may change at once without that their number falls is its
 /// `patience`. What is found, and after how many iterations.
@@ -81,7 +84,9 @@ pub(super) fn iterate(
         let balanced = !system.finite() || (inner <= INNER && unbalanced_share(system, &residual, &state) <= BALANCED);
         let held = !system.finite() || {
             let (gap, force) = gap_error(system, &residual, &state);
-            gap <= STAYS + rounding / largest_unknown(system, &state) && (stays || force <= STAYS)
+            gap <= STAYS + rounding / largest_unknown(system, &state)
+                && (stays || force <= STAYS)
+                && is_admissible(system, &state)
         };
         let converged = settled && balanced && held && traction_error(system, &state) <= LAW_HOLDS;
         if iteration > 0 && !changes.changed && converged {
@@ -264,6 +269,15 @@ fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64)
         force = force.max(residual[row].abs() * u.displacement * a.max(b) / largest);
     }
     (greatest / largest_unknown(system, state), force)
+}
+
+/// Whether all contact forces keep to their strengths: rounding of positions excuses gaps, not those.
+fn is_admissible(system: &StepSystem, state: &State) -> bool {
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * system.units().force, f64::max);
+    let keeps = |(c, r): (usize, &[f64; 2])| {
+        system.law(c).is_none_or(|law| law.excess(*r, system.problem.contacts[c].area) <= ADMISSIBLE * largest)
+    };
+    state.force.iter().enumerate().all(keeps)
 }
 
 /// Greatest residual of equilibrium, relative to the greatest force.
