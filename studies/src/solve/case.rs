@@ -6,7 +6,7 @@ use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::sensitivity::sensitivities;
 use super::side_by_side::side_by_side;
-use super::statics::{falls_by_statics, stands_by_statics};
+use super::statics::{falls_by_statics, stands_by_statics, stands_without_a_path};
 use super::{limit, path};
 use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
@@ -25,9 +25,11 @@ pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseRe
     if solvers.is_empty() {
         return limit::solve_by_limit_analysis(input);
     }
-    stands_by_statics(input)
-        .or_else(|| falls_by_statics(input))
-        .unwrap_or_else(|| path::solve_by_path(input, &solvers, observer))
+    if let Some(result) = stands_by_statics(input).or_else(|| falls_by_statics(input)) {
+        return result;
+    }
+    let result = path::solve_by_path(input, &solvers, observer);
+    stands_without_a_path(input, &result).unwrap_or(result)
 }
 
 /// What tells a case from all others.

@@ -3,7 +3,7 @@
 //! With small displacements, associated flow and strengths that do not soften a structure stands under loads for which
 //! an admissible field exists, whatever its stiffness (safe theorem): then no path is followed. Between two stages loads
 //! change in proportion and fields may be mixed, because strengths are convex. Where flow is not associated a field
-//! proves nothing by itself.
+//! proves nothing by itself: a path is asked first, and where it is not found the answer says how flow was read.
 //!
 //! With finite displacements a structure without any strength but friction that cannot carry its first gravity in the
 //! undeformed geometry cannot carry any share of it there: what joints admit is a cone. Equilibrium of whole blocks
@@ -12,23 +12,54 @@
 
 use super::case_input::CaseInput;
 use super::limit::solve_by_limit_analysis;
-use super::safe_theorem::safe_theorem_holds;
+use super::safe_theorem::{is_without_softening, safe_theorem_holds};
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, Proof};
 use crate::study::SelectedSolver;
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Bond, Target, stage_loads};
 
+/// Whether `auto` may answer a case by a static field: small displacements, loads to a factor.
+fn asks_whether_it_stands(input: &CaseInput) -> bool {
+    let to_factors = input.stages.iter().all(|stage| matches!(stage.target, Target::Factor(_)));
+    let auto = matches!(input.solver, SelectedSolver::Auto);
+    auto && !input.curve && !input.settings.finite && to_factors
+}
+
 /// The answer of limit analysis, where it proves that the case stands and `auto` may take it.
 pub(super) fn stands_by_statics(input: &CaseInput) -> Option<CaseResult> {
-    let to_factors = input.stages.iter().all(|stage| matches!(stage.target, Target::Factor(_)));
     let settles = input.stages.iter().any(|stage| !stage.settlements.is_empty());
-    let auto = matches!(input.solver, SelectedSolver::Auto);
-    if !auto || input.curve || input.settings.finite || settles || !to_factors || !safe_theorem_holds(input.assembly) {
+    if settles || !asks_whether_it_stands(input) || !safe_theorem_holds(input.assembly) {
         return None;
     }
     let result = solve_by_limit_analysis(input);
     (result.proved_by == Some(Proof::Static)).then_some(result)
+}
+
+/// What limit analysis says of a case whose path `auto` has not found and whose friction is not associated: that it
+/// stands, where it proves that nothing moves below the loads, or, read with associated flow, where a field carries them.
+pub(super) fn stands_without_a_path(input: &CaseInput, path: &CaseResult) -> Option<CaseResult> {
+    if path.status != Status::Stalled || !asks_whether_it_stands(input) || !is_without_softening(input.assembly) {
+        return None;
+    }
+    let mut result = solve_by_limit_analysis(input);
+    if result.status != Status::Stands || !result.certificate.passed {
+        return None;
+    }
+    let proved = result.non_associated.lower_proof.is_some();
+    if !proved && result.non_associated.associated_load_factor.is_some() {
+        return None;
+    }
+    if !proved {
+        result.flow_read_as = Some("associated".into());
+        result.notes.push(
+            "an admissible field carries the loads, so that it stands where slip is associated; no path from unloaded \
+             joints was found, and with the flow of the laws whether it stands may depend on how the joints were compressed"
+                .into(),
+        );
+    }
+    result.notes.extend(path.notes.iter().map(|note| format!("no path: {note}")));
+    Some(result)
 }
 
 /// The answer of limit analysis, where it proves that no share of the first gravity is carried in the undeformed

@@ -1,7 +1,8 @@
 //! Scenes that were once answered wrongly, or not at all, by what is known of them.
 
 use voussoir::core::limit::Status;
-use voussoir_tests::{answered, assert_close, changed, passes};
+use voussoir::verify::case::verify_case;
+use voussoir_tests::{answered, assert_close, changed, first_case, passes};
 
 /// The reference arch, elastic, with dry joints of friction .6; its rise, ends, mesh, stages and solver.
 fn bridge(rise: f64, ends: &str, mesh: &str, stages: &str, solver: &str) -> String {
@@ -95,6 +96,47 @@ solver = "event_path"
             }
         }
     }
+}
+
+/// 62 dry bricks around a window, on compliant joints: one hangs in its upright joints, so that no path begins, and a field carries
+/// it all. `auto` says that it stands and how flow was read; by name the path solver stays stalled. Its ground goes down as it is.
+#[test]
+fn dry_bricks_around_a_window_stand() {
+    let wall = r#"name = "window"
+[scene]
+scene = "wall"
+width = 0.24
+brick = [0.5, 0.25]
+courses = 8
+bricks = 8
+openings = [{ from = [1.25, 0.5], to = [2.25, 1.5] }]
+material = "stone"
+joint = "dry"
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction_angle = "30 deg"
+normal_stiffness = 1e10
+shear_stiffness = 4e9
+[[stages]]
+name = "dead"
+gravity = 9.81
+"#;
+    let settled =
+        "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"ground\", displacement = [0.0, -0.01] }]\n";
+    for more in ["", settled] {
+        let text = format!("{wall}{more}");
+        let result = answered(&text);
+        assert_eq!(result.status, Status::Stands, "{more} {:?}", result.notes);
+        passes(&result);
+        assert_eq!(result.flow_read_as.as_deref(), Some("associated"), "{:?}", result.notes);
+        assert!(result.notes.iter().any(|note| note.contains("no path from unloaded joints")), "{:?}", result.notes);
+        assert_eq!(verify_case(&first_case(&text), &result), Vec::<String>::new());
+    }
+    let by_path = answered(&format!("{wall}[solver]\nsolver = \"newton_path\"\n"));
+    assert_eq!(by_path.status, Status::Stalled);
 }
 
 /// The weight of bodies that are held, and go down with their support, does work too: exact paths balance to rounding.
