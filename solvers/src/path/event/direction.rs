@@ -22,6 +22,8 @@ const REFINED: (f64, usize) = (2e-15, 3);
 const BELIEVED: [f64; 2] = [1e-9, 1e-6];
 /// Points with a mode of their own beside the factorised one before factorising anew.
 const UPDATES: usize = 40;
+/// Points whose responses are found for one rate problem: for more of them it is factorised anew.
+const AT_ONCE: usize = 8;
 /// Points of the active set above which they are treated on the whole system.
 const MANY: usize = 24;
 /// Points of the active set up to which its rate problem is solved by itself where flow is not associated: its matrix is
@@ -115,10 +117,13 @@ fn present_modes(trace: &Trace) -> Vec<ContactMode> {
 /// Factorises anew where the present factorisation does not serve to open some points in these modes.
 fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool {
     let refine_columns = trace.factors.refine_columns;
+    let changed = |factors: &FactorisedModes| modes.iter().zip(&factors.modes).filter(|(now, then)| now != then).count();
     let stale = |factors: &FactorisedModes| {
         (!factors.refine_columns && refine_columns)
             || factors.responses() > UPDATES.max(2 * open.len())
-            || modes.iter().zip(&factors.modes).filter(|(now, then)| now != then).count() > 2 * UPDATES
+            || changed(factors) > 2 * UPDATES
+            // After events that others followed: a factorisation costs less than so many responses.
+            || changed(factors) > factors.responses() + AT_ONCE
     };
     if !trace.factors.present.as_ref().is_none_or(stale) {
         return true;
