@@ -117,7 +117,8 @@ fn present_modes(trace: &Trace) -> Vec<ContactMode> {
 /// Factorises anew where the present factorisation does not serve to open some points in these modes.
 fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool {
     let refine_columns = trace.factors.refine_columns;
-    let changed = |factors: &FactorisedModes| modes.iter().zip(&factors.modes).filter(|(now, then)| now != then).count();
+    let changed =
+        |factors: &FactorisedModes| modes.iter().zip(&factors.modes).filter(|(now, then)| now != then).count();
     let stale = |factors: &FactorisedModes| {
         (!factors.refine_columns && refine_columns)
             || factors.responses() > UPDATES.max(2 * open.len())

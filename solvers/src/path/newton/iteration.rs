@@ -9,8 +9,9 @@ use super::linearised::{residual_of, solve_linear};
 use super::response::{traction_error, traction_row, update_tractions};
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
-use super::tangent::wanted_modes;
+use super::tangent::{ALLOWED, wanted_modes};
 use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
 use crate::optimise::line_search::LineSearch;
 
 /// Contact points that want to change above which, twice running where eight times fewer did before, an
@@ -38,9 +39,6 @@ const BALANCED: f64 = 1e-10;
 const INNER: f64 = 1e-10;
 /// Greatest difference of forces from their laws of tractions: a tenth of what certificates allow.
 const LAW_HOLDS: f64 = 1e-9;
-/// Greatest excess of a contact force over its strength, relative to the greatest force, with finite displacements: a
-/// third of what certificates allow.
-const ADMISSIBLE: f64 = 3e-9;
 
 /// Newton's method from a guess: how many times all modes may change at once without that their number falls is its
 /// `patience`. What is found, and after how many iterations.
@@ -271,11 +269,13 @@ fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64)
     (greatest / largest_unknown(system, state), force)
 }
 
-/// Whether all contact forces keep to their strengths: rounding of positions excuses gaps, not those.
+/// Whether all contact forces keep to their strengths within twice what their modes are allowed: rounding of positions
+/// excuses gaps, not those.
 fn is_admissible(system: &StepSystem, state: &State) -> bool {
-    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * system.units().force, f64::max);
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
     let keeps = |(c, r): (usize, &[f64; 2])| {
-        system.law(c).is_none_or(|law| law.excess(*r, system.problem.contacts[c].area) <= ADMISSIBLE * largest)
+        let excess = |law: &YieldPolygon| law.excess(*r, system.problem.contacts[c].area);
+        system.law(c).is_none_or(|law| excess(law) <= 2.0 * ALLOWED * largest)
     };
     state.force.iter().enumerate().all(keeps)
 }

@@ -14,7 +14,7 @@ use std::rc::Rc;
 const FROM_NOTHING: f64 = 1e-3;
 const LEAST: f64 = 1e-12;
 /// Greatest tolerance of a mode relative to the greatest force, of which a certificate allows 1e-8.
-const ALLOWED: f64 = 3e-9;
+pub(super) const ALLOWED: f64 = 3e-9;
 
 pub(super) fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);
