@@ -180,9 +180,11 @@ fn by_enumeration(
     following.orientation.as_ref().filter(|before| !before.is_singular())?;
     let state = State { mode: modes.to_vec(), ..tracer.state.clone() };
     let rates = all_rates(&mut tracer.system, &state)?;
-    let mut onward = rates
-        .into_iter()
-        .filter(|(other, modes)| leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, share));
+    let mut onward = rates.into_iter().filter(|(other, modes)| {
+        // The arriving rate itself has failed: it may look as if it led on for less than is left to the fold.
+        let arriving = *modes == tracer.state.mode && cosine(&following.branch.tangent.motion, &other.motion) > -BACK;
+        !arriving && leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, share)
+    });
     let found = onward.next()?;
     onward.next().is_none().then_some(found)
 }

@@ -108,9 +108,10 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
     let mut falls = tangent.factor * direction <= 0.0;
     let arrives = !tracer.system.finite() || following.slope > 0.0;
     let state = tracer.state.clone();
+    // In the present modes no step has led on, however short.
     if falls
         && arrives
-        && let Some(rising) = rising_branch(tracer, &state, direction)
+        && let Some(rising) = rising_branch(tracer, &state, direction).filter(|rising| rising.1 != state.mode)
     {
         (tangent, modes) = rising;
         falls = false;
