@@ -244,3 +244,17 @@ fn a_spread_bridge_of_compliant_joints_carries_near_six_hundred() {
         assert!(result.certificate.residuals["path_energy"] < 1e-3, "{:?}", result.certificate.residuals);
     }
 }
+
+/// A hundred times as stiff and a tenth as high: beyond the peak and its trough a point closes where the load rises, and
+/// sticks; the path turns back there, which arc lengths once did not. Displacement control and dissipation say the same load
+/// to 1e-11.
+#[test]
+fn a_stiff_shallow_bridge_is_followed_over_a_sharp_fold() {
+    let mesh = "elements = [4, 8], order = 2, grading = 8.0";
+    let solver = "solver = \"newton_path\"\nkinematics = \"finite\"\ncontinuation = { strategy = \"arc_length\" }";
+    let text = bridge(0.29, "bonded", mesh, &live(0.25), solver);
+    let result = answered(&changed(&text, "young_modulus = 5e9", "young_modulus = 5e11"));
+    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+    passes(&result);
+    assert_close(result.load_factor.expect("a collapse"), 2_619_328.7268, 1e-9);
+}
