@@ -1,5 +1,6 @@
 """Rigid blocks on compliant joints that only press, to their limit load: Voussoir's two path solvers and OpenSeesPy.
 
+    apt-get install libblas3 liblapack3 libgfortran5                  # what OpenSees is linked with (Debian 12)
     venv/bin/pip install openseespy==3.7.1.2
     venv/bin/python compliant_path.py --voussoir ../../target/release/voussoir ring:13 ring:100
 
