@@ -4,10 +4,13 @@ use super::auto::{TaggedPathSolver, willing};
 use super::case_input::CaseInput;
 use super::path_result::{Seen, path_result};
 use super::recorded::Recorder;
-use crate::results::CaseResult;
+use crate::results::{CaseResult, LimitPointEntry};
 use voussoir_core::certificate::PathChecker;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{PathObserver, PathProblem, PathSettings, PathState};
+use voussoir_core::path::{PathObserver, PathProblem, PathState};
+
+/// Relative difference of two strategies' limit points that are one.
+const SAME_PEAK: f64 = 1e-6;
 
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
@@ -67,22 +70,45 @@ fn by_strategies(
     if own.status != Status::Stalled {
         return (own, ended);
     }
+    let own_why = why(&own);
+    let named = input.settings.strategies().next().is_some();
+    let whose = if named { "the strategy that was asked for" } else { "the solver's own strategy" };
     for strategy in solver.1.further_strategies(input.settings) {
         if ended {
             break;
         }
         let name = serde_json::to_string(&*strategy).unwrap_or_default();
-        let settings = PathSettings { continuation: Some(strategy.clone()), ..input.settings.clone() };
+        let settings = input.settings.followed_by(strategy);
         let (mut other, stopped) = traced(&CaseInput { settings: &settings, ..*input }, problem, solver, observer);
         ended = stopped;
-        let why = |result: &CaseResult| result.notes.first().cloned().unwrap_or_default();
-        if other.status != Status::Stalled {
-            other.notes.push(format!("followed by {name}: the solver's own strategy stalled ({})", why(&own)));
+        let missed = missed_peak(&own, &other).filter(|_| other.status != Status::Stalled);
+        if other.status != Status::Stalled && missed.is_none() {
+            other.notes.push(format!("followed by {name}: {whose} stalled ({own_why})"));
             return (other, ended);
         }
-        own.notes.push(format!("by {name}: {}", why(&other)));
+        own.notes.push(match missed {
+            Some(peak) => format!("by {name}: no limit point at the factor {peak}, which {whose} found"),
+            None => format!("by {name}: {}", why(&other)),
+        });
     }
     (own, ended)
+}
+
+/// Why a path stalled, in the words of its notes but for that on its energy.
+fn why(stalled: &CaseResult) -> String {
+    let words = stalled.notes.iter().filter(|note| !note.starts_with("energy of the last stage"));
+    words.cloned().collect::<Vec<_>>().join("; ")
+}
+
+/// The greatest limit point that a stalled path has proven, where another path of the same case does not pass it: one of
+/// them has left its branch.
+fn missed_peak(stalled: &CaseResult, other: &CaseResult) -> Option<f64> {
+    let of_last =
+        |known: &&LimitPointEntry| stalled.path.limit_points.last().is_some_and(|last| last.stage == known.stage);
+    let proven = stalled.path.limit_points.iter().filter(of_last).map(|peak| peak.factor);
+    let greatest = proven.reduce(|a, b| if b.abs() > a.abs() { b } else { a })?;
+    let found = |known: &LimitPointEntry| (known.factor - greatest).abs() <= SAME_PEAK * greatest.abs();
+    (!other.path.limit_points.iter().filter(of_last).any(found)).then_some(greatest)
 }
 
 /// Solves a case along its path by one solver; whether the observer has ended it.

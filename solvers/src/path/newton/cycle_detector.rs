@@ -99,6 +99,37 @@ impl CycleDetector {
     }
 }
 
+/// Distance from the greatest peak and difference of loads, as shares of what the path has gone and fallen since, at which
+/// it has come back to it.
+const RETURN: f64 = 0.01;
+
+/// How far a path has been from its greatest peak since.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Excursion {
+    /// Greatest distance of a body from its place there \[m\].
+    furthest: f64,
+    /// Greatest fall of the factor.
+    fallen: f64,
+}
+
+impl Excursion {
+    /// Takes a state: greatest distance of a body \[m\] from the peak, and by how much the factor is below it.
+    pub fn goes_to(&mut self, [distance, below]: [f64; 2]) {
+        (self.furthest, self.fallen) = (self.furthest.max(distance), self.fallen.max(below));
+    }
+
+    /// Whether another peak, the same as seen from the first one, is that one again: with friction that dissipates a path
+    /// may come back to its peak in a loop over other ones, a little beside itself each time.
+    pub fn returns(&self, [distance, below]: [f64; 2]) -> bool {
+        distance <= RETURN * self.furthest && below.abs() <= RETURN * self.fallen
+    }
+}
+
+/// Greatest distance between the places of a body \[m\].
+pub(super) fn distance(motion: &[[f64; 3]], other: &[[f64; 3]]) -> f64 {
+    motion.iter().zip(other).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,5 +162,17 @@ mod tests {
         let drifting: Vec<[f64; 2]> = (0..40).map(|i| [1.0 + f64::from(i % 2), 9.0 - 0.3 * f64::from(i)]).collect();
         let (_, why) = ended(&drifting, 1.5).expect("an end");
         assert!(why.contains("along the path"), "{why}");
+    }
+    #[test]
+    fn a_path_returns_to_its_peak_only_from_afar() {
+        let mut excursion = Excursion::default();
+        // A second peak close to the first one, with a small dip between.
+        excursion.goes_to([1e-4, 0.1]);
+        assert!(!excursion.returns([1e-4, -0.01]));
+        excursion.goes_to([0.1, 70.0]);
+        excursion.goes_to([0.01, 3.0]);
+        assert!(excursion.returns([1e-4, -0.02]));
+        // The same place under another load, and the same load at another place.
+        assert!(!excursion.returns([1e-4, -0.8]) && !excursion.returns([2e-3, 0.02]));
     }
 }

@@ -56,8 +56,10 @@ use self::monitors::resolve;
 use super::outcome::stalled;
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::displacement_control::DisplacementControl;
+use crate::path::continuation::dissipation::Dissipation;
 use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::sync::Arc;
 use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
@@ -94,13 +96,21 @@ impl PathSolver for NewtonPath {
         settings.strategies().find_map(|strategy| resolve(problem, &strategy.monitors()).err())
     }
 
-    /// With finite displacements a step may fall short of a sharp fold by one strategy and pass it by another.
+    /// With finite displacements a step may fall short of a sharp fold by one strategy and pass it by another; what
+    /// displacement control and dissipation measure may turn back. Arc lengths that are asked for are what is used.
     fn further_strategies(&self, settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
-        if !settings.finite || settings.strategies().next().is_some() {
+        let turns_back = |strategy: &Arc<dyn Continuation>| {
+            let strategy: &dyn Any = &**strategy;
+            strategy.is::<DisplacementControl>() || strategy.is::<Dissipation>()
+        };
+        let usual: Arc<dyn Continuation> = match settings.strategies().next() {
+            None => Arc::new(DisplacementControl::default()),
+            Some(_) => Arc::new(ArcLength::default()),
+        };
+        if !settings.finite || !settings.strategies().all(turns_back) {
             return Vec::new();
         }
-        let short = ArcLength { first_step: SHORT, ..ArcLength::default() };
-        vec![Arc::new(DisplacementControl::default()), Arc::new(short)]
+        vec![usual, Arc::new(ArcLength { first_step: SHORT, ..ArcLength::default() })]
     }
 }
 

@@ -1,8 +1,9 @@
 //! Peaks and troughs of the load within a step, by bisection.
 
 use super::control::Control;
+use super::cycle_detector::{Excursion, distance};
 use super::following::{Following, per_tangent};
-use super::measure::{increment_along, increment_between, motion_size};
+use super::measure::{cosine, increment_along, increment_between, motion_size};
 use super::orientation::{Orientation, STILL};
 use super::recorded::recorded;
 use super::state::{State, Tangent};
@@ -126,13 +127,27 @@ pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) 
         if tracer.limit.proven_peaks.iter().any(|known| same(&known)) {
             return;
         }
+        if returns(tracer, &peak, direction) {
+            tracer.post_peak.returned = true;
+            return;
+        }
         tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });
         tracer.post_peak = PostPeak { far: tracer.post_peak.far, ..PostPeak::default() };
     }
     if tracer.limit.peak.as_ref().is_none_or(greatest) {
         tracer.limit.peak = Some(peak);
+        tracer.limit.excursion = Excursion::default();
         tracer.post_peak.far = false;
     }
+}
+
+/// Whether a peak is the greatest one again, passed in the same sense.
+fn returns(tracer: &Tracer, peak: &Peak, direction: f64) -> bool {
+    let known = tracer.limit.peak.as_ref().filter(|known| known.state.load_step == tracer.load_step);
+    let Some(known) = known.filter(|_| tracer.system.finite()) else { return false };
+    let (Some(motion), Some(before)) = (&peak.motion, &known.motion) else { return false };
+    let place = [distance(&peak.state.motion, &known.state.motion), (known.factor - peak.factor) * direction];
+    tracer.limit.excursion.returns(place) && cosine(motion, before) > 0.0
 }
 
 /// A peak at a state between the last one and the next, with the rate just beyond it.

@@ -56,12 +56,12 @@ pub(super) fn missed_slip(
     end: &Tangent,
 ) -> Option<f64> {
     let matters = tracer.system.finite() && !tracer.system.joints_flow_associated();
-    // After a peak friction may let the path cycle in small loops, and where it falls a step that ends where a point comes
-    // to rest may end at a fold: history is followed where the load rises to another peak, within a budget. A stage that
-    // goes to a factor has ended at its peak, but for what it snaps to.
+    // After a peak friction may let the path cycle in small loops: history is followed on to other peaks within a budget,
+    // also where the load falls, for it shapes the peaks that follow. A stage that goes to a factor has ended at its peak,
+    // but for what it snaps to.
     let arrests = tracer.system.counters.get("arrests").copied().unwrap_or(0);
     let goes_to_factor = matches!(following.load_step.end, LoadStepEnd::Factor(_));
-    let enough = following.slope <= 0.0 || goes_to_factor || arrests >= MOST_ARRESTS;
+    let enough = goes_to_factor || arrests >= MOST_ARRESTS;
     if !matters || (tracer.limit.peak.is_some() && enough) {
         following.arrest = None;
         return None;

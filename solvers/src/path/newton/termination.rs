@@ -1,6 +1,7 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
 use super::control::Control;
+use super::cycle_detector::distance;
 use super::limit_point::{above_all, test_limit_point};
 use super::measure::{increment_along, motion_size};
 use super::mechanism::find_mechanism;
@@ -205,6 +206,8 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
         }
         return false;
     };
+    let away = distance(&tracer.record.state.motion, &peak.state.motion);
+    tracer.limit.excursion.goes_to([away, (peak.factor - factor) * direction]);
     if !tracer.system.laws.responses.is_empty() && (factor - peak.factor) * direction > 0.0 {
         return false;
     }
@@ -268,6 +271,13 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
     let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
         return false;
     };
+    if tracer.post_peak.returned {
+        let why = format!(
+            "after the peak the path comes back to it in a loop, under a load of the factor {factor}: friction has moved it a little beside itself"
+        );
+        end_path(tracer, Status::Collapse, why);
+        return true;
+    }
     let settles = settles(tracer);
     let top = tracer.limit.proven_peaks.last().map_or(greatest, |peak| peak.factor);
     let beyond = beyond_last_peak(tracer, place);

@@ -1,6 +1,6 @@
 //! The state of a trace: the last converged state, what is recorded of the path, and how it ended.
 
-use super::cycle_detector::CycleDetector;
+use super::cycle_detector::{CycleDetector, Excursion};
 use super::derivatives::Gradient;
 use super::events::events;
 use super::recorded::{energy_after, recorded, work_state};
@@ -62,6 +62,8 @@ pub(super) struct Ending {
 #[derive(Default)]
 pub(super) struct LimitPoint {
     pub peak: Option<Peak>,
+    /// How far the path has been from it since.
+    pub excursion: Excursion,
     /// Proven peaks of finite displacements in order.
     pub proven_peaks: Vec<ProvenPeak>,
     /// Why it is not proven to be one.
@@ -80,6 +82,8 @@ pub(super) struct PostPeak {
     pub risen: bool,
     /// Whether it has been, after the greatest one, where paths end that nothing else was asked of.
     pub far: bool,
+    /// Whether it has come back to the greatest one.
+    pub returned: bool,
     pub cycles: CycleDetector,
 }
 
