@@ -11,9 +11,6 @@ use crate::linear::inner;
 const RELATIVE: f64 = 1e-14;
 /// Least weight of a row, so that stiff joints are not beyond what soft ones can be told from.
 const SOFTEST: f64 = 1e-13;
-/// Refinements of a direction at the most, and the share of the gap that its equilibrium may miss.
-const REFINEMENTS: usize = 4;
-const REFINED: f64 = 1e-4;
 /// Products s z after a step, in units of their mean, beyond which a corrector moves them; and how much it moves one
 /// at the most.
 const CENTRED: [f64; 2] = [0.1, 10.0];
@@ -61,14 +58,14 @@ impl Wanted {
 
 /// The stiffness matrix at a state, factorised.
 pub struct Directions<'a> {
-    program: &'a Program,
+    pub(super) program: &'a Program,
     /// The matrices of the program.
     pub stiffness: Stiffness,
     /// R of each joint's flexibility R Rᵀ, and A R.
-    roots: Vec<Root>,
+    pub(super) roots: Vec<Root>,
     rows: Vec<[[f64; 3]; ROWS]>,
     /// The motion that the varying load causes; empty until it is asked for.
-    v: Vec<f64>,
+    pub(super) v: Vec<f64>,
 }
 
 impl<'a> Directions<'a> {
@@ -128,38 +125,8 @@ impl<'a> Directions<'a> {
         step
     }
 
-    /// A direction whose forces are in equilibrium.
-    ///
-    /// Changes of forces follow those of velocities by flexibilities of up to 1/SOFTEST: refinements add to them, so
-    /// that only the last one's rounding is magnified.
-    pub fn refined(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool, step: &mut Step) {
-        let program = self.program;
-        let aim = REFINED * state.gap();
-        let mut last = f64::INFINITY;
-        for _ in 0..REFINEMENTS {
-            let mut left: Vec<f64> =
-                residuals.equilibrium.iter().zip(&program.varying).map(|(r, p)| r + step.theta * p).collect();
-            program.members.iter().zip(&step.x).for_each(|(member, x)| program.press(member, x, &mut left));
-            let error = left.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            if error < aim || error > 0.5 * last {
-                break;
-            }
-            last = error;
-            self.stiffness.solve(&mut left);
-            if moves {
-                let stiff = cap_stiffness(program, state);
-                let change = -inner(&program.varying, &left) / (inner(&program.varying, &self.v) + stiff);
-                step.theta += change;
-                left.iter_mut().zip(&self.v).for_each(|(c, v)| *c += change * v);
-            }
-            step.q.iter_mut().zip(&left).for_each(|(q, c)| *q += c);
-            self.follow(&left, step);
-        }
-        self.complete(state, residuals, wanted, step);
-    }
-
     /// Takes off the forces what a change of velocities relieves.
-    fn follow(&self, motion: &[f64], step: &mut Step) {
+    pub(super) fn follow(&self, motion: &[f64], step: &mut Step) {
         for (index, member) in self.program.members.iter().enumerate() {
             let root = &self.roots[index];
             let relieved = along(root, &self.program.jump(member, motion));
@@ -169,7 +136,7 @@ impl<'a> Directions<'a> {
     }
 
     /// The changes of slacks and multipliers that go with those of forces and θ.
-    fn complete(&self, state: &State, residuals: &Residuals, wanted: &Wanted, step: &mut Step) {
+    pub(super) fn complete(&self, state: &State, residuals: &Residuals, wanted: &Wanted, step: &mut Step) {
         let program = self.program;
         for (index, member) in program.members.iter().enumerate() {
             for row in 0..member.rows {
@@ -187,12 +154,12 @@ impl<'a> Directions<'a> {
 }
 
 /// What the cap adds to the stiffness that θ feels.
-fn cap_stiffness(program: &Program, state: &State) -> f64 {
+pub(super) fn cap_stiffness(program: &Program, state: &State) -> f64 {
     if program.cap.is_some() { state.cap[1] / state.cap[0] } else { 0.0 }
 }
 
 /// Rᵀ g.
-fn along(root: &Root, g: &[f64; 3]) -> [f64; 3] {
+pub(super) fn along(root: &Root, g: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|c| root[0][c] * g[0] + root[1][c] * g[1] + root[2][c] * g[2])
 }
 

@@ -13,7 +13,7 @@ use super::state::{State, Step};
 use voussoir_core::limit::JointForce;
 
 /// Iterations at the most.
-const MOST: u64 = 120;
+const MOST: u64 = 250;
 /// Iterations until a fixed load should be carried.
 const MOST_HELD: u64 = 25;
 /// Gap from which a polish is tried where every row is far nearer to its bound than to no multiplier, or the reverse.
@@ -27,11 +27,11 @@ const SETTLED: [f64; 2] = [2e-13, 1e-11];
 /// Share of the way to the nearest bound.
 const SHORT: f64 = 0.995;
 /// Correctors of one direction at the most, the step that needs none, and the least gain of one.
-const CORRECTORS: usize = 2;
+const CORRECTORS: usize = 4;
 const LONG: f64 = 0.9;
-const GAIN: f64 = 0.02;
-/// What a corrector aims at beyond the present step.
-const BEYOND: f64 = 0.2;
+const GAIN: f64 = 0.005;
+/// What a corrector aims at: so many times the present step, and so much more.
+const BEYOND: [f64; 2] = [1.5, 0.1];
 /// Share of the gap of a polish at which the next is tried.
 const SOONEST: f64 = 1e-2;
 /// Gap below which nothing is to be gained.
@@ -208,7 +208,7 @@ impl Method<'_> {
             if lengths[0].min(lengths[1]) > LONG {
                 break;
             }
-            let aim = lengths.map(|length| (length + BEYOND).min(1.0));
+            let aim = lengths.map(|length| (BEYOND[0] * length + BEYOND[1]).min(1.0));
             let other = wanted.centred(program, state, &step, aim, mean);
             let corrected = directions.towards(state, residuals, &other, true);
             let longer = state.longest(program, &corrected);

@@ -11,6 +11,7 @@ mod directions;
 mod interior_point;
 mod polish;
 mod program;
+mod refinement;
 mod residuals;
 mod solution;
 mod state;
