@@ -8,7 +8,7 @@ use super::peak::note_peak;
 use super::state::Tangent;
 use super::system::StepFailure;
 use super::termination::{no_step, snaps};
-use super::tracer::{LoadStepEnding, Tracer, after_peak, end_path};
+use super::tracer::{LoadStepEnding, Tracer, after_fold, after_peak, end_path};
 use super::trial::{StepPlan, first_slip};
 use voussoir_core::limit::Status;
 
@@ -88,16 +88,15 @@ fn blocks_yield(tracer: &mut Tracer, following: &Following, failure: &StepFailur
 
 /// At the very event: another branch, on which the points at their limit yield.
 fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: &StepFailure) -> Option<AfterFailure> {
-    let (tangent, direction) = (&following.branch.tangent, following.direction);
+    let direction = following.direction;
     let found = match branch_beyond_fold(tracer, following, following.limits.first / plan.per_tangent) {
         Ok(found) => found,
         Err(why) => {
             if following.slope > 0.0 {
-                note_peak(tracer, tangent, direction);
+                note_peak(tracer, &following.branch.tangent, direction);
             }
-            // Where the load was falling the path is lost at a trough: from there it may rise to a greater peak.
-            let status = match (tracer.system.finite(), tangent.factor * direction > 0.0) {
-                (true, true) => Status::Collapse,
+            let status = match (tracer.system.finite(), following.branch.tangent.factor * direction > 0.0) {
+                (true, true) => after_fold(tracer),
                 (true, false) => after_peak(tracer),
                 (false, _) => Status::LimitPoint,
             };

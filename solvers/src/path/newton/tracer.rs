@@ -167,11 +167,23 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
 /// fallen to half, its point has moved on, and the load is above no peak, or it has been where paths end by themselves.
 /// Before that a greater peak may lie ahead, whether the load falls or rises where the path is lost; above its peaks it does.
 pub(super) fn after_peak(tracer: &Tracer) -> Status {
+    let moved_on =
+        |peak: &Peak| beyond_last_peak(tracer, peak.state.displacement) >= MOVED_ON * tracer.system.units().length;
+    lost_after(tracer, moved_on)
+}
+
+/// How such a path ends at a fold from which no rate of equilibrium leads on under a growing load. Since that is proven, a
+/// load that has fallen to half is enough.
+pub(super) fn after_fold(tracer: &Tracer) -> Status {
+    lost_after(tracer, |_| true)
+}
+
+/// A collapse where the load of a path that is lost has fallen to half, far enough from the peak, and is above none.
+fn lost_after(tracer: &Tracer, enough: impl Fn(&Peak) -> bool) -> Status {
     let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
     let (direction, load) = (direction(tracer), tracer.state.factor);
     let trough = tracer.post_peak.trough.as_ref().map(|trough| trough.factor);
-    let moved_on = beyond_last_peak(tracer, peak.state.displacement) >= MOVED_ON * tracer.system.units().length;
-    let far = tracer.post_peak.far || (moved_on && has_halved(direction, peak.factor, trough, load));
+    let far = tracer.post_peak.far || (enough(peak) && has_halved(direction, peak.factor, trough, load));
     if far && !is_above(direction, peak.factor, load) { Status::Collapse } else { Status::Stalled }
 }
 
