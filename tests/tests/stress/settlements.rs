@@ -200,6 +200,10 @@ fn classify(k: usize) -> (Stratum, Class) {
     let before = processor_seconds(now);
     let result = answer(&text);
     let seconds = processor_seconds(now) - before;
+    let followed = result.as_ref().is_some_and(|result| result.notes.iter().any(|n| n.starts_with("followed by")));
+    if followed {
+        println!("case {k}: another strategy than the usual one answers");
+    }
     let class = match &result {
         None => Class::Crashed,
         Some(_) if seconds > 60.0 => Class::Slow,
@@ -218,7 +222,7 @@ fn classify(k: usize) -> (Stratum, Class) {
             Some(own) => second_route(&stratum, &scene, result, own).map_or(Class::Agrees, Class::Wrong),
         },
     };
-    if let (Ok(folder), false) = (std::env::var("KEEP"), class == Class::Agrees) {
+    if let (Ok(folder), true) = (std::env::var("KEEP"), followed || class != Class::Agrees) {
         std::fs::write(format!("{folder}/settlement{k}.toml"), &text).expect("the folder exists");
     }
     (stratum, class)
