@@ -9,8 +9,9 @@ use crate::linear::inner;
 
 /// Added to each pivot, relative to it: far less than what the directions need.
 const RELATIVE: f64 = 1e-14;
-/// Least weight of a row, so that stiff joints are not beyond what soft ones can be told from.
-const SOFTEST: f64 = 1e-13;
+/// Least weight of a row. Where it is more than the row's own, forces change by more than the factors know, and the flow
+/// misses that share of their change.
+const SOFTEST: f64 = 1e-16;
 /// Products s z after a step, in units of their mean, beyond which a corrector moves them; and how much it moves one
 /// at the most.
 const CENTRED: [f64; 2] = [0.1, 10.0];

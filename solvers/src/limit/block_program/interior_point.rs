@@ -37,7 +37,7 @@ const SOONEST: f64 = 1e-2;
 /// Gap below which nothing is to be gained.
 const ROUNDING: f64 = 5e-14;
 /// Iterations in which neither the gap nor what equilibrium misses was halved, after which nothing is hoped for.
-const IDLE: u32 = 8;
+const IDLE: u32 = 12;
 /// Factor in its unit below which it is as good as zero.
 const LEAST: f64 = 1e-6;
 /// Factor in its unit beyond which there may be no bound.

@@ -33,7 +33,7 @@ struct Correction {
 impl Directions<'_> {
     /// A direction whose forces are in equilibrium.
     ///
-    /// Changes of forces follow those of velocities by flexibilities of up to 1e13: corrections add to them, so
+    /// Changes of forces follow those of velocities by flexibilities of up to 1e16: corrections add to them, so
     /// that only the last one's rounding is magnified.
     pub fn refined(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool, step: &mut Step) {
         let program = self.program;
