@@ -32,8 +32,8 @@ WRITERS = "writers = []"
 FRICTION = friction(RING["friction"])
 
 
-def arch(voussoirs=13, joint=FRICTION, material=RIGID, solver="auto", mesh="", sweep=""):
-    return ring(voussoirs, joint, more=mesh, material=material, solver=solver, width=5.81, output=WRITERS, rest=sweep, name="arch")
+def arch(voussoirs=13, joint=FRICTION, material=RIGID, solver="auto", mesh="", sweep="", output=WRITERS):
+    return ring(voussoirs, joint, more=mesh, material=material, solver=solver, width=5.81, output=output, rest=sweep, name="arch")
 
 
 def square(side, coefficient=0.65):
@@ -63,6 +63,9 @@ REDUCTIONS = [
     ("blocks are rigid where the load does not depend on their stiffness", arch(), arch(material=ELASTIC, solver="event_path")),
     ("no sliding rows where friction is never reached", arch(1000, 'law = "unilateral"', solver="limit_conic"), arch(1000, 'law = "coulomb_associated"\nfriction = 1e3', solver="limit_conic")),
     ("a mesh of 2 × 3 elements where any gives the same load", arch(material=ELASTIC, mesh="mesh = { elements = [2, 3], order = 2 }", solver="event_path"), arch(material=ELASTIC, mesh="mesh = { elements = [4, 6], order = 2 }", solver="event_path")),
+    ("from event to event instead of in steps, 13 elastic voussoirs", arch(material=ELASTIC, solver="event_path"), arch(material=ELASTIC, solver="newton_path")),
+    ("forces and motions are not written where nobody reads them, 10 000 voussoirs", arch(10_000, output=f"{WRITERS}\nfields = false"), arch(10_000)),
+    ("no report and no figures where nobody looks at them", arch(), arch(output="")),
 ]
 
 
