@@ -5,6 +5,7 @@
 //! the check of study files and the conformance tests read cards only.
 
 use super::schema::{Parameter, PluginKind};
+use std::sync::OnceLock;
 
 /// Something that a plug-in offers and a solver may ask for; compared when a study is loaded. The list
 /// is open: a law or solver with something new declares a constant of its own.
@@ -182,15 +183,19 @@ pub fn check_as<T: serde::de::DeserializeOwned>(
 }
 
 /// All cards, sorted by kind and tag.
-pub fn cards() -> Vec<&'static Card> {
-    let mut all: Vec<_> = inventory::iter::<Card>.into_iter().collect();
-    all.sort_by_key(|card| (card.kind, card.tag));
-    all
+pub fn cards() -> &'static [&'static Card] {
+    // They are registered before the program starts, and asked for by every key of every case.
+    static CARDS: OnceLock<Vec<&'static Card>> = OnceLock::new();
+    CARDS.get_or_init(|| {
+        let mut all: Vec<_> = inventory::iter::<Card>.into_iter().collect();
+        all.sort_by_key(|card| (card.kind, card.tag));
+        all
+    })
 }
 
 /// The cards of one kind, sorted by tag.
 pub fn cards_of(kind: PluginKind) -> Vec<&'static Card> {
-    cards().into_iter().filter(|card| card.kind == kind).collect()
+    cards().iter().copied().filter(|card| card.kind == kind).collect()
 }
 
 /// The card with this kind and tag.
@@ -201,13 +206,17 @@ pub fn card(kind: PluginKind, tag: &str) -> Option<&'static Card> {
 /// The cards that may stand in the place of one kind: `[solver] solver = …` names a limit solver or a
 /// path solver. Sorted by kind and tag.
 pub fn candidates(kind: PluginKind) -> Vec<&'static Card> {
+    candidates_of(kind).collect()
+}
+
+fn candidates_of(kind: PluginKind) -> impl Iterator<Item = &'static Card> {
     let place = |of: PluginKind| if of == PluginKind::PathSolver { PluginKind::LimitSolver } else { of };
-    cards().into_iter().filter(|card| place(card.kind) == place(kind)).collect()
+    cards().iter().copied().filter(move |card| place(card.kind) == place(kind))
 }
 
 /// The card with this tag among those that may stand in the place of one kind.
 pub fn candidate(kind: PluginKind, tag: &str) -> Option<&'static Card> {
-    candidates(kind).into_iter().find(|card| card.tag == tag)
+    candidates_of(kind).find(|card| card.tag == tag)
 }
 
 /// The name nearest to `wrong` among `names`, if any is near enough to be meant.
@@ -223,7 +232,7 @@ pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
 /// What is wrong with the registry: a kind without plug-ins (a crate that no source names
 /// registers nothing), or two plug-ins of one kind with the same tag. Empty when sound.
 pub fn audit() -> Vec<String> {
-    audit_of(&cards())
+    audit_of(cards())
 }
 
 fn audit_of(all: &[&Card]) -> Vec<String> {

@@ -63,10 +63,10 @@ pub fn explain(what: &str) -> u8 {
             Err(code) => code,
         };
     }
-    let found: Vec<&Card> = cards().into_iter().filter(|card| card.tag == what).collect();
+    let found: Vec<&Card> = cards().iter().copied().filter(|card| card.tag == what).collect();
     let known = topics::explain(what);
     if found.is_empty() && known.is_empty() {
-        let tags = cards().into_iter().map(|card| card.tag.to_string());
+        let tags = cards().iter().map(|card| card.tag.to_string());
         let words: Vec<String> = tags.chain(topics::words()).collect();
         let near = nearest(what, words.iter().map(String::as_str));
         let advice = near.map_or("see `voussoir list`".into(), |tag| format!("did you mean \"{tag}\"?"));

@@ -219,6 +219,9 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
 /// Reads one value, as it stands after an `=`; everything in it gets the origin `origin`.
 /// `None` where the text is no TOML value.
 pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
+    if let Some(value) = plain_scalar(text) {
+        return Some(Node { value, origin: origin.clone() });
+    }
     let Ok(Node { value: Value::Table(mut table), .. }) = parse(&format!("value = {text}"), "") else {
         return None;
     };
@@ -228,6 +231,19 @@ pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
     let mut node = table.entries.pop()?.node;
     node.set_origin(origin);
     Some(node)
+}
+
+/// A whole number, a decimal or a truth value of the plainest form, which most defaults are: every case of a study reads them.
+fn plain_scalar(text: &str) -> Option<Value> {
+    let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    match text.split_once('.') {
+        _ if text == "true" || text == "false" => Some(Value::Boolean(text == "true")),
+        None if digits(text) && (text == "0" || !text.starts_with('0')) => text.parse().ok().map(Value::Integer),
+        Some((whole, part)) if digits(part) && digits(whole) && (whole == "0" || !whole.starts_with('0')) => {
+            text.parse().ok().map(Value::Float)
+        }
+        _ => None,
+    }
 }
 
 /// A document from a value that a program has made; every part of it gets the origin [`Origin::Value`]. Errors are
@@ -352,6 +368,20 @@ mod tests {
         match origin {
             Origin::File { line, column, .. } => (*line, *column),
             Origin::Set(_) | Origin::Value => (0, 0),
+        }
+    }
+
+    /// Values that are read without the parser of whole documents are what it reads; what is not plain is left to it.
+    #[test]
+    fn plain_values_are_those_of_the_parser() {
+        let plain = ["0", "7", "250", "0.0", "1.0", "12.750", "true", "false"];
+        for text in plain {
+            let parsed = parse(&format!("value = {text}"), "").unwrap();
+            let Value::Table(table) = parsed.value else { panic!("{text}") };
+            assert_eq!(plain_scalar(text), Some(table.get("value").unwrap().value.clone()), "{text}");
+        }
+        for text in ["", "-1", "007", "00.5", "1.", ".5", "1e3", "1_000", "inf", "\"x\"", "99999999999999999999"] {
+            assert_eq!(plain_scalar(text), None, "{text}");
         }
     }
 

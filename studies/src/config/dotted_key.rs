@@ -19,9 +19,9 @@ pub fn segments(path: &str) -> Vec<String> {
 
 /// A dotted key, one segment longer.
 pub fn join(path: &str, segment: &str) -> String {
-    let quote = segment.is_empty() || segment.contains(['.', ' ']);
-    let segment = if quote { format!("\"{segment}\"") } else { segment.to_string() };
-    if path.is_empty() { segment } else { format!("{path}.{segment}") }
+    let quote = if segment.is_empty() || segment.contains(['.', ' ']) { "\"" } else { "" };
+    let dot = if path.is_empty() { "" } else { "." };
+    [path, dot, quote, segment, quote].concat()
 }
 
 #[cfg(test)]

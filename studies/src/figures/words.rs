@@ -8,7 +8,7 @@ use voussoir_core::plugin::{Parameter, Shape, cards};
 pub fn summary_of_key(key: &str) -> Option<&'static str> {
     let mut names = key.rsplit('.').filter(|name| name.parse::<usize>().is_err());
     let name = names.next()?;
-    let tables = || cards().into_iter().map(|card| card.parameters).chain([crate::study::study_keys()]);
+    let tables = || cards().iter().map(|card| card.parameters).chain([crate::study::study_keys()]);
     let own = names.next().and_then(|parent| tables().find_map(|table| below(table, parent, name)));
     own.or_else(|| tables().find_map(|table| in_table(table, name)))
 }
