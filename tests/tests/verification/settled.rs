@@ -4,9 +4,9 @@
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
-use voussoir_tests::answered;
 use voussoir_tests::energy::{EnergyScene, Landing, TraceLimits, load_path, settle};
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
+use voussoir_tests::{answered, assert_close};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 /// How far factors may be apart, relative.
@@ -277,4 +277,29 @@ fn where_the_usual_strategy_stalls_another_one_follows() {
     assert!(usual.load_factor.is_some_and(|factor| (factor - 45_099.38).abs() < 0.01), "{:?}", usual.load_factor);
     assert!(followed(&usual) && !followed(&named), "{:?}\n{:?}", usual.notes, named.notes);
     assert_eq!(by(scene, "\"arc_length\"").status, Status::Stalled);
+}
+
+/// Behind a sharp fold a point that sticks in the modes of the step before would creep through 5000 steps, each as short.
+/// Rates are searched there instead, and all strategies say the same load.
+#[test]
+fn a_point_that_creeps_behind_a_fold_is_led_on_by_the_rates_there() {
+    let scene = include_str!("settled/creeps_behind_a_fold.toml");
+    for strategy in ["\"arc_length\"", "\"displacement_control\"", "\"arc_length\", largest_step = 0.001"] {
+        let result = by(scene, strategy);
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        assert!(result.certificate.passed && result.counters["steps"] < 1000, "{:?}", result.counters);
+        assert_close(result.load_factor.expect("a collapse"), 104.263158621, 1e-9);
+    }
+}
+
+/// Within one step of displacement control lay a peak of 16 148.394 and a trough .14 % below it, and the load rose at both of
+/// its ends: it said 16 142.147, the peak after them.
+#[test]
+fn a_step_that_flattens_does_not_hide_a_peak_and_a_trough() {
+    let scene = include_str!("settled/peak_within_a_step.toml");
+    for strategy in ["\"arc_length\"", "\"displacement_control\""] {
+        let result = by(scene, strategy);
+        assert!(result.status == Status::Collapse && result.certificate.passed, "{:?}", result.notes);
+        assert_close(result.load_factor.expect("a collapse"), 16_148.394_07, 1e-9);
+    }
 }

@@ -61,8 +61,10 @@ pub(super) fn after_failure(
         following.tried.branch = steps;
         return blocks_yield(tracer, following, failure, other);
     }
-    // With finite displacements points that open together turn the path as sharply as slip does.
-    let at_corner = tracer.system.rules.oriented && short;
+    // With finite displacements points that open together turn the path as sharply as slip does. Where a point creeps
+    // its modes are those of no solution, and shorter steps creep as well.
+    let creeps = failure.why == CREEPS && following.length < UNFOLLOWED * first;
+    let at_corner = tracer.system.rules.oriented && (short || creeps);
     if (slip <= 1e-9 * plan.share.max(first / plan.per_tangent) || at_corner) && fresh {
         following.tried.branch = steps;
         if let Some(after) = corner(tracer, following, plan, failure) {
