@@ -90,7 +90,8 @@ impl SecondOrderWork {
         let eigen = half.try_symmetric_eigen(1e-15, 0)?;
         let nothing = softest.max(ROUNDING * eigen.eigenvalues.amax());
         let negative = eigen.eigenvalues.iter().filter(|s| **s < -nothing).count();
-        let turned = if symmetric {
+        // Real parts of eigenvalues are no less than the least one of the symmetric part (Bendixson 1902).
+        let turned = if symmetric || negative == 0 {
             negative
         } else {
             let schur = nalgebra::linalg::Schur::try_new(flexibility.clone(), 1e-14, 10_000)?;
