@@ -10,22 +10,12 @@ writes docs/scaling.csv and docs/scaling.svg, and from the CSV the part of docs/
 """
 
 import argparse
-import csv
-import json
 import math
-import os
-import platform
-import subprocess
-import sys
-import tempfile
-from datetime import date
-from pathlib import Path
 
+from measured import ROOT, circumstances, read_rows, run, short, write_part, write_rows
 from studies import RIGID, RING, friction, ring, wall
 
-ROOT = Path(__file__).resolve().parent.parent
-TABLE, FIGURE, PAGE = ROOT / "docs/scaling.csv", ROOT / "docs/scaling.svg", ROOT / "docs/performance.md"
-MARKS = "<!-- from scaling.csv: benches/scaling.py -->", "<!-- end of scaling.csv -->"
+TABLE, FIGURE = ROOT / "docs/scaling.csv", ROOT / "docs/scaling.svg"
 KEYS = ["part", "name", "size", "seconds", "memory_mb", "factor", "status", "date", "machine", "commit"]
 
 WRITERS = "writers = []"
@@ -69,34 +59,11 @@ REDUCTIONS = [
 ]
 
 
-def run(program, text, runs, jobs=1):
-    """Least processor time, memory and answer of a study."""
-    best = None
-    with tempfile.TemporaryDirectory() as folder:
-        study = Path(folder, "study.toml")
-        study.write_text(text)
-        for turn in range(runs):
-            out = Path(folder, str(turn))
-            command = [program, "run", study, "--out", out, "--quiet", "--jobs", str(jobs)]
-            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            _, _, used = os.wait4(process.pid, 0)
-            seconds = used.ru_utime + used.ru_stime
-            if best is None or seconds < best[0]:
-                best = seconds, used.ru_maxrss / 1024
-        # By another process: what this one has in memory counts for those that it starts.
-        read = "import json, sys; case = json.load(open(sys.argv[1]))['cases'][0]; print(json.dumps([case.get('load_factor'), case['status']]))"
-        said = subprocess.run([sys.executable, "-c", read, out / "results.json"], capture_output=True, check=True)
-    return *best, *json.loads(said.stdout)
-
-
 def measured(program, most, runs):
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    load = ", ".join(f"{x:.0f}" for x in os.getloadavg()[:1])
-    machine = f"{platform.machine()}, {os.cpu_count()} cores, load {load}"
-    said = {"date": date.today().isoformat(), "machine": machine, "commit": commit}
+    said = circumstances()
 
     def row(part, name, size, answer):
-        seconds, memory, factor, status = answer
+        seconds, memory, factor, status, _ = answer
         print(part, name, size, f"{seconds:.3f} s", f"{memory:.0f} MB", factor, status, flush=True)
         return dict(zip(KEYS, [part, name, size, f"{seconds:.4f}", f"{memory:.1f}", repr(factor), status])) | said
 
@@ -124,10 +91,6 @@ def exponent(rows):
 def by_name(rows, part):
     names = dict.fromkeys(r["name"] for r in rows if r["part"] == part)
     return {name: [r for r in rows if r["part"] == part and r["name"] == name] for name in names}
-
-
-def short(x):
-    return f"{float(x):.2g}" if float(x) < 10 else f"{float(x):.0f}"
 
 
 def tables(rows):
@@ -182,17 +145,10 @@ def main():
     options.add_argument("--page", action="store_true", help="only write the page from the CSV")
     given = options.parse_args()
     if not given.page:
-        rows = list(measured(given.voussoir, given.most, given.runs))
-        with TABLE.open("w", newline="") as file:
-            writer = csv.DictWriter(file, KEYS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
-    with TABLE.open(newline="") as file:
-        rows = list(csv.DictReader(file))
+        write_rows(TABLE, KEYS, measured(given.voussoir, given.most, given.runs))
+    rows = read_rows(TABLE)
     FIGURE.write_text("\n".join(figure(rows)) + "\n")
-    before, rest = PAGE.read_text().split(MARKS[0])
-    after = rest.split(MARKS[1])[1]
-    PAGE.write_text(before + MARKS[0] + "\n" + "\n".join(tables(rows)) + "\n" + MARKS[1] + after)
+    write_part("scaling", tables(rows))
 
 
 if __name__ == "__main__":
