@@ -42,6 +42,14 @@ impl Wall {
         Wall::new(format!("rows = {rows:?}"))
     }
 
+    /// 62 bricks around a window, of compliant joints that slide without dilatancy.
+    pub fn around_a_window(friction: &str, solver: &str) -> Wall {
+        let joint = crate::compliant(&format!("law = \"coulomb\"\n{friction}"), 1e10, 4e9);
+        let solver = format!("solver = \"{solver}\"");
+        let wall = Wall::in_bond(8, 8).with_opening([1.25, 0.5], [2.25, 1.5]);
+        Wall { width: 0.24, brick: [0.5, 0.25], joint, solver, ..wall }
+    }
+
     /// A wall in running bond.
     pub fn in_bond(courses: usize, bricks: usize) -> Wall {
         Wall::new(format!("courses = {courses}\nbricks = {bricks}"))
@@ -55,6 +63,12 @@ impl Wall {
 
     /// The study.
     pub fn study(&self) -> String {
+        let push = format!("loads = [{{ kind = \"body\", acceleration = {:?} }}]", self.push);
+        format!("{}[[stages]]\nname = \"push\"\nuntil = \"collapse\"\n{push}\n", self.under_its_weight())
+    }
+
+    /// The study without the stage that pushes it.
+    pub fn under_its_weight(&self) -> String {
         format!(
             r#"name = "wall"
 [scene]
@@ -74,12 +88,8 @@ density = {:?}
 [[stages]]
 name = "dead"
 gravity = {:?}
-[[stages]]
-name = "push"
-until = "collapse"
-loads = [{{ kind = "body", acceleration = {:?} }}]
 "#,
-            self.width, self.brick, self.pattern, self.density, self.joint, self.solver, self.gravity, self.push
+            self.width, self.brick, self.pattern, self.density, self.joint, self.solver, self.gravity
         )
     }
 }

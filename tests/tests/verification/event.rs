@@ -12,7 +12,7 @@ use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::by_hand::{self, contact, dry_friction, ground, load_step};
 use voussoir_tests::known::REFERENCE_ARCH;
 use voussoir_tests::seen::Record;
-use voussoir_tests::{Arch, answered, assert_close, changed, elastic, first_case, friction, small_displacements};
+use voussoir_tests::{Arch, Wall, answered, assert_close, changed, elastic, first_case, friction, small_displacements};
 
 /// Friction that dilates by its angle, or not at all.
 const FRICTION_LAWS: [&str; 2] = ["coulomb", "coulomb_associated"];
@@ -449,32 +449,7 @@ loads = [{{ kind = "body", acceleration = {acceleration:?} }}]
 /// the beginning): the exact path does not take up a dense problem of that size, which never ended, but says so.
 #[test]
 fn an_exact_path_gives_up_a_dense_problem_of_friction_at_once() {
-    let result = answered(
-        r#"name = "wall"
-[scene]
-scene = "wall"
-width = 0.24
-brick = [0.5, 0.25]
-courses = 8
-bricks = 8
-openings = [{ from = [1.25, 0.5], to = [2.25, 1.5] }]
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-law = "coulomb"
-friction = 0.577
-normal_stiffness = 1e10
-shear_stiffness = 4e9
-[[stages]]
-name = "dead"
-gravity = 9.81
-[solver]
-solver = "event_path"
-"#,
-    );
+    let result = answered(&Wall::around_a_window("friction = 0.577", "event_path").under_its_weight());
     assert_eq!(result.status, Status::Stalled);
     assert!(
         result.notes.iter().any(|note| note.contains("1950 contact points in its active set")),

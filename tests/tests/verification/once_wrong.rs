@@ -2,7 +2,7 @@
 
 use voussoir::core::limit::Status;
 use voussoir::verify::case::verify_case;
-use voussoir_tests::{answered, assert_close, changed, first_case, passes};
+use voussoir_tests::{Wall, answered, assert_close, changed, first_case, passes};
 
 /// The reference arch, elastic, with dry joints of friction .6; its rise, ends, mesh, stages and solver.
 fn bridge(rise: f64, ends: &str, mesh: &str, stages: &str, solver: &str) -> String {
@@ -102,32 +102,11 @@ solver = "event_path"
 /// it all. `auto` says that it stands and how flow was read; by name the path solver stays stalled. Its ground goes down as it is.
 #[test]
 fn dry_bricks_around_a_window_stand() {
-    let wall = r#"name = "window"
-[scene]
-scene = "wall"
-width = 0.24
-brick = [0.5, 0.25]
-courses = 8
-bricks = 8
-openings = [{ from = [1.25, 0.5], to = [2.25, 1.5] }]
-material = "stone"
-joint = "dry"
-[materials.stone]
-law = "rigid"
-density = 2000.0
-[joints.dry]
-law = "coulomb"
-friction_angle = "30 deg"
-normal_stiffness = 1e10
-shear_stiffness = 4e9
-[[stages]]
-name = "dead"
-gravity = 9.81
-"#;
+    let wall = |solver: &str| Wall::around_a_window("friction_angle = \"30 deg\"", solver).under_its_weight();
     let settled =
         "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"ground\", displacement = [0.0, -0.01] }]\n";
     for more in ["", settled] {
-        let text = format!("{wall}{more}");
+        let text = wall("auto") + more;
         let result = answered(&text);
         assert_eq!(result.status, Status::Stands, "{more} {:?}", result.notes);
         passes(&result);
@@ -135,7 +114,7 @@ gravity = 9.81
         assert!(result.notes.iter().any(|note| note.contains("no path from unloaded joints")), "{:?}", result.notes);
         assert_eq!(verify_case(&first_case(&text), &result), Vec::<String>::new());
     }
-    let by_path = answered(&format!("{wall}[solver]\nsolver = \"newton_path\"\n"));
+    let by_path = answered(&wall("newton_path"));
     assert_eq!(by_path.status, Status::Stalled);
 }
 
