@@ -48,9 +48,11 @@ fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usi
         assert_eq!(case.assembly.joints.len(), joints_of(&model, &text), "{seed}\n{text}");
         let result = solve_case(&case);
         let (carried, unit) = (model.carried(), model.typical_factor());
-        // Bounds may differ by the rounding of enormous strengths, as the certificate says.
+        // Bounds may differ by the rounding of enormous strengths, as the certificate says, and by that of vertices far from
+        // the origin, which turns joints: of scene 1157, 150 sizes away, by 1.2e-11 of its loads.
         let enormous = model.laws.iter().any(|law| law.is_enormous());
-        let above = above_gates(&result, 1e-9, if enormous { f64::INFINITY } else { 1e-8 });
+        let rounding = 1e-8 * (model.sizes_from_origin() / 100.0).max(1.0);
+        let above = above_gates(&result, 1e-9, if enormous { f64::INFINITY } else { rounding });
         let verdict = if above.is_empty() { verdict(&result, carried, unit) } else { Verdict::AboveGate };
         *counts.entry((family, verdict)).or_default() += 1;
         if !matches!(verdict, Verdict::Collapse | Verdict::Unbounded | Verdict::NoEquilibrium) {

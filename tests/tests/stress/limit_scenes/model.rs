@@ -200,6 +200,12 @@ impl Model {
         live > 1e-9 * single
     }
 
+    /// How far the scene is from the origin, in units of its size.
+    pub fn sizes_from_origin(&self) -> f64 {
+        let (pole, size) = self.frame();
+        pole[0].hypot(pole[1]) / size
+    }
+
     /// The factor at which live loads count as dead ones do.
     pub fn typical_factor(&self) -> f64 {
         let (pole, size) = self.frame();
