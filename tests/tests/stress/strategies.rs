@@ -1,8 +1,10 @@
-//! Random scenes with finite displacements, each by several continuation strategies and in several disguises: an answer
-//! does not depend on the strategy, its step, a mirror or the numbers of the blocks.
+//! Random scenes with finite displacements, each by several continuation strategies and in several disguises: load factor
+//! and limit points do not depend on the strategy, its step, a mirror or the numbers of the blocks. Load control, which
+//! follows no falling load, ends at the first limit point.
 
 use std::collections::BTreeMap;
 use voussoir::core::limit::Status;
+use voussoir::results::CaseResult;
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
 use voussoir_tests::{answered, names_bifurcation};
 
@@ -29,22 +31,56 @@ pub fn scene(k: usize) -> SettledScene {
     settled_scene(&mut random, Draw { shape, deforming, settling, size, stuck: k % 4 == 3 })
 }
 
+/// What one run said: the load factor and the limit points up to the greatest.
+struct Said {
+    run: String,
+    factor: f64,
+    limit_points: Vec<f64>,
+}
+
+impl Said {
+    /// Of a run that answered.
+    fn of(run: String, result: &CaseResult) -> Option<Said> {
+        let factor = result.load_factor.filter(|_| result.status != Status::Stalled)?;
+        let all = result.path.limit_points.iter().filter(|point| point.stage == "live").map(|point| point.factor);
+        let limit_points: Vec<f64> = all.collect();
+        let greatest = limit_points.iter().position(|point| *point == factor).map_or(0, |index| index + 1);
+        Some(Said { run, factor, limit_points: limit_points[..greatest].to_vec() })
+    }
+
+    /// Whether both list the same limit points up to the greatest.
+    fn same_way(&self, other: &Said) -> bool {
+        let [a, b] = [&self.limit_points, &other.limit_points];
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= APART * b.abs())
+    }
+}
+
 /// What the runs of one scene said.
 struct Runs {
-    factors: Vec<(String, f64)>,
+    said: Vec<Said>,
     stalled: Vec<(String, String)>,
     names_bifurcation: bool,
+    /// What load control said.
+    first: Result<f64, String>,
+}
+
+/// The table of the solver with a strategy.
+fn solver(strategy: &str) -> String {
+    format!("solver = \"newton_path\"\nkinematics = \"finite\"\ncontinuation = {strategy}")
 }
 
 fn runs(k: usize) -> Runs {
     let scene = scene(k);
-    let mut out = Runs { factors: Vec::new(), stalled: Vec::new(), names_bifurcation: false };
+    let by_load = answered(&scene.study(&solver("{ strategy = \"load_control\" }")));
+    let first = by_load.load_factor.filter(|_| by_load.status != Status::Stalled);
+    let first = first.ok_or_else(|| format!("{:?} {:?}", by_load.status, by_load.notes));
+    let names = names_bifurcation(&by_load);
+    let mut out = Runs { said: Vec::new(), stalled: Vec::new(), names_bifurcation: names, first };
     for (name, strategy) in STRATEGIES {
-        let solver = format!("solver = \"newton_path\"\nkinematics = \"finite\"\ncontinuation = {strategy}");
         let disguises = [
-            ("", Some(scene.study(&solver))),
-            (", mirrored", Some(scene.mirrored(&solver))),
-            (", renumbered", scene.renumbered(&solver)),
+            ("", Some(scene.study(&solver(strategy)))),
+            (", mirrored", Some(scene.mirrored(&solver(strategy)))),
+            (", renumbered", scene.renumbered(&solver(strategy))),
         ];
         for (disguise, text) in disguises.into_iter().filter_map(|(d, text)| Some((d, text?))) {
             if let Ok(folder) = std::env::var("KEEP") {
@@ -54,48 +90,71 @@ fn runs(k: usize) -> Runs {
             let result = answered(&text);
             out.names_bifurcation |= names_bifurcation(&result);
             let run = format!("{name}{disguise}");
-            println!("scene {k} {run}: {:?} {:?}", result.status, result.load_factor);
-            match result.load_factor {
-                Some(factor) if result.status != Status::Stalled => out.factors.push((run, factor)),
-                _ => out.stalled.push((run, format!("{:?} {:?}", result.status, result.notes))),
+            match Said::of(run.clone(), &result) {
+                Some(said) => {
+                    println!("scene {k} {run}: {:?} {} {:?}", result.status, said.factor, said.limit_points);
+                    out.said.push(said);
+                }
+                None => {
+                    println!("scene {k} {run}: {:?}", result.status);
+                    out.stalled.push((run, format!("{:?} {:?}", result.status, result.notes)));
+                }
             }
         }
     }
+    println!("scene {k} load_control: {:?}", out.first);
     out
+}
+
+/// What does not agree in one scene: runs whose load or whose limit points are others than those of most, and the first limit
+/// point by load control.
+fn differing(runs: &Runs, middle: &Said) -> Vec<String> {
+    let other = |said: &&Said| (said.factor - middle.factor).abs() > APART * middle.factor.abs();
+    let loads = runs.said.iter().filter(other).map(|said| format!("{}: {:.9}", said.run, said.factor));
+    let way = |said: &&Said| !other(said) && !said.same_way(middle);
+    let ways = runs.said.iter().filter(way).map(|said| format!("{}: limit points {:?}", said.run, said.limit_points));
+    let first = middle.limit_points.first().unwrap_or(&middle.factor);
+    let by_load = runs.first.iter().filter(|load| (**load - first).abs() > APART * first.abs());
+    loads.chain(ways).chain(by_load.map(|load| format!("load control: {load:.9} for {first:.9}"))).collect()
 }
 
 /// Sees that all answers of each scene agree; prints the table.
 fn agree(scenes: &[usize]) {
     let (mut table, mut apart, mut unanswered) = (BTreeMap::<String, [usize; 3]>::new(), Vec::new(), Vec::new());
-    let mut stalls = Vec::new();
+    let (mut stalls, mut first) = (Vec::new(), [0, 0]);
     let count = scenes.len();
     for &k in scenes {
-        let runs = runs(k);
+        let mut runs = runs(k);
         for (run, why) in &runs.stalled {
             table.entry(run.clone()).or_default()[1] += 1;
             stalls.push(format!("{k} {run}: {why}"));
         }
-        let mut factors: Vec<f64> = runs.factors.iter().map(|(_, factor)| *factor).collect();
-        factors.sort_by(f64::total_cmp);
-        let Some(&middle) = factors.get(factors.len() / 2) else {
+        match &runs.first {
+            Ok(_) => first[0] += 1,
+            Err(why) => {
+                first[1] += 1;
+                println!("{k} load_control: {why}");
+            }
+        }
+        runs.said.sort_by(|a, b| f64::total_cmp(&a.factor, &b.factor));
+        let Some(middle) = runs.said.get(runs.said.len() / 2) else {
             unanswered.push(k);
             continue;
         };
-        let off: Vec<String> = runs
-            .factors
-            .iter()
-            .filter(|(_, factor)| (factor - middle).abs() > APART * middle.abs())
-            .map(|(run, factor)| format!("{run}: {factor:.9}"))
-            .collect();
-        for (run, factor) in &runs.factors {
-            let agrees = (factor - middle).abs() <= APART * middle.abs();
-            table.entry(run.clone()).or_default()[if agrees { 0 } else { 2 }] += 1;
+        for said in &runs.said {
+            let agrees = (said.factor - middle.factor).abs() <= APART * middle.factor.abs();
+            table.entry(said.run.clone()).or_default()[if agrees { 0 } else { 2 }] += 1;
         }
-        if !off.is_empty() && !runs.names_bifurcation {
-            apart.push(format!("{k}: most say {middle:.9}, {}", off.join(", ")));
+        let off = differing(&runs, middle);
+        if !off.is_empty() {
+            let named = if runs.names_bifurcation { " (a bifurcation is named)" } else { "" };
+            let way = &middle.limit_points;
+            let what = format!("{k}{named}: most say {:.9} {way:?}, {}", middle.factor, off.join(", "));
+            println!("{what}");
+            apart.extend((!runs.names_bifurcation).then_some(what));
         }
     }
-    println!("{count} scenes; run: agrees, stalls, differs");
+    println!("{count} scenes; run: agrees, stalls, differs; load control answers {}, not {}", first[0], first[1]);
     for (run, [agrees, stalls, differs]) in &table {
         println!("{run:40} {agrees:4} {stalls:4} {differs:4}");
     }

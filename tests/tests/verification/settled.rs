@@ -303,3 +303,20 @@ fn a_step_that_flattens_does_not_hide_a_peak_and_a_trough() {
         assert_close(result.load_factor.expect("a collapse"), 16_148.394_070, 1e-9);
     }
 }
+
+/// Load control ends at the first limit point that other strategies pass, smooth or kinked, however many follow; at no state
+/// short of it would it be proven.
+#[test]
+fn load_control_ends_at_the_first_limit_point() {
+    for (scene, first) in [
+        (include_str!("settled/several_peaks.toml"), 18.589_023_23),
+        (include_str!("settled/peak_within_a_step.toml"), 16_148.394_070),
+        (include_str!("settled/creeps_behind_a_fold.toml"), 104.263_158_62),
+        (include_str!("settled/lost_after_its_peak.toml"), 68.509_020_85),
+    ] {
+        let result = by(scene, "\"load_control\"");
+        assert_eq!(result.status, Status::LimitPoint, "{:?}", result.notes);
+        assert!(result.certificate.passed, "{:?}", result.certificate);
+        assert_close(result.load_factor.expect("a limit point"), first, 2e-8);
+    }
+}

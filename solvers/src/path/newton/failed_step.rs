@@ -89,7 +89,12 @@ fn blocks_yield(tracer: &mut Tracer, following: &Following, failure: &StepFailur
 }
 
 /// At the very event: another branch, on which the points at their limit yield.
-fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: &StepFailure) -> Option<AfterFailure> {
+fn corner(
+    tracer: &mut Tracer,
+    following: &mut Following,
+    plan: &StepPlan,
+    failure: &StepFailure,
+) -> Option<AfterFailure> {
     let direction = following.direction;
     let found = match branch_beyond_fold(tracer, following, following.limits.first / plan.per_tangent) {
         Ok(found) => found,
@@ -97,7 +102,9 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
             if following.slope > 0.0 {
                 note_peak(tracer, &following.branch.tangent, direction);
             }
+            let ends = following.limits.ends_at_peak || !tracer.strategy.passes_limit_points();
             let status = match (tracer.system.finite(), following.branch.tangent.factor * direction > 0.0) {
+                (true, true) if ends => Status::LimitPoint,
                 (true, true) => after_fold(tracer),
                 (true, false) => after_peak(tracer),
                 (false, _) => Status::LimitPoint,
@@ -118,7 +125,10 @@ fn corner(tracer: &mut Tracer, following: &Following, plan: &StepPlan, failure: 
         falls = false;
     }
     if falls && !tracer.strategy.passes_limit_points() {
-        return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
+        return Some(match following.takes_arc_lengths(tracer) {
+            true => AfterFailure::CutBack(following.length),
+            false => AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)),
+        });
     }
     let grew = following.slope > 0.0;
     if falls && grew && following.orientation.is_some() && snaps(tracer, following.load_step) {

@@ -86,6 +86,9 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
         if let Some(outcome) = go_on(tracer, &mut following, end) {
             return outcome;
         }
+        if following.limits.ends_at_peak && tracer.limit.peak.is_some() {
+            return end_path(tracer, Status::LimitPoint, String::new());
+        }
     }
     out_of_steps(tracer, following.direction, following.limits.linear)
 }
@@ -396,8 +399,11 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
         return None;
     }
     if stable {
-        let peak = peak_at(tracer, state, &beyond);
+        let peak = peak_at(tracer, state.clone(), &beyond);
         note_proven_peak(tracer, peak, following.direction);
+    }
+    if stable && following.limits.ends_at_peak {
+        return (!commit(tracer, state)).then_some(LoadStepEnding::Ended);
     }
     accept(tracer, following, step)
 }

@@ -2,6 +2,7 @@
 
 use super::control::Control;
 use super::control_row::work_along;
+use super::limit_point::test_limit_point;
 use super::measure::{cosine, increment_along, motion_size, tangent_size};
 use super::orientation::Orientation;
 use super::response::update_at_rest;
@@ -40,6 +41,8 @@ pub(super) struct StepLimits {
     pub mixed_weight: f64,
     /// Whether the path is piecewise linear.
     pub linear: bool,
+    /// Whether the path ends at its first limit point, which a strategy that passes none has asked for.
+    pub ends_at_peak: bool,
 }
 
 /// A branch of the path: its tangent, with the contact modes where they are not those of the state.
@@ -170,6 +173,7 @@ impl<'d> Following<'d> {
             largest: largest * units.length / units.displacement,
             mixed_weight,
             linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
+            ends_at_peak: false,
         };
         let slope = tangent.factor * direction;
         let here = tracer.state.clone();
@@ -193,23 +197,36 @@ impl<'d> Following<'d> {
         })
     }
 
-    /// Goes on by arc lengths where another strategy has lost a path with finite displacements beyond a peak: what it
-    /// measures may turn back there. Whether it does.
+    /// Goes on by arc lengths where another strategy has lost a path with finite displacements: beyond a peak what it
+    /// measures may turn back; one that passes no limit point leaves it to them to come to the first. Whether it does.
     pub fn takes_arc_lengths(&mut self, tracer: &mut Tracer) -> bool {
-        let follows = tracer.system.finite() && tracer.limit.peak.is_some() && tracer.system.laws.responses.is_empty();
         let strategy: &dyn Any = &*tracer.strategy;
-        if !follows || !tracer.strategy.passes_limit_points() || strategy.is::<ArcLength>() {
+        if !tracer.system.finite() || !tracer.system.laws.responses.is_empty() || strategy.is::<ArcLength>() {
             return false;
         }
+        let why = match (tracer.strategy.passes_limit_points(), tracer.limit.peak.is_some()) {
+            (true, true) => {
+                ", beyond its peak, the path is lost by its strategy, whose measure turns back: arc lengths follow it on"
+            }
+            (false, false) if !self.is_at_limit_point(tracer) => {
+                " no further step of its strategy converges: arc lengths lead to the limit point"
+            }
+            _ => return false,
+        };
+        self.limits.ends_at_peak = !tracer.strategy.passes_limit_points();
         tracer.strategy = Arc::new(ArcLength::default());
-        let factor = tracer.state.factor;
-        tracer.record.notes.push(format!(
-            "at factor {factor}, beyond its peak, the path is lost by its strategy, whose measure turns back: arc lengths follow it on"
-        ));
+        tracer.record.notes.push(format!("at factor {}{why}", tracer.state.factor));
         self.limits.first = self.limits.by_arc;
         self.length = BRANCH * self.limits.first;
         (self.previous, self.arrest, self.tried) = (None, None, Tried::default());
         true
+    }
+
+    /// Whether it is proven that no rate with a growing load leaves the present state.
+    fn is_at_limit_point(&self, tracer: &mut Tracer) -> bool {
+        let state = tracer.state.clone();
+        test_limit_point(tracer, &state, self.direction);
+        tracer.limit.unproven.take().is_none()
     }
 
     /// Goes on along another branch, with short steps at first.
