@@ -102,9 +102,8 @@ fn corner(
             if following.slope > 0.0 {
                 note_peak(tracer, &following.branch.tangent, direction);
             }
-            let ends = following.limits.ends_at_peak || !tracer.strategy.passes_limit_points();
             let status = match (tracer.system.finite(), following.branch.tangent.factor * direction > 0.0) {
-                (true, true) if ends => Status::LimitPoint,
+                (true, true) if following.limits.ends_at_peak => Status::LimitPoint,
                 (true, true) => after_fold(tracer),
                 (true, false) => after_peak(tracer),
                 (false, _) => Status::LimitPoint,

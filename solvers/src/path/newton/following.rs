@@ -41,7 +41,7 @@ pub(super) struct StepLimits {
     pub mixed_weight: f64,
     /// Whether the path is piecewise linear.
     pub linear: bool,
-    /// Whether the path ends at its first limit point, which a strategy that passes none has asked for.
+    /// Whether the path, with finite displacements, ends at its first limit point: by a strategy that passes none.
     pub ends_at_peak: bool,
 }
 
@@ -173,7 +173,9 @@ impl<'d> Following<'d> {
             largest: largest * units.length / units.displacement,
             mixed_weight,
             linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
-            ends_at_peak: false,
+            ends_at_peak: tracer.system.finite()
+                && tracer.system.laws.responses.is_empty()
+                && !tracer.strategy.passes_limit_points(),
         };
         let slope = tangent.factor * direction;
         let here = tracer.state.clone();
@@ -204,16 +206,15 @@ impl<'d> Following<'d> {
         if !tracer.system.finite() || !tracer.system.laws.responses.is_empty() || strategy.is::<ArcLength>() {
             return false;
         }
-        let why = match (tracer.strategy.passes_limit_points(), tracer.limit.peak.is_some()) {
-            (true, true) => {
+        let why = match (self.limits.ends_at_peak, tracer.limit.peak.is_some()) {
+            (false, true) => {
                 ", beyond its peak, the path is lost by its strategy, whose measure turns back: arc lengths follow it on"
             }
-            (false, false) if !self.is_at_limit_point(tracer) => {
+            (true, false) if !self.is_at_limit_point(tracer) => {
                 " no further step of its strategy converges: arc lengths lead to the limit point"
             }
             _ => return false,
         };
-        self.limits.ends_at_peak = !tracer.strategy.passes_limit_points();
         tracer.strategy = Arc::new(ArcLength::default());
         tracer.record.notes.push(format!("at factor {}{why}", tracer.state.factor));
         self.limits.first = self.limits.by_arc;
