@@ -81,8 +81,7 @@ pub fn finish(
     let mut json = folder.aside("results.json")?;
     let mut tables = Tables::begin(sweep, folder)?;
     let version = env!("CARGO_PKG_VERSION").to_string();
-    let count = lines.ids().count();
-    let head = StreamedResults { study: sweep.name.clone(), version, date: Some(today()), count, only_cases };
+    let head = StreamedResults { study: sweep.name.clone(), version, date: Some(today()), only_cases };
     let mut rows = lines.cases().map(|case| {
         let case = case?;
         tally.add(&case);

@@ -48,7 +48,6 @@ impl LoadedStudy for Sweep {
             study: self.name.clone(),
             version: request.version.clone(),
             date: request.date.clone(),
-            count: cases.len(),
             only_cases: only,
         };
         let mut json = Vec::new();

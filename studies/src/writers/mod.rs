@@ -9,7 +9,6 @@ pub mod csv;
 pub mod csv_table;
 pub mod curve_csv;
 pub mod figures;
-pub mod json_layout;
 pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;

@@ -3,7 +3,6 @@
 
 use super::csv::{header, row};
 use super::csv_table::CsvRows;
-use super::json_layout::write_results;
 use crate::results::CaseResult;
 use serde::Serialize;
 use serde::ser::{Error, SerializeMap, SerializeSeq, Serializer};
@@ -22,8 +21,6 @@ pub struct StreamedResults {
     pub version: String,
     /// The day of the run.
     pub date: Option<String>,
-    /// How many cases there are.
-    pub count: usize,
     /// Ids of the cases, where the run was asked for some of them only.
     pub only_cases: Option<Vec<usize>>,
 }
@@ -63,7 +60,8 @@ impl Serialize for Whole<'_, '_> {
 
 /// Writes results.json.
 pub fn write_json(out: &mut dyn Write, head: &StreamedResults, cases: &mut CaseIterator<'_>) -> io::Result<()> {
-    write_results(out, &Whole(head, Once(RefCell::new(cases))), head.count)
+    serde_json::to_writer_pretty(&mut *out, &Whole(head, Once(RefCell::new(cases))))?;
+    out.write_all(b"\n")
 }
 
 /// results.csv of a study without scenes to compare, row by row.
