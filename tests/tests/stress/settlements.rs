@@ -328,7 +328,7 @@ fn a_settlement_that_turns_back_at_a_corner_snaps() {
 
 /// CASES=N tries N cases from FIRST on.
 #[test]
-#[ignore = "long; 6 of the first 400 cases are refused"]
+#[ignore = "long; what came out stands in docs/random_scenes.md"]
 fn supports_that_move() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(other);
     let first = number("FIRST", 0);

@@ -223,7 +223,7 @@ impl<'d> Following<'d> {
         true
     }
 
-    /// Whether it is proven that no rate with a growing load leaves the present state.
+    /// Whether the test of limit points leaves no doubt of the present state; of blocks that yield it asks nothing.
     fn is_at_limit_point(&self, tracer: &mut Tracer) -> bool {
         let state = tracer.state.clone();
         test_limit_point(tracer, &state, self.direction);
