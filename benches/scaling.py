@@ -13,21 +13,16 @@ import argparse
 import math
 
 from measured import ROOT, circumstances, read_rows, run, short, write_part, write_rows
-from studies import RIGID, RING, friction, ring, wall
+from studies import NO_WRITERS, RIGID, RING, friction, ring, square, sweep
 
 TABLE, FIGURE = ROOT / "docs/scaling.csv", ROOT / "docs/scaling.svg"
 KEYS = ["part", "name", "size", "seconds", "memory_mb", "factor", "status", "date", "machine", "commit"]
 
-WRITERS = "writers = []"
 FRICTION = friction(RING["friction"])
 
 
-def arch(voussoirs=13, joint=FRICTION, material=RIGID, solver="auto", mesh="", sweep="", output=WRITERS):
+def arch(voussoirs=13, joint=FRICTION, material=RIGID, solver="auto", mesh="", sweep="", output=NO_WRITERS):
     return ring(voussoirs, joint, more=mesh, material=material, solver=solver, width=5.81, output=output, rest=sweep, name="arch")
-
-
-def square(side, coefficient=0.65):
-    return wall(f"courses = {side}\nbricks = {side}", friction(coefficient), output=WRITERS)
 
 
 ELASTIC = 'law = "elastic"\nyoung_modulus = 5e9\npoisson_ratio = 0.3'
@@ -43,10 +38,6 @@ SIZES = {
 }
 
 
-def sweep(count):
-    return f'[sweep]\n"scene.profile.rise" = {{ from = 2.6, to = 4.0, count = {count} }}\n'
-
-
 # What a study may be spared, and the same question with it: name, spared, not spared.
 REDUCTIONS = [
     ("an arch is a chain: `limit_chain`, not `limit_conic`, 1000 voussoirs", arch(1000), arch(1000, solver="limit_conic")),
@@ -54,7 +45,7 @@ REDUCTIONS = [
     ("no sliding rows where friction is never reached", arch(1000, 'law = "unilateral"', solver="limit_conic"), arch(1000, 'law = "coulomb_associated"\nfriction = 1e3', solver="limit_conic")),
     ("a mesh of 2 × 3 elements where any gives the same load", arch(material=ELASTIC, mesh="mesh = { elements = [2, 3], order = 2 }", solver="event_path"), arch(material=ELASTIC, mesh="mesh = { elements = [4, 6], order = 2 }", solver="event_path")),
     ("from event to event instead of in steps, 13 elastic voussoirs", arch(material=ELASTIC, solver="event_path"), arch(material=ELASTIC, solver="newton_path")),
-    ("forces and motions are not written where nobody reads them, 10 000 voussoirs", arch(10_000, output=f"{WRITERS}\nfields = false"), arch(10_000)),
+    ("forces and motions are not written where nobody reads them, 10 000 voussoirs", arch(10_000, output=f"{NO_WRITERS}\nfields = false"), arch(10_000)),
     ("no report and no figures where nobody looks at them", arch(), arch(output="")),
 ]
 

@@ -16,6 +16,8 @@ BRICK = (0.4, 0.175)
 WALL_DENSITY = 2000.0
 
 RIGID = 'law = "rigid"'
+# Nothing but results.json.
+NO_WRITERS = "writers = []"
 POINT = '{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }'
 SIDEWAYS = '{ kind = "body", acceleration = [9.81, 0.0] }'
 
@@ -61,3 +63,13 @@ def wall(courses, joint, name="wall", **others):
     """A wall of bricks, pushed sideways by its weight; `courses` are the keys that say which bricks stand where."""
     scene = f'scene = "wall"\nbrick = [{BRICK[0]}, {BRICK[1]}]\n{courses}'
     return study(name, scene, SIDEWAYS, WALL_DENSITY, joint, **others)
+
+
+def square(side, coefficient=0.65):
+    """A wall of side × side bricks."""
+    return wall(f"courses = {side}\nbricks = {side}", friction(coefficient), output=NO_WRITERS)
+
+
+def sweep(count):
+    """So many rises of an arch."""
+    return f'[sweep]\n"scene.profile.rise" = {{ from = 2.6, to = 4.0, count = {count} }}\n'
