@@ -21,6 +21,9 @@ pub(super) const CORNER: f64 = 1e-7;
 /// Length, relative to the first step, below which there is no step.
 pub(super) const SHORTEST: f64 = 1e-10;
 
+/// Share of the load within which a corner at which it is greatest is placed, as far as steps can be that short.
+const PLACED: f64 = 1e-8;
+
 /// Steps after which the rates are searched again where steps are not followed.
 const AGAIN: u64 = 20;
 
@@ -122,6 +125,13 @@ fn corner(
     {
         (tangent, modes) = rising;
         falls = false;
+    }
+    // The corner lies within the step that failed: next to a load that is almost nothing that may be far.
+    let ahead = following.slope * following.length / plan.per_tangent;
+    let shorter = 0.3 * following.length;
+    if falls && ahead > PLACED * tracer.state.factor.abs() && shorter >= SHORTEST * following.limits.first {
+        following.tried.branch = None;
+        return Some(AfterFailure::CutBack(shorter));
     }
     if falls && !tracer.strategy.passes_limit_points() {
         return Some(match following.takes_arc_lengths(tracer) {

@@ -7,13 +7,14 @@ use super::following::{Branch, Following, per_tangent};
 use super::limit_point::{above_all, falling_branch, not_followed, rising_branch};
 use super::measure::{increment_between, motion_size};
 use super::orientation::Orientation;
+use super::passed_over::passes_over;
 use super::peak::{Bracketed, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
 use super::plastic_plateau::note_plateau;
 use super::response::branch_changes;
 use super::slip_history::missed_slip;
 use super::softening::{dissipating_sense, softening_peak};
 use super::stable_branch::{Departure, leave_unstable};
-use super::state::{State, Tangent};
+use super::state::Tangent;
 use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
 use super::tangent::{modes_ahead, tangent_at};
@@ -38,11 +39,6 @@ const SNAP: f64 = 1e-7;
 
 /// Jump of λ in a step that is not one along a path with finite displacements, as a share of λ.
 const JUMP: f64 = 1e-4;
-
-/// Share of the rate at the start of a step below which it has flattened, and length, relative to the first step, down
-/// to which what may lie between is resolved.
-const FLATTENED: f64 = 0.25;
-const RESOLVED: f64 = 0.1;
 
 /// A converged step along the path.
 struct Step {
@@ -161,14 +157,6 @@ fn jump(before: f64, after: f64, gained: f64) -> f64 {
     (low - slack - gained).max(gained - high - slack)
 }
 
-/// Whether a step flattens so much that it may have passed over a peak and a trough: its modes change, and of what its
-/// rate would gain at its start little is left at its end.
-fn flattens(tracer: &Tracer, following: &Following, [before, after]: [f64; 2], next: &State) -> bool {
-    let rises = [before, after].iter().all(|gain| gain * following.direction > 0.0);
-    let long = following.length > RESOLVED * following.limits.first;
-    long && rises && next.mode != tracer.state.mode && after.abs() < FLATTENED * before.abs()
-}
-
 /// Whether a converged step is accurate, has a tangent, and is no jump to another branch.
 fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, trial: Trial) -> StepEnd {
     let StepEnergy { growth: accuracy, holds } = step_energy(tracer, &trial.next);
@@ -196,8 +184,11 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     if let Some(shorter) = missed_slip(tracer, following, plan, &trial, &tangent) {
         return StepEnd::CutBack(shorter);
     }
-    if by_strategy && finite && flattens(tracer, following, [before, after], &trial.next) {
-        return StepEnd::CutBack(0.5 * following.length);
+    let hidden =
+        by_strategy.then(|| passes_over(tracer, following, plan, (&trial, &tangent), [before, after])).flatten();
+    if let Some(shorter) = hidden {
+        tracer.system.count("passed_over", 1);
+        return StepEnd::CutBack(shorter);
     }
     if jumps {
         return cut_back(tracer, following, "the state jumps to another branch", None);

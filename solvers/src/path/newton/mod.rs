@@ -32,6 +32,7 @@ mod measure;
 mod mechanism;
 mod monitors;
 mod orientation;
+mod passed_over;
 mod peak;
 mod plastic_plateau;
 mod recorded;

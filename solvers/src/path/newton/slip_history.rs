@@ -157,26 +157,33 @@ fn missed_at(
 
 /// Share of the predictor at which the first point would leave its mode that does so in the step, other than by coming
 /// to rest.
-fn first_event(system: &StepSystem, start: &State, (rate, share): (&Tangent, f64), next: &State) -> Option<f64> {
-    let of_point = |c: usize| {
-        let law = system.law(c)?;
-        let (area, force, gap) = (system.problem.contacts[c].area, start.force[c], start.gap[c]);
-        let after = [0, 1].map(|k| force[k] + share * rate.force[c][k]);
-        match (start.mode[c], next.mode[c]) {
-            (before, after) if before == after => None,
-            (ContactMode::Open | ContactMode::Corner(..), _) => {
-                let closes = -share * rate.gap[c][0];
-                (closes > 0.0).then(|| gap[0] / closes)
-            }
-            (ContactMode::Facet(_), ContactMode::Stick | ContactMode::Facet(_)) => None,
-            _ => {
-                let reached = |(i, facet): (usize, &Facet)| {
-                    let [now, then] = [slack(facet, force, area), slack(facet, after, area)];
-                    (!start.mode[c].flows_on(i) && then < 0.0 && now > 0.0).then(|| now / (now - then))
-                };
-                law.facets.iter().enumerate().filter_map(reached).reduce(f64::min)
-            }
-        }
+fn first_event(system: &StepSystem, start: &State, rate: (&Tangent, f64), next: &State) -> Option<f64> {
+    let leaves = |c: &usize| match (start.mode[*c], next.mode[*c]) {
+        (before, after) if before == after => false,
+        (ContactMode::Facet(_), ContactMode::Stick | ContactMode::Facet(_)) => false,
+        _ => true,
     };
-    (0..next.gap.len()).filter_map(of_point).filter(|share| *share > 0.0 && *share < 1.0).reduce(f64::min)
+    let points = (0..next.gap.len()).filter(leaves).filter_map(|c| predicted_event(system, start, rate, c));
+    points.filter(|share| *share > 0.0 && *share < 1.0).reduce(f64::min)
+}
+
+/// Share of the predictor at which a point would leave its mode, other than by coming to rest.
+pub(super) fn predicted_event(
+    system: &StepSystem,
+    start: &State,
+    (rate, share): (&Tangent, f64),
+    c: usize,
+) -> Option<f64> {
+    let law = system.law(c)?;
+    let (area, force, gap) = (system.problem.contacts[c].area, start.force[c], start.gap[c]);
+    if let ContactMode::Open | ContactMode::Corner(..) = start.mode[c] {
+        let closes = -share * rate.gap[c][0];
+        return (closes > 0.0).then(|| gap[0] / closes);
+    }
+    let after = [0, 1].map(|k| force[k] + share * rate.force[c][k]);
+    let reached = |(i, facet): (usize, &Facet)| {
+        let [now, then] = [slack(facet, force, area), slack(facet, after, area)];
+        (!start.mode[c].flows_on(i) && then < 0.0 && now > 0.0).then(|| now / (now - then))
+    };
+    law.facets.iter().enumerate().filter_map(reached).reduce(f64::min)
 }
