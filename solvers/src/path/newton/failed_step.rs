@@ -158,6 +158,9 @@ fn corner(
 /// A shorter step; where it is too short, or no step follows modes that were guessed at a corner, a rate with
 /// growing λ by a search, or the end.
 fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failure: &StepFailure) -> AfterFailure {
+    if following.comes_to_smooth_peak(tracer) && following.takes_arc_lengths(tracer) {
+        return AfterFailure::CutBack(following.length);
+    }
     let steps = tracer.system.counters.get("steps").copied();
     let (first, linear) = (following.limits.first, following.limits.linear);
     let no_peak = above_all(tracer, following.direction);

@@ -25,6 +25,10 @@ const BRANCH: f64 = 0.1;
 /// Cosine of the angle between a step and the rate of arrival below which it takes the way back.
 const BACK: f64 = -1.0 + 1e-3;
 
+/// Rates per unit Λ of the factor, relative to those at the beginning, from which on a smooth limit point is near: at a
+/// distance of a millionth of the load.
+const SMOOTH_PEAK: f64 = 1e3;
+
 /// Length of the first step of all, relative to the strategy's, where friction that is not associated may slide at once:
 /// from nothing a load has no scale, and what slides first may come to rest within any step that is not short.
 const FROM_NOTHING: f64 = 1e-3;
@@ -221,6 +225,15 @@ impl<'d> Following<'d> {
         self.length = BRANCH * self.limits.first;
         (self.previous, self.arrest, self.tried) = (None, None, Tried::default());
         true
+    }
+
+    /// Whether a path that ends at its first limit point comes to a smooth one: the rates per unit Λ of the factor grow
+    /// beyond all bounds there, and steps of the factor soon go beyond it by what Newton's method leaves.
+    pub fn comes_to_smooth_peak(&self, tracer: &Tracer) -> bool {
+        let arc = ArcLength::default();
+        let rate = increment_along(&tracer.system, &tracer.state, &self.branch.tangent);
+        let at_first = self.limits.by_arc / arc.first_step();
+        self.limits.ends_at_peak && arc.constraint(&rate, None).value > SMOOTH_PEAK * at_first
     }
 
     /// Whether the test of limit points leaves no doubt of the present state; of blocks that yield it asks nothing.

@@ -25,6 +25,9 @@ const SEARCHED: f64 = 1e-3;
 /// Length, relative to the first step, below which every means is taken.
 const LAST: f64 = 1e-8;
 
+/// Least length, relative to the first step, of one that goes to where a point slides first.
+const PAST_SLIP: f64 = 1e-6;
+
 /// A step to be tried.
 #[derive(Clone, Copy)]
 pub(super) struct StepPlan {
@@ -69,7 +72,8 @@ pub(super) fn plan(tracer: &mut Tracer, following: &mut Following) -> Option<Ste
     if !tracer.strategy.passes_limit_points()
         && let Some(slip) = first_slip(tracer, tangent).filter(|slip| *slip < share)
     {
-        share = slip.max(1e-6 * share) * (1.0 + 1e-9);
+        // A point that is at its limit already must not shorten the steps without end.
+        share = slip.max(PAST_SLIP * following.limits.first / per_tangent).min(share) * (1.0 + 1e-9);
         following.length = share * per_tangent;
     }
     let (from, target) = (tracer.state.factor, following.target);
