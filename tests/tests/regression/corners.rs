@@ -163,7 +163,8 @@ fn the_line_search_saves_cut_backs() {
         // Steps are cut for their energy only.
         assert!(result.counters["cutbacks"] <= 20, "{:?}", result.counters);
         assert!(result.counters["line_searched_steps"] > 0, "{:?}", result.counters);
-        // Steps are as many as the history of slip needs; each takes few iterations.
-        assert!(result.counters["newton_iterations"] <= 5 * result.counters["steps"], "{:?}", result.counters);
+        // Steps are as many as the history of slip needs; each takes few iterations (the second scene 5.4, 4.8 before a
+        // step that passed over an event was followed at its length; its peak is off by 1e-6 since then, by 5e-6 before).
+        assert!(result.counters["newton_iterations"] <= 6 * result.counters["steps"], "{:?}", result.counters);
     }
 }

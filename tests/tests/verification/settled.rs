@@ -199,13 +199,14 @@ fn peaks_that_steps_passed_over() {
 }
 
 /// Where the path folds a joint is about to close and two points that slide come to rest: the rate beyond the fold asks
-/// for all three. With the closing joint alone the path once took the way back, all of it, to a certified 156.5.
+/// for all three. With the closing joint alone the path once took the way back, all of it, to a certified 156.5. Steps of
+/// 7e-4 to 1.5e-4 of the arch say 57 633.5030 to 57 633.5029; one step of these here passed over an event, and said .5830.
 #[test]
 fn a_path_goes_on_where_a_joint_closes_at_a_fold() {
     let result = answered(include_str!("settled/closing_at_a_fold.toml"));
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     let factor = result.load_factor.expect("a factor");
-    assert!(result.certificate.passed && (factor - 57633.58).abs() < 1e-6 * factor, "{factor}");
+    assert!(result.certificate.passed && (factor - 57633.5029).abs() < 1e-8 * factor, "{factor}");
 }
 
 /// A scene by a continuation strategy.
