@@ -62,5 +62,6 @@ pub fn forces(forces: Vec<(usize, Option<usize>, Vec2, Vec2)>) -> Loading {
 /// The problem of these parts.
 pub fn problem(bodies: Vec<PathBody>, contacts: Vec<Contact>, load_steps: Vec<LoadStep>, length: f64) -> PathProblem {
     let body_of = (0..bodies.len()).collect();
-    PathProblem { bodies, body_of, contacts, load_steps, length, counters: Counters::new() }
+    let counters = Counters::new();
+    PathProblem { bodies, body_of, contacts, load_steps, length, span: length, counters }
 }

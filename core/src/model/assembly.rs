@@ -178,6 +178,12 @@ impl Assembly {
         (high - low).norm()
     }
 
+    /// The longest clear span at the intrados springings \[m\]; of what is no arch [`size`](Self::size).
+    pub fn span(&self) -> f64 {
+        let bridge = self.bridge.as_ref().map(|bridge| bridge.longest_span);
+        self.arch.as_ref().map(|arch| arch.span).or(bridge).unwrap_or_else(|| self.size())
+    }
+
     /// Which bodies move as one because bonded joints hold them together: for each body the index
     /// of its free group, or `None` where the group is held by the ground. Also the number of groups.
     pub fn rigid_groups(&self) -> (Vec<Option<usize>>, usize) {

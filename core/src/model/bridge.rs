@@ -148,6 +148,8 @@ pub struct Bridge {
     pub extrados: Vec<Chord>,
     /// x of the outermost intrados springings \[m\].
     pub springings: [f64; 2],
+    /// The longest clear span at the intrados springings \[m\].
+    pub longest_span: f64,
     /// Joints `0..radial` lie across rings, with end 0 towards the intrados.
     pub radial: usize,
     /// The road from left to right \[m\], level beyond its ends; empty where there is no fill: loads stand on the

@@ -25,6 +25,7 @@ impl PathProblem {
             contacts: Vec::new(),
             load_steps: Vec::new(),
             length: assembly.size(),
+            span: assembly.span(),
             counters: Counters::new(),
             bodies,
             body_of,

@@ -116,6 +116,8 @@ pub struct PathProblem {
     pub load_steps: Vec<LoadStep>,
     /// Length scale \[m\].
     pub length: f64,
+    /// What the movement of the load's point after a peak is measured by \[m\]: [`Assembly::span`](crate::model::Assembly::span).
+    pub span: f64,
     /// Work done to build it.
     pub counters: Counters,
 }

@@ -147,6 +147,7 @@ mod tests {
                 load_step(1, false, live, LoadStepEnd::Collapse(f64::INFINITY)),
             ],
             length: 2.0,
+            span: 2.0,
             counters: Counters::new(),
         }
     }

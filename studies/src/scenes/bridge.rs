@@ -201,7 +201,9 @@ impl Scene for BridgeScene {
         };
         let arch = alone.then(ring);
         let springings = ends.map(|end| end.x);
-        let mut bridge = Bridge { extrados, springings, radial: radial.len(), ..Bridge::default() };
+        let span = |shape: &SpanBlocks| shape.springing(1)[0].x - shape.springing(0)[0].x;
+        let longest_span = shapes.spans.iter().map(span).fold(0.0, f64::max);
+        let mut bridge = Bridge { extrados, springings, longest_span, radial: radial.len(), ..Bridge::default() };
         let mut assembly = Assembly {
             catalogue: catalogue.clone(),
             joints: radial.into_iter().chain(other).collect(),

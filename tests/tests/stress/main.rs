@@ -10,5 +10,6 @@ mod limit_scenes;
 mod nonassociated;
 mod path;
 mod settlements;
+mod shorter_steps;
 mod strategies;
 mod uniqueness;

@@ -23,7 +23,7 @@ use voussoir_tests::{answered, first_case, names_bifurcation};
 
 /// A case of the family.
 #[derive(Debug, Clone)]
-struct Stratum {
+pub struct Stratum {
     draw: Draw,
     finite: bool,
     solver: &'static str,
@@ -46,7 +46,7 @@ fn stratum(k: usize, random: &mut Random) -> Stratum {
     Stratum { draw: Draw { shape, deforming, settling, size, stuck }, finite, solver }
 }
 
-fn keys(stratum: &Stratum, more: &str) -> String {
+pub fn keys(stratum: &Stratum, more: &str) -> String {
     let kinematics = if stratum.finite { "finite" } else { "small" };
     format!("solver = \"{}\"\nkinematics = \"{kinematics}\"\n{more}", stratum.solver)
 }
@@ -118,7 +118,7 @@ fn processor_seconds(started: Instant) -> f64 {
     nanoseconds.map_or(started.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
 }
 
-fn scene(k: usize) -> (Stratum, SettledScene) {
+pub fn scene(k: usize) -> (Stratum, SettledScene) {
     let mut random = Random::new(9000 + k as u64);
     let stratum = stratum(k, &mut random);
     let scene = settled_scene(&mut random, stratum.draw);

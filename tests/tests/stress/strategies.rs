@@ -18,7 +18,7 @@ const STRATEGIES: [(&str, &str); 5] = [
 ];
 
 /// Loads that are equal, relative.
-const APART: f64 = 1e-6;
+pub const APART: f64 = 1e-6;
 
 /// Scene `k` of the family: elastic voussoirs or compliant joints, with friction or stuck, half of them settled.
 pub fn scene(k: usize) -> SettledScene {
@@ -32,15 +32,15 @@ pub fn scene(k: usize) -> SettledScene {
 }
 
 /// What one run said: the load factor and the limit points up to the greatest.
-struct Said {
+pub struct Said {
     run: String,
-    factor: f64,
-    limit_points: Vec<f64>,
+    pub factor: f64,
+    pub limit_points: Vec<f64>,
 }
 
 impl Said {
     /// Of a run that answered.
-    fn of(run: String, result: &CaseResult) -> Option<Said> {
+    pub fn of(run: String, result: &CaseResult) -> Option<Said> {
         let factor = result.load_factor.filter(|_| result.status != Status::Stalled)?;
         let all = result.path.limit_points.iter().filter(|point| point.stage == "live").map(|point| point.factor);
         let limit_points: Vec<f64> = all.collect();
@@ -48,10 +48,11 @@ impl Said {
         Some(Said { run, factor, limit_points: limit_points[..greatest].to_vec() })
     }
 
-    /// Whether both list the same limit points up to the greatest.
-    fn same_way(&self, other: &Said) -> bool {
+    /// Whether both say the same load and list the same limit points up to it.
+    pub fn same_way(&self, other: &Said) -> bool {
+        let same = |(a, b): (&f64, &f64)| (a - b).abs() <= APART * b.abs();
         let [a, b] = [&self.limit_points, &other.limit_points];
-        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= APART * b.abs())
+        same((&self.factor, &other.factor)) && a.len() == b.len() && a.iter().zip(b).all(same)
     }
 }
 

@@ -30,7 +30,8 @@ const REGULARISATION: f64 = 1e5;
 pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProblem, String> {
     let (bodies, body_of) = bodies(assembly, stages);
     let (contacts, load_steps, counters) = (Vec::new(), Vec::new(), Counters::new());
-    let mut read = PathProblem { bodies, body_of, contacts, load_steps, length: assembly.size(), counters };
+    let (length, span) = (assembly.size(), assembly.span());
+    let mut read = PathProblem { bodies, body_of, contacts, load_steps, length, span, counters };
     for (index, joint) in assembly.joints.iter().enumerate() {
         if read.body_of[joint.minus] != read.body_of[joint.plus] {
             let points = contact_points(&mut read, assembly, index, joint)?;

@@ -205,6 +205,7 @@ mod tests {
             contacts: vec![],
             load_steps: vec![],
             length: 1.0,
+            span: 1.0,
             counters: Counters::new(),
         };
         let geometry = Geometry::new(&problem, true);

@@ -160,6 +160,7 @@ mod tests {
             contacts: vec![contact(-1.0), contact(0.2), contact(1.0)],
             load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
             length: 2.0,
+            span: 2.0,
             counters: Counters::new(),
         }
     }

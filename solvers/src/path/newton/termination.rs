@@ -27,7 +27,7 @@ const RISES: f64 = 0.1;
 /// Rates of load and contact forces relative to that of the motion, in units, at which they stand still.
 const STILL: [f64; 2] = [1e-9, 1e-4];
 
-/// Movement of the load point after a peak, as a share of the scene's size, at which a path ends.
+/// Movement of the load point after a peak, as a share of the span, at which a path ends.
 const FURTHEST: f64 = 0.1;
 
 /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
@@ -234,7 +234,7 @@ fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> boo
         (None, None) => {
             let (fallen, grown) = ((peak.factor - factor) * direction, (peak.factor - load_step.start).abs());
             match dips {
-                true => fallen >= 0.5 * grown || (!above && beyond >= FURTHEST * tracer.system.units().length),
+                true => fallen >= 0.5 * grown || (!above && beyond >= FURTHEST * tracer.system.problem.span),
                 false => fallen >= 0.1 * grown || beyond >= peak.state.displacement.abs(),
             }
         }
@@ -267,7 +267,7 @@ pub(super) fn snaps(tracer: &Tracer, load_step: &LoadStep) -> bool {
 /// point has moved on, at the latest at [`FURTHEST`].
 fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
-    let length = tracer.system.units().length;
+    let (length, span) = (tracer.system.units().length, tracer.system.problem.span);
     let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
         return false;
     };
@@ -282,7 +282,7 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
     let top = tracer.limit.proven_peaks.last().map_or(greatest, |peak| peak.factor);
     let beyond = beyond_last_peak(tracer, place);
     let halved = (factor - 0.5 * top) * direction <= 0.0;
-    let far = (halved && beyond >= MOVED_ON * length) || beyond >= FURTHEST * length;
+    let far = (halved && beyond >= MOVED_ON * span) || beyond >= FURTHEST * span;
     tracer.post_peak.far |= far;
     let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
     let done = match (stop_displacement, stop_factor) {
@@ -302,7 +302,7 @@ fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bo
         return true;
     }
     if !done {
-        let asked = stop_displacement.unwrap_or(if stop_factor.is_some() { length } else { FURTHEST * length });
+        let asked = stop_displacement.unwrap_or(if stop_factor.is_some() { length } else { FURTHEST * span });
         let place = [displacement, factor];
         let motion = &tracer.record.state.motion;
         if let Some(why) = tracer.post_peak.cycles.leads_nowhere(place, motion, asked, length) {

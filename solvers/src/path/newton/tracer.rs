@@ -18,7 +18,7 @@ use voussoir_core::path::{
 const APART: f64 = 1e-6;
 /// Rise of the load above a peak, relative to it, that is none of rounding.
 const ABOVE: f64 = 1e-9;
-/// Movement of the load point after a peak, as a share of the scene's size, from which on a path may end.
+/// Movement of the load point after a peak, as a share of the span, from which on a path may end.
 pub(super) const MOVED_ON: f64 = 0.02;
 
 /// How a load step ended.
@@ -168,7 +168,7 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
 /// Before that a greater peak may lie ahead, whether the load falls or rises where the path is lost; above its peaks it does.
 pub(super) fn after_peak(tracer: &Tracer) -> Status {
     let moved_on =
-        |peak: &Peak| beyond_last_peak(tracer, peak.state.displacement) >= MOVED_ON * tracer.system.units().length;
+        |peak: &Peak| beyond_last_peak(tracer, peak.state.displacement) >= MOVED_ON * tracer.system.problem.span;
     lost_after(tracer, moved_on)
 }
 

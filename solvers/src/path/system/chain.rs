@@ -101,6 +101,7 @@ mod tests {
             contacts: joints.iter().map(|&(a, b)| contact(a, b)).collect(),
             load_steps: Vec::new(),
             length: 1.0,
+            span: 1.0,
             counters: Counters::new(),
         }
     }

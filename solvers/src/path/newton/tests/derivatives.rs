@@ -57,6 +57,7 @@ fn chain() -> PathProblem {
         contacts,
         load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
         length: 3.0,
+        span: 3.0,
         counters: Counters::new(),
     }
 }

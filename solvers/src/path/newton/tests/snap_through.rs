@@ -55,6 +55,7 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
             end: LoadStepEnd::Collapse(f64::INFINITY),
         }],
         length: 2.0 * half_span,
+        span: 2.0 * half_span,
         counters: Counters::new(),
     }
 }

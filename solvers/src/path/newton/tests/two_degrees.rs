@@ -68,6 +68,7 @@ fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, L
             })
             .collect(),
         length: 1.0,
+        span: 1.0,
         counters: Counters::new(),
     }
 }

@@ -110,6 +110,7 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         contacts: contacts.collect(),
         load_steps: vec![load_step],
         length: 1.0,
+        span: 1.0,
         counters: Counters::new(),
     };
     for finite in [false, true] {
