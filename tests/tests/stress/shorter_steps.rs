@@ -115,10 +115,11 @@ fn family(cases: impl Iterator<Item = usize>) {
     assert!(differing.is_empty(), "{}", differing.join("\n"));
 }
 
-/// A few of them.
+/// A few of them. In 1702 and 1667 the load dips by 1e-4 and 4e-7 of itself between two events of one step: by default
+/// the first limit point of the one, 87.474, and the greatest of the other, 7840.0133, were passed over.
 #[test]
 fn a_quarter_of_the_step_changes_nothing() {
-    family(20..24);
+    family([20, 21, 1667, 1702].into_iter());
 }
 
 /// CASES=N tries those among N cases of the family of settlements from FIRST on, all 3000 by default.
