@@ -149,9 +149,7 @@ fn corner(
     {
         (tangent, modes) = falling;
     }
-    // What an unstable branch carries is no peak of the path under its loads.
-    let stable = following.orientation.as_ref().is_none_or(|before| !before.unstable);
-    if falls && stable && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
+    if falls && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
         note_peak(tracer, &tangent, direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))

@@ -347,14 +347,13 @@ fn cut_back(tracer: &mut Tracer, following: &mut Following, why: &str, end: Opti
 /// Over a peak: along another branch where one rises from it, else on. A settlement that goes no further by itself
 /// snaps, where it is to go to a factor.
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
-    // What an unstable branch carries is no peak of the path under its loads.
-    let stable = following.orientation.as_ref().is_none_or(|before| !before.unstable);
     if step.folded && !snaps(tracer, following.load_step) {
-        if stable {
-            note_peak(tracer, &step.tangent, following.direction);
-        }
+        // As at a corner that no step passes.
+        note_peak(tracer, &step.tangent, following.direction);
         return accept(tracer, following, step);
     }
+    // What an unstable branch carries is no peak of the path under its loads.
+    let stable = following.orientation.as_ref().is_none_or(|before| !before.unstable);
     let Bracketed { state, beyond, kinked } = match locate_peak(tracer, following, following.direction) {
         Some(bracketed) => bracketed,
         None => {

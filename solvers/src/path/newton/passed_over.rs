@@ -10,8 +10,9 @@
 //! - *It overtakes an event.* By the rate at its start one point leaves its mode first, and at its end another one has, and
 //!   that point has not: from the first event another path starts than the one that was found.
 //! - *It turns in between.* The path goes through pieces on which some points have changed their modes and others have
-//!   not, in the order of the predictor. If the load rises at both ends of the step and falls at the rate of such a piece,
-//!   taken at the step's end, or the reverse, a peak and a trough may lie in it. A peak or trough itself is looked for in
+//!   not. If the load rises at both ends of the step and falls at the rate of such a piece, or the reverse, a peak and a
+//!   trough may lie in it. Looked at are the modes of the start at the end, those of the end at the start, and at the end those
+//!   with one point changed, or all but one. A peak or trough itself is looked for in
 //!   steps in which no more than one point changes.
 //!
 //! Such steps are shortened.
@@ -21,7 +22,7 @@ use super::slip_history::predicted_event;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_at;
-use super::tracer::Tracer;
+use super::tracer::{Tracer, moved_along};
 use super::trial::{StepPlan, Trial};
 use nalgebra::Vector2;
 
@@ -37,8 +38,12 @@ const RESOLVED: f64 = 0.1;
 const PARALLEL: f64 = 1e-12;
 /// Shares of the step within which the next one lies.
 const SHARES: [f64; 2] = [0.1, 0.5];
+/// Share of a step at which its beginning is looked at: at it no length has a direction.
+const BEGUN: f64 = 0.01;
+/// Length, relative to the first step, down to which a piece that turns is resolved.
+const TURNING: f64 = 1e-3;
 /// Points that change their modes in a step up to which the pieces between are looked at.
-const MOST_PIECES: usize = 12;
+const MOST_CHANGES: usize = 12;
 
 /// Length of the step that is to be tried instead of one that may pass over something; `gains` is what the rates at both
 /// ends would let the factor gain in it.
@@ -50,44 +55,53 @@ pub(super) fn passes_over(
     gains: [f64; 2],
 ) -> Option<f64> {
     let (state, next, length) = (&tracer.state, &trial.next, following.length);
-    let long = length > RESOLVED * following.limits.first;
-    if !long || !tracer.system.finite() || next.mode == state.mode {
+    if !tracer.system.finite() || next.mode == state.mode || length <= TURNING * following.limits.first {
         return None;
     }
     let rate = &following.branch.tangent;
-    if flattens(gains.map(|gain| gain * following.direction)) || otherwise(&tracer.system, [state, next], [rate, end]) {
+    let resolved = length <= RESOLVED * following.limits.first;
+    let along = gains.map(|gain| gain * following.direction);
+    if !resolved && (flattens(along) || otherwise(&tracer.system, [state, next], [rate, end])) {
         return Some(SHARES[1] * length);
     }
-    let overtaken = overtaken(&tracer.system, state, (rate, plan.step), next);
+    let overtaken = overtaken(&tracer.system, state, (rate, plan.step), next).filter(|_| !resolved);
     let share = overtaken.map(|share| share.clamp(SHARES[0], SHARES[1]));
-    let share = share.or_else(|| turns_between(tracer, following, plan.step, trial, gains).then_some(SHARES[1]))?;
+    let share = share.or_else(|| turns_between(tracer, following, plan, trial, gains).then_some(SHARES[1]))?;
     Some(share * length)
 }
 
-/// Whether the load turns more often on the pieces of the path that lie in a step than the rates at its ends say; not
-/// where it falls as fast at both.
-fn turns_between(tracer: &mut Tracer, following: &Following, share: f64, trial: &Trial, gains: [f64; 2]) -> bool {
+/// Whether the load turns more often on the pieces of the path that may lie in a step than the rates at its ends say; not
+/// where it falls as fast at both. Which point changes first is not known.
+fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, trial: &Trial, gains: [f64; 2]) -> bool {
+    let begun = moved_along(tracer, &following.branch.tangent, BEGUN * plan.step);
     let Tracer { system, state, .. } = tracer;
-    let (rate, next) = (&following.branch.tangent, &trial.next);
+    let next = &trial.next;
     let rises = |slope: f64| slope * following.direction > 0.0;
     let [before, after] = gains.map(rises);
-    let place = |c: usize| predicted_event(system, state, (rate, share), c).unwrap_or(f64::INFINITY);
-    let changes = (0..next.mode.len()).filter(|c| next.mode[*c] != state.mode[*c]);
-    let mut changes: Vec<(f64, usize)> = changes.map(|c| (place(c), c)).collect();
-    if before != after || changes.len() > MOST_PIECES {
-        return before != after && changes.len() > 1;
+    let changed: Vec<usize> = (0..next.mode.len()).filter(|c| next.mode[*c] != state.mode[*c]).collect();
+    if before != after || changed.len() > MOST_CHANGES {
+        return before != after && changed.len() > 1;
     }
     let [least, most] = [f64::min, f64::max].map(|choose| choose(gains[0].abs(), gains[1].abs()));
     if !before && least > FLATTENED * most {
         return false;
     }
-    changes.sort_by(|a, b| f64::total_cmp(&a.0, &b.0));
-    let mut piece = State { mode: state.mode.clone(), ..next.clone() };
-    changes.into_iter().any(|(_, c)| {
-        let between = tangent_at(system, state, &piece, &trial.control);
+    let with = |place: &State, modes: &State, swapped: Option<(usize, &State)>| {
+        let mut piece = State { mode: modes.mode.clone(), ..place.clone() };
+        swapped.into_iter().for_each(|(c, other)| piece.mode[c] = other.mode[c]);
+        piece
+    };
+    let mut pieces = vec![with(next, state, None), with(&begun, next, None)];
+    if changed.len() > 1 {
+        pieces.extend(changed.iter().map(|c| with(next, state, Some((*c, next)))));
+    }
+    if changed.len() > 2 {
+        pieces.extend(changed.iter().map(|c| with(next, next, Some((*c, state)))));
+    }
+    pieces.iter().any(|piece| {
         system.count("pieces", 1);
-        piece.mode[c] = next.mode[c];
-        between.is_some_and(|between| rises(between.factor) != before)
+        let rate = tangent_at(system, state, piece, &trial.control);
+        rate.is_some_and(|rate| rises(rate.factor) != before)
     })
 }
 
