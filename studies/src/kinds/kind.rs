@@ -181,6 +181,8 @@ pub struct RunRequest {
     pub date: Option<String>,
     /// The results.json of each of the study's parts, in order.
     pub parts: Vec<String>,
+    /// Whether nobody reads the table: it stays empty.
+    pub quiet: bool,
 }
 
 /// What a run has made.
