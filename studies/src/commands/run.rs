@@ -11,6 +11,7 @@ use super::{interrupt, shard, stream};
 use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
 use crate::side_by_side::side_by_side;
 use crate::solve::label_of;
+use crate::writers::results_json::write_results;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -183,11 +184,18 @@ fn run_held(
         date: Some(today()),
         parts,
         quiet: options.quiet || options.json,
+        // Lines of JSON are read from the text.
+        results_apart: !options.json,
     };
     let output = study.run(&request, &progress);
     progress.finish();
     folder.write("resolved.toml", resolved.as_bytes())?;
     // What is worth most comes first: a disk may be full.
+    if let Some(results) = &output.results {
+        let mut file = folder.aside("results.json")?;
+        let written = write_results(&mut file, results).map(drop);
+        file.done(written)?;
+    }
     let (results, others): (Vec<_>, Vec<_>) = output.files.iter().partition(|(name, _)| name == "results.json");
     for (name, bytes) in results.into_iter().chain(others) {
         folder.write(name, bytes)?;

@@ -43,10 +43,11 @@ impl Study {
         let results = StudyResults { date: request.date.clone(), ..self.results(&request.version, cases) };
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
-        let files = side_by_side(request.jobs, || written(&output));
+        let files = side_by_side(request.jobs, || written(&output, !request.results_apart));
         let table = if request.quiet { String::new() } else { table(&output) };
         let certified = results.certified();
-        RunOutput { files, table, remarks: Vec::new(), certified }
+        let results = request.results_apart.then_some(results);
+        RunOutput { files, results, table, remarks: Vec::new(), certified }
     }
 
     /// Stored cases that are this study's own: of the same label, and of the same resolved case.
@@ -157,7 +158,7 @@ impl LoadedStudy for Study {
         drop(again);
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let made = match cases.len() == results.cases.len() {
-            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases))),
+            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases), true)),
             false => Vec::new(),
         };
         let files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));

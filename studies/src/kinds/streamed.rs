@@ -55,7 +55,7 @@ impl LoadedStudy for Sweep {
             Ok(files) => (files, Vec::new()),
             Err(error) => (Vec::new(), vec![error.to_string()]),
         };
-        RunOutput { files, table: String::new(), remarks, certified }
+        RunOutput { files, remarks, certified, ..RunOutput::default() }
     }
 
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {

@@ -5,12 +5,14 @@ use super::results_text::{ResultsHead, ResultsText, case_text};
 use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::results::StudyResults;
-use crate::side_by_side::in_order;
+use crate::side_by_side::{in_order, threads};
 use serde_json::Value as Json;
-use std::io;
+use std::io::{self, Write};
 
 /// Cases that are made into text before it is put together.
-const AT_ONCE: usize = 64;
+const CASES: usize = 64;
+/// Bytes of such text, as long as there is more than a case for each thread in it.
+const BYTES: usize = 1 << 20;
 
 /// Writes `results.json`.
 #[derive(Debug)]
@@ -18,12 +20,13 @@ pub struct ResultsJson;
 
 impl Writer for ResultsJson {
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        let text = whole(study.results).expect("results hold no map with other keys than text");
+        let text = write_results(Vec::new(), study.results).expect("results hold no map with other keys than text");
         vec![("results.json".into(), text)]
     }
 }
 
-fn whole(results: &StudyResults) -> io::Result<Vec<u8>> {
+/// Writes results.json; where it was written to.
+pub fn write_results<W: Write>(out: W, results: &StudyResults) -> io::Result<W> {
     let StudyResults { study, version, date, only_cases, cases, comparison, own } = results;
     let head = ResultsHead {
         study: study.clone(),
@@ -31,9 +34,24 @@ fn whole(results: &StudyResults) -> io::Result<Vec<u8>> {
         date: date.clone(),
         only_cases: only_cases.clone(),
     };
-    let mut text = ResultsText::begin(Vec::new(), &head)?;
-    for cases in cases.chunks(AT_ONCE) {
-        in_order(cases, case_text).into_iter().try_for_each(|case| text.add(&case?))?;
+    let mut text = ResultsText::begin(out, &head)?;
+    let (threads, mut left) = (threads(), cases.as_slice());
+    let mut count = threads;
+    while !left.is_empty() {
+        let (now, later) = left.split_at(count.min(left.len()));
+        left = later;
+        if let [case] = now {
+            text.write(case)?;
+            continue;
+        }
+        let mut longest = 1;
+        for case in in_order(now, case_text) {
+            let case = case?;
+            longest = longest.max(case.len());
+            text.add(&case)?;
+        }
+        // Of long texts no more are held than are made at once.
+        count = (BYTES / longest).clamp(threads, CASES.max(threads));
     }
     text.finish(comparison.as_ref(), own)
 }

@@ -54,11 +54,22 @@ impl<W: Write> ResultsText<W> {
         Ok(ResultsText { out, cases: 0 })
     }
 
+    /// Adds a case whose text is not held.
+    pub fn write(&mut self, case: &CaseResult) -> io::Result<()> {
+        self.begin_case()?;
+        write_at(CASE, &mut self.out, case)
+    }
+
     /// Adds a case, made by [`case_text`].
     pub fn add(&mut self, case: &[u8]) -> io::Result<()> {
+        self.begin_case()?;
+        self.out.write_all(case)
+    }
+
+    fn begin_case(&mut self) -> io::Result<()> {
         self.out.write_all(if self.cases == 0 { b"\n    " } else { b",\n    " })?;
         self.cases += 1;
-        self.out.write_all(case)
+        Ok(())
     }
 
     /// Ends with what a kind of study adds; where it was written to.
@@ -162,6 +173,8 @@ impl Formatter for Indented {
 mod tests {
     use super::*;
     use crate::results::StudyResults;
+    use crate::side_by_side::side_by_side;
+    use crate::writers::results_json::write_results;
     use serde_json::json;
 
     /// Byte for byte what serde_json writes, with and without what may be left out, and however deep values stand.
@@ -192,6 +205,10 @@ mod tests {
             let text = text.finish(results.comparison.as_ref(), &results.own).expect("written");
             let expected = serde_json::to_string_pretty(&results).expect("JSON") + "\n";
             assert_eq!(String::from_utf8(text).expect("text"), expected);
+            for jobs in [1, 2] {
+                let text = side_by_side(jobs, || write_results(Vec::new(), &results)).expect("written");
+                assert_eq!(String::from_utf8(text).expect("text"), expected);
+            }
         }
     }
 }
