@@ -50,6 +50,7 @@ pub mod prelude;
 pub mod results;
 pub mod scenes;
 pub mod serve;
+mod side_by_side;
 pub mod solve;
 pub mod study;
 pub mod verify;

@@ -165,6 +165,39 @@ fn killed_parts_are_resumed() {
     assert_eq!(timeless(&at.join("parts/results.json")), timeless(&at.join("whole/results.json")));
 }
 
+/// However many jobs read, solve and write, and wherever a run was killed before: the bytes are the same but for seconds.
+#[test]
+fn results_depend_neither_on_jobs_nor_on_kills() {
+    let at = folder("jobs");
+    std::fs::write(at.join("a.toml"), study(300)).expect("written");
+    let run = |out: &str, jobs: &str, more: &[&str]| {
+        let arguments = [&["run", "a.toml", "--out", out, "--quiet", "--jobs", jobs], more].concat();
+        Command::new(env!("CARGO_BIN_EXE_voussoir"))
+            .args(arguments)
+            .current_dir(&at)
+            .spawn()
+            .expect("the program starts")
+    };
+    for (out, jobs) in [("one", "1"), ("two", "2")] {
+        assert!(run(out, jobs, &[]).wait().expect("it ends").success());
+    }
+    let expected = timeless(&at.join("one/results.json"));
+    assert!(expected == timeless(&at.join("two/results.json")));
+    for (round, jobs) in ["2", "1", "2", "2"].iter().enumerate() {
+        let mut killed = run("killed", jobs, &["--resume"]);
+        let journal = || std::fs::metadata(at.join("killed/unfinished.jsonl")).map_or(0, |file| file.len());
+        // At the first case of this run, then later and later.
+        let before = journal();
+        while journal() <= before + 200_000 * round as u64 && killed.try_wait().expect("a state").is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        drop(killed.kill());
+        killed.wait().expect("it has ended");
+    }
+    assert!(run("killed", "2", &["--resume"]).wait().expect("it ends").success());
+    assert!(expected == timeless(&at.join("killed/results.json")));
+}
+
 /// Lines of JSON are the entries of results.json, and the only thing on standard output; so are those of a kind that
 /// makes cases itself.
 #[test]
@@ -229,6 +262,8 @@ fn streamed_sweeps_are_those_that_are_held() {
     solve_parts(&at, "parts", &["--jobs", "2"]);
     assert_eq!(code(&voussoir(&["merge", "parts", "--quiet"], &at)), 0);
     assert_eq!(timeless(&at.join("parts/results.json")), timeless(&at.join("whole/results.json")));
+    assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "two", "--quiet", "--jobs", "2"], &at)), 0);
+    assert!(timeless(&at.join("two/results.json")) == timeless(&at.join("whole/results.json")));
     assert_eq!(code(&voussoir(&["verify", "whole", "--jobs", "2"], &at)), 0);
     // One of the same cases in a study that is held.
     let set = ["run", "a.toml", "--out", "held", "--quiet", "--set", "sweep.\"scene.profile.rise\".count=2"];

@@ -176,7 +176,7 @@ pub fn check_as<T: serde::de::DeserializeOwned>(
     value: &serde_json::Value,
     validate: impl Fn(&T) -> Vec<(String, String)>,
 ) -> Vec<(String, String)> {
-    match serde_json::from_value::<T>(value.clone()) {
+    match T::deserialize(value) {
         Ok(concrete) => validate(&concrete),
         Err(error) => vec![(String::new(), error.to_string())],
     }
@@ -200,7 +200,8 @@ pub fn cards_of(kind: PluginKind) -> Vec<&'static Card> {
 
 /// The card with this kind and tag.
 pub fn card(kind: PluginKind, tag: &str) -> Option<&'static Card> {
-    inventory::iter::<Card>.into_iter().find(|card| card.kind == kind && card.tag == tag)
+    let place = cards().binary_search_by(|card| (card.kind, card.tag).cmp(&(kind, tag))).ok()?;
+    Some(cards()[place])
 }
 
 /// The cards that may stand in the place of one kind: `[solver] solver = …` names a limit solver or a

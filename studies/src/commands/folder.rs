@@ -125,7 +125,7 @@ impl ResultFolder {
         // Left behind by a run that was killed; a link is removed, not followed.
         drop(fs::remove_file(&aside));
         match OpenOptions::new().write(true).create_new(true).open(&aside) {
-            Ok(file) => Ok(Aside { file: BufWriter::new(file), aside, place }),
+            Ok(file) => Ok(Aside { file: BufWriter::with_capacity(1 << 16, file), aside, place }),
             Err(error) => Err(refused(&place, error)),
         }
     }

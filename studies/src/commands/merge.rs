@@ -9,9 +9,9 @@ use super::options::useful_jobs;
 use super::shard::{PART, PartEnd, PartHead, study_hash};
 use super::stream;
 use super::today::today;
-use crate::kinds::CasesOf;
+use crate::kinds::{CasesOf, RunRequest};
 use crate::results::CaseResult;
-use crate::solve::side_by_side;
+use crate::side_by_side::side_by_side;
 use crate::verify::case::verify_case;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -95,7 +95,9 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
         CasesOf::Held(study) => study,
     };
     let results = lines.cases().collect::<Result<Vec<_>, _>>().map_err(|error| no_access(&out, error))?;
-    let output = study.output_of(env!("CARGO_PKG_VERSION"), Some(today()), results, jobs);
+    let (version, date) = (env!("CARGO_PKG_VERSION").to_string(), Some(today()));
+    let output =
+        study.output_of(&RunRequest { version, date, jobs, quiet: options.quiet, ..Default::default() }, results);
     for (name, bytes) in &output.files {
         folder.write(name, bytes)?;
     }

@@ -69,12 +69,11 @@ impl Progress {
 }
 
 impl Progress {
-    /// Adds a finished case to the journal.
-    fn keep(&self, line: &str) {
+    /// Adds the line of a finished case to the journal, in one piece.
+    fn keep(&self, line: &[u8]) {
         let Ok(mut journal) = self.journal.lock() else { return };
-        // A line of its own even after one that was cut short, and in one piece.
         if let Some(file) = journal.as_mut()
-            && let Err(error) = file.write_all(format!("\n{line}\n").as_bytes())
+            && let Err(error) = file.write_all(line)
         {
             // It costs only the chance to go on after an interruption.
             eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
@@ -100,14 +99,20 @@ impl Observer for Progress {
 
     fn answered(&self, case: &CaseResult) {
         self.bar.inc(1);
-        let line = serde_json::to_string(case).unwrap_or_default();
+        // A line of its own even after one that was cut short; an arch of a dozen voussoirs fits.
+        let mut line = Vec::with_capacity(1 << 13);
+        line.push(b'\n');
+        if serde_json::to_writer(&mut line, case).is_err() {
+            line.truncate(1);
+        }
+        line.push(b'\n');
         self.keep(&line);
         interrupt::finished();
         if self.shown_as == Shown::Lines {
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);
             }
-            say(line);
+            say(String::from_utf8_lossy(line.trim_ascii()));
         }
     }
 

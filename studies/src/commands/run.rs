@@ -9,7 +9,9 @@ use super::progress::Progress;
 use super::today::today;
 use super::{interrupt, shard, stream};
 use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
+use crate::side_by_side::side_by_side;
 use crate::solve::label_of;
+use crate::writers::results_json::write_results;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +23,14 @@ pub fn going_on(arguments: &[String]) -> Vec<String> {
 
 /// Runs studies of any kind; the greatest exit code of them. Every study is checked before the first is run.
 pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
+    match useful_jobs(options.jobs) {
+        1 => run_all(paths, options),
+        // From the first case that is read to the last that is written the same threads.
+        jobs => side_by_side(jobs, || run_all(paths, options)),
+    }
+}
+
+fn run_all(paths: &[PathBuf], options: &Options) -> u8 {
     let sets = match files::overrides(&options.set) {
         Ok(sets) => sets,
         Err(code) => return code,
@@ -55,6 +65,8 @@ pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
             foreign => foreign,
         });
     }
+    // The program ends: giving back all that they hold takes as long as reading it.
+    std::mem::forget(studies);
     code
 }
 
@@ -171,11 +183,19 @@ fn run_held(
         version: env!("CARGO_PKG_VERSION").into(),
         date: Some(today()),
         parts,
+        quiet: options.quiet || options.json,
+        // Lines of JSON are read from the text.
+        results_apart: !options.json,
     };
     let output = study.run(&request, &progress);
     progress.finish();
     folder.write("resolved.toml", resolved.as_bytes())?;
     // What is worth most comes first: a disk may be full.
+    if let Some(results) = &output.results {
+        let mut file = folder.aside("results.json")?;
+        let written = write_results(&mut file, results).map(drop);
+        file.done(written)?;
+    }
     let (results, others): (Vec<_>, Vec<_>) = output.files.iter().partition(|(name, _)| name == "results.json");
     for (name, bytes) in results.into_iter().chain(others) {
         folder.write(name, bytes)?;

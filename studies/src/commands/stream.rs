@@ -3,7 +3,7 @@
 use super::by_case::solve_into_journal;
 use super::case_lines::CaseLines;
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
-use super::folder::{JOURNAL, ResultFolder};
+use super::folder::{Aside, JOURNAL, ResultFolder};
 use super::options::Options;
 use super::refill::refill;
 use super::tables::Tables;
@@ -11,11 +11,17 @@ use super::today::today;
 use crate::figures::format::{format_number, format_value, status_word};
 use crate::kinds::CasesOf;
 use crate::results::CaseResult;
+use crate::side_by_side::in_order;
 use crate::study::Sweep;
-use crate::writers::stream::{StreamedResults, write_json};
+use crate::writers::results_text::{ResultsHead, ResultsText, case_text};
+use serde_json::Map;
 use std::collections::BTreeMap;
+use std::io;
 use std::path::Path;
 use voussoir_core::limit::Status;
+
+/// Cases that are read again before they are written, for each of those side by side.
+const AT_ONCE: usize = 64;
 
 /// What is told of very many cases.
 #[derive(Debug, Default)]
@@ -69,6 +75,32 @@ pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Resu
     finish(sweep, &folder, &lines, options.case.map(|id| vec![id]), options.quiet || options.json)
 }
 
+/// Writes results.json from lines of all cases, each of which `take` is shown.
+fn write(
+    out: &mut Aside,
+    head: &ResultsHead,
+    lines: &CaseLines,
+    take: &mut dyn FnMut(&CaseResult) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut text = ResultsText::begin(out, head)?;
+    let count = lines.ids().count();
+    for from in (0..count).step_by(AT_ONCE) {
+        let chunk = (from..count.min(from + AT_ONCE)).map(|index| lines.line(index)).collect::<io::Result<Vec<_>>>()?;
+        let made = in_order(&chunk, |line| {
+            let case: CaseResult = serde_json::from_slice(line)?;
+            let text = case_text(&case)?;
+            Ok((case, text))
+        });
+        for case in made {
+            let (case, own): (CaseResult, Vec<u8>) = case.map_err(|error: io::Error| error)?;
+            take(&case)?;
+            text.add(&own)?;
+        }
+    }
+    text.finish(None, &Map::new())?;
+    Ok(())
+}
+
 /// Writes results.json and the tables from lines of all cases, and says what they hold.
 pub fn finish(
     sweep: &Sweep,
@@ -81,15 +113,11 @@ pub fn finish(
     let mut json = folder.aside("results.json")?;
     let mut tables = Tables::begin(sweep, folder)?;
     let version = env!("CARGO_PKG_VERSION").to_string();
-    let head = StreamedResults { study: sweep.name.clone(), version, date: Some(today()), only_cases };
-    let mut rows = lines.cases().map(|case| {
-        let case = case?;
-        tally.add(&case);
-        tables.add(&case)?;
-        Ok(case)
+    let head = ResultsHead { study: sweep.name.clone(), version, date: Some(today()), only_cases };
+    let written = write(&mut json, &head, lines, &mut |case| {
+        tally.add(case);
+        tables.add(case)
     });
-    let written = write_json(&mut json, &head, &mut rows);
-    drop(rows);
     json.done(written)?;
     folder.remove_drawn();
     tables.done()?;

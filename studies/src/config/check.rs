@@ -35,12 +35,14 @@ pub struct Checker<'a> {
     pub diagnostics: Vec<LocatedDiagnostic>,
     /// Found so far.
     pub unused: Vec<Unused>,
+    /// Tables of the study in which names were looked up.
+    pub references: Vec<&'static str>,
 }
 
 impl<'a> Checker<'a> {
     /// A check of values in the study `root`.
     pub fn new(root: &'a Node) -> Self {
-        Checker { root, gravity: gravity_of(root), diagnostics: Vec::new(), unused: Vec::new() }
+        Checker { root, gravity: gravity_of(root), diagnostics: Vec::new(), unused: Vec::new(), references: Vec::new() }
     }
 
     fn wrong(&mut self, origin: &Origin, key: &str, message: impl Into<String>) -> Option<Json> {
@@ -143,7 +145,10 @@ impl<'a> Checker<'a> {
         Some(text.into())
     }
 
-    fn reference(&mut self, node: &Node, text: &str, table: &str, key: &str) -> Option<Json> {
+    fn reference(&mut self, node: &Node, text: &str, table: &'static str, key: &str) -> Option<Json> {
+        if !self.references.contains(&table) {
+            self.references.push(table);
+        }
         let entries = self.root.table().and_then(|root| root.get(table)?.table());
         let names: Vec<&str> = entries.map(|entries| entries.keys().collect()).unwrap_or_default();
         if !names.contains(&text) {
@@ -390,9 +395,9 @@ impl<'a> Checker<'a> {
         }
         // A key that is written wrongly is not missing as well.
         parameters.retain(|p| table.get(p.name).is_some() || !misspelt.contains(&p.name));
-        let rest = self.table(node, table, &parameters, &skip, &[], key)?;
+        let Some(Json::Object(rest)) = self.table(node, table, &parameters, &skip, &[], key) else { return None };
         let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
-        out.extend(rest.as_object().cloned().unwrap_or_default());
+        out.extend(rest);
         let value = Json::Object(out);
         if let Some(card) = chosen
             && self.diagnostics.len() == found

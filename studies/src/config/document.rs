@@ -77,6 +77,21 @@ impl Table {
     }
 }
 
+impl Value {
+    /// What kind of value it is, in words.
+    pub fn describe(&self) -> String {
+        match self {
+            Value::String(text) => format!("the text \"{text}\""),
+            Value::Integer(whole) => format!("the number {whole}"),
+            Value::Float(number) => format!("the number {number}"),
+            Value::Boolean(value) => format!("{value}"),
+            Value::Date(_) => "a date".into(),
+            Value::Array(_) => "a list".into(),
+            Value::Table(_) => "a table".into(),
+        }
+    }
+}
+
 impl Node {
     /// The table, if it is one.
     pub fn table(&self) -> Option<&Table> {
@@ -113,15 +128,7 @@ impl Node {
 
     /// What kind of value it is, in words.
     pub fn describe(&self) -> String {
-        match &self.value {
-            Value::String(text) => format!("the text \"{text}\""),
-            Value::Integer(whole) => format!("the number {whole}"),
-            Value::Float(number) => format!("the number {number}"),
-            Value::Boolean(value) => format!("{value}"),
-            Value::Date(_) => "a date".into(),
-            Value::Array(_) => "a list".into(),
-            Value::Table(_) => "a table".into(),
-        }
+        self.value.describe()
     }
 
     /// The entry or list element at a dotted path with list indices, or its nearest ancestor that
@@ -233,9 +240,14 @@ pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
     Some(node)
 }
 
-/// A whole number, a decimal or a truth value of the plainest form, which most defaults are: every case of a study reads them.
+/// A whole number, a decimal, a truth value or a text of the plainest form, which most defaults are: every case of a study
+/// reads them.
 fn plain_scalar(text: &str) -> Option<Value> {
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let letters = |c: char| c.is_ascii_alphanumeric() || "_- ".contains(c);
+    if let Some(word) = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
+        return word.chars().all(letters).then(|| Value::String(word.into()));
+    }
     match text.split_once('.') {
         _ if text == "true" || text == "false" => Some(Value::Boolean(text == "true")),
         None if digits(text) && (text == "0" || !text.starts_with('0')) => text.parse().ok().map(Value::Integer),
@@ -374,13 +386,29 @@ mod tests {
     /// Values that are read without the parser of whole documents are what it reads; what is not plain is left to it.
     #[test]
     fn plain_values_are_those_of_the_parser() {
-        let plain = ["0", "7", "250", "0.0", "1.0", "12.750", "true", "false"];
+        let plain = ["0", "7", "250", "0.0", "1.0", "12.750", "true", "false", "\"\"", "\"jointed\"", "\"a b-c_1\""];
         for text in plain {
             let parsed = parse(&format!("value = {text}"), "").unwrap();
             let Value::Table(table) = parsed.value else { panic!("{text}") };
             assert_eq!(plain_scalar(text), Some(table.get("value").unwrap().value.clone()), "{text}");
         }
-        for text in ["", "-1", "007", "00.5", "1.", ".5", "1e3", "1_000", "inf", "\"x\"", "99999999999999999999"] {
+        for text in [
+            "",
+            "-1",
+            "007",
+            "00.5",
+            "1.",
+            ".5",
+            "1e3",
+            "1_000",
+            "inf",
+            "\"",
+            "\"\"\"",
+            "\"x\\n\"",
+            "\"a\" \"b\"",
+            "'x'",
+            "99999999999999999999",
+        ] {
             assert_eq!(plain_scalar(text), None, "{text}");
         }
     }

@@ -4,7 +4,7 @@
 
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Node, Table, Value};
-use crate::config::dotted_key::join;
+use crate::config::dotted_key::{join, segments};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use serde_json::{Map, Value as Json};
@@ -103,6 +103,17 @@ impl Expansion {
                 .push(LocatedDiagnostic::new(&root.place("sweep"), "sweep", message).help("use fewer values per axis"));
         }
         if mistakes.is_empty() { Ok(expansion) } else { Err(mistakes) }
+    }
+
+    /// What the cases are made from.
+    pub fn base(&self) -> &Node {
+        &self.base
+    }
+
+    /// Whether a top-level key, or anything below it, is set by a variant, a scene or the sweep.
+    pub fn changes(&self, name: &str) -> bool {
+        let set = self.variants.iter().chain(&self.scenes).flat_map(|entry| &entry.set).map(|(key, ..)| key.as_str());
+        set.chain(self.swept()).any(|key| segments(key).first().is_some_and(|first| first == name))
     }
 
     /// Keys that are swept.

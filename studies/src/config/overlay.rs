@@ -17,21 +17,21 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
         return Err(wrong(format!("\"{path}\" is not a dotted key")).help(help).into());
     }
     let mut node = root;
-    let mut walked = String::new();
-    for segment in &segments {
-        let described = node.describe();
+    let walked = |place: usize| segments[..place].iter().fold(String::new(), |path, segment| join(&path, segment));
+    for (place, segment) in segments.iter().enumerate() {
         node = match &mut node.value {
             Value::Table(table) => child(table, segment, key_origin),
             Value::Array(nodes) => {
-                let index = find(nodes, segment)
-                    .map_err(|help| wrong(format!("the list {walked} has no entry \"{segment}\"")).help(help))?;
+                let index = find(nodes, segment).map_err(|help| {
+                    wrong(format!("the list {} has no entry \"{segment}\"", walked(place))).help(help)
+                })?;
                 &mut nodes[index]
             }
-            _ => {
-                return Err(wrong(format!("{walked} is {described}, so nothing can be set inside it")).into());
+            other => {
+                let message = format!("{} is {}, so nothing can be set inside it", walked(place), other.describe());
+                return Err(wrong(message).into());
             }
         };
-        walked = join(&walked, segment);
     }
     *node = value;
     Ok(())

@@ -2,9 +2,9 @@
 
 use super::kind::{CasesOf, kind};
 use crate::results::{CaseLabel, CaseResult};
-use crate::solve::{Observer, side_by_side, solve_followed};
+use crate::side_by_side::{in_order, side_by_side};
+use crate::solve::{Observer, solve_followed};
 use crate::study::Case;
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// Streamed cases that are solved before their results are handed over, for each of those side by side.
@@ -64,9 +64,7 @@ impl<'a> CasesOf<'a> {
             CasesOf::Streamed(sweep) => side_by_side(jobs, || {
                 for chunk in ids.chunks(AT_ONCE * jobs.max(1)) {
                     let one = |id: &usize| solve_followed(&sweep.case(*id).ok()?, observer);
-                    let solved: Vec<_> =
-                        if jobs > 1 { chunk.par_iter().map(one).collect() } else { chunk.iter().map(one).collect() };
-                    solved.into_iter().flatten().for_each(&mut *take);
+                    in_order(chunk, one).into_iter().flatten().for_each(&mut *take);
                 }
             }),
         }

@@ -8,8 +8,9 @@ use crate::figures::format::format_number;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_svg, mechanism_svg, scene_svg};
 use crate::results::{CaseLabel, CaseResult, StudyResults};
+use crate::side_by_side::side_by_side;
+use crate::solve::Observer;
 use crate::solve::explain::explain;
-use crate::solve::{Observer, side_by_side};
 use crate::study::{Case, Study, as_blocks};
 use crate::verify::{StoredCheck, solve_again};
 use crate::writers::comparison::comparison_table;
@@ -37,20 +38,16 @@ impl Study {
         StudyResults { study, version, date: None, only_cases, cases, comparison: own.comparison, own: own.other }
     }
 
-    /// What a run with these results, in order of id, writes and says; `date` is its day.
-    pub fn output_of(&self, version: &str, date: Option<String>, cases: Vec<CaseResult>, jobs: usize) -> RunOutput {
-        let results = StudyResults { date, ..self.results(version, cases) };
+    /// What a run with these results, in order of id, writes and says.
+    pub fn output_of(&self, request: &RunRequest, cases: Vec<CaseResult>) -> RunOutput {
+        let results = StudyResults { date: request.date.clone(), ..self.results(&request.version, cases) };
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
-        let files = side_by_side(jobs, || written(&output));
-        let mut table = results_table(&output);
-        if let Some(comparison) = &results.comparison {
-            table += "\n";
-            table += &comparison_table(comparison);
-        }
-        table += &found(&results.own);
+        let files = side_by_side(request.jobs, || written(&output, !request.results_apart));
+        let table = if request.quiet { String::new() } else { table(&output) };
         let certified = results.certified();
-        RunOutput { files, table, remarks: Vec::new(), certified }
+        let results = request.results_apart.then_some(results);
+        RunOutput { files, results, table, remarks: Vec::new(), certified }
     }
 
     /// Stored cases that are this study's own: of the same label, and of the same resolved case.
@@ -142,7 +139,7 @@ impl LoadedStudy for Study {
             done.extend(solved.into_iter().map(|case| (case.label.id, case)));
         }
         observer.phase("writing and drawing");
-        let output = self.output_of(&request.version, request.date.clone(), done.into_values().collect(), request.jobs);
+        let output = self.output_of(request, done.into_values().collect());
         let certified = output.certified && !observer.cancelled();
         RunOutput { remarks: remarks(request, others, self.count()), certified, ..output }
     }
@@ -161,7 +158,7 @@ impl LoadedStudy for Study {
         drop(again);
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let made = match cases.len() == results.cases.len() {
-            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases))),
+            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases), true)),
             false => Vec::new(),
         };
         let files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
@@ -175,6 +172,16 @@ impl LoadedStudy for Study {
             how: HOW,
         })
     }
+}
+
+/// The table on the terminal, with what the study's kind adds to it.
+fn table(output: &StudyOutput) -> String {
+    let mut table = results_table(output);
+    if let Some(comparison) = &output.results.comparison {
+        table += "\n";
+        table += &comparison_table(comparison);
+    }
+    table + &found(&output.results.own)
 }
 
 /// What a kind that searches has found, a line each.

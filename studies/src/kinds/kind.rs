@@ -1,7 +1,7 @@
 //! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
 
 use super::same_bytes::SameBytes;
-use crate::results::{CaseLabel, CaseResult, Comparison};
+use crate::results::{CaseLabel, CaseResult, Comparison, StudyResults};
 use crate::solve::{Observer, Unobserved, solve_cases};
 use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource, Sweep};
 use serde_json::{Map, Value as Json};
@@ -181,6 +181,11 @@ pub struct RunRequest {
     pub date: Option<String>,
     /// The results.json of each of the study's parts, in order.
     pub parts: Vec<String>,
+    /// Whether nobody reads the table: it stays empty.
+    pub quiet: bool,
+    /// Whether the caller writes results.json itself, from [`RunOutput::results`] where there are some: the text need not
+    /// be held.
+    pub results_apart: bool,
 }
 
 /// What a run has made.
@@ -188,6 +193,8 @@ pub struct RunRequest {
 pub struct RunOutput {
     /// (file name relative to the result folder, bytes), in a fixed order.
     pub files: Vec<(String, Vec<u8>)>,
+    /// What results.json holds, where that is not among the files.
+    pub results: Option<StudyResults>,
     /// The table for the terminal.
     pub table: String,
     /// What a user should know of the run, line by line.

@@ -7,8 +7,9 @@ use crate::results::CaseResult;
 use crate::solve::Observer;
 use crate::solve::explain::explain_first;
 use crate::study::{Sweep, as_blocks};
-use crate::writers::stream::{StreamedResults, write_json};
+use crate::writers::results_text::{ResultsHead, ResultsText, case_text};
 use crate::writers::streamed_tables::{StreamedTable, wanted};
+use serde_json::Map;
 
 impl LoadedStudy for Sweep {
     fn name(&self) -> &str {
@@ -44,20 +45,17 @@ impl LoadedStudy for Sweep {
         CasesOf::Streamed(self).solve(&request.wanted, request.jobs, observer, &mut |case| cases.push(case));
         let certified = cases.iter().all(|case| case.certificate.passed);
         let only = (cases.len() < self.count()).then(|| cases.iter().map(|case| case.label.id).collect());
-        let head = StreamedResults {
+        let head = ResultsHead {
             study: self.name.clone(),
             version: request.version.clone(),
             date: request.date.clone(),
             only_cases: only,
         };
-        let mut json = Vec::new();
-        let written =
-            write_json(&mut json, &head, &mut cases.iter().cloned().map(Ok)).and_then(|()| tables(self, &cases));
-        let (files, remarks) = match written {
-            Ok(tables) => ([("results.json".into(), json)].into_iter().chain(tables).collect(), Vec::new()),
+        let (files, remarks) = match files(self, &head, &cases) {
+            Ok(files) => (files, Vec::new()),
             Err(error) => (Vec::new(), vec![error.to_string()]),
         };
-        RunOutput { files, table: String::new(), remarks, certified }
+        RunOutput { files, remarks, certified, ..RunOutput::default() }
     }
 
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
@@ -65,12 +63,15 @@ impl LoadedStudy for Sweep {
     }
 }
 
-/// The tables that are wanted, by name.
-fn tables(sweep: &Sweep, cases: &[CaseResult]) -> std::io::Result<Vec<(String, Vec<u8>)>> {
+/// results.json and the tables that are wanted, by name.
+fn files(sweep: &Sweep, head: &ResultsHead, cases: &[CaseResult]) -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    let mut json = ResultsText::begin(Vec::new(), head)?;
+    cases.iter().try_for_each(|case| json.add(&case_text(case)?))?;
+    let json = ("results.json".to_string(), json.finish(None, &Map::new())?);
     let whole = |name: &'static str| {
         let mut table = StreamedTable::new(name, Vec::new(), sweep)?;
         cases.iter().try_for_each(|case| table.add(case))?;
         Ok((name.to_string(), table.finish()?))
     };
-    wanted(sweep).into_iter().map(whole).collect()
+    std::iter::once(Ok(json)).chain(wanted(sweep).into_iter().map(whole)).collect()
 }

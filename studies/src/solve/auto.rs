@@ -7,7 +7,7 @@
 use super::case_input::CaseInput;
 use crate::config::default_table::default_table;
 use crate::study::SelectedSolver;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use voussoir_core::limit::{LimitProblem, LimitSolver};
 use voussoir_core::model::Assembly;
 use voussoir_core::path::{PathProblem, PathSettings, PathSolver};
@@ -86,15 +86,19 @@ pub fn willing<'a>(
     }
 }
 
-/// The limit solvers to try, in order.
+/// The limit solvers to try, in order; those that `auto` chooses do not refuse the problem.
 pub fn limit_solvers(selected: &SelectedSolver, problem: &LimitProblem) -> Vec<TaggedLimitSolver> {
     if let SelectedSolver::Limit(tag, solver) = selected {
         return vec![(tag.clone(), solver.clone())];
     }
-    let fits = |card: &&Card| problem.non_associated || !card.offers(Capability::NON_ASSOCIATED);
-    let solvers = by_cost(PluginKind::LimitSolver).into_iter().filter(fits);
-    let built = solvers.filter_map(|card| Some((card.tag.to_string(), Arc::from(built::<dyn LimitSolver>(card)?))));
-    built.filter(|(_, solver): &TaggedLimitSolver| solver.refuses(problem).is_none()).collect()
+    // Every case of a study asks for them.
+    static BUILT: LazyLock<Vec<(&Card, Arc<dyn LimitSolver>)>> = LazyLock::new(|| {
+        let solvers = by_cost(PluginKind::LimitSolver).into_iter();
+        solvers.filter_map(|card| Some((card, Arc::from(built::<dyn LimitSolver>(card)?)))).collect()
+    });
+    let fits = |card: &Card| problem.non_associated || !card.offers(Capability::NON_ASSOCIATED);
+    let willing = BUILT.iter().filter(|(card, solver)| fits(card) && solver.refuses(problem).is_none());
+    willing.map(|(card, solver)| (card.tag.to_string(), solver.clone())).collect()
 }
 
 /// A solver with the defaults of its keys.

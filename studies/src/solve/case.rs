@@ -5,14 +5,13 @@ use super::auto::path_solvers;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::sensitivity::sensitivities;
-use super::side_by_side::side_by_side;
 use super::statics::{falls_by_statics, stands_by_statics, stands_without_a_path};
 use super::{limit, path};
 use crate::results::load_entries::load_entries;
 use crate::results::{CaseLabel, CaseResult};
+use crate::side_by_side::{in_order, side_by_side};
 use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
-use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 use voussoir_core::limit::Status;
@@ -124,7 +123,7 @@ pub fn solve_followed(case: &Case, observer: &dyn Observer) -> Option<CaseResult
 pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
     let one = |id: &usize| solve_followed(&study.cases[*id], observer);
     if jobs > 1 {
-        side_by_side(jobs, || wanted.par_iter().filter_map(one).collect())
+        side_by_side(jobs, || in_order(wanted, one)).into_iter().flatten().collect()
     } else {
         wanted.iter().filter_map(one).collect()
     }

@@ -7,6 +7,7 @@ use super::safe_theorem::static_proof;
 use super::settlement::{Settling, follow_supports, settles};
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
+use crate::study::SelectedSolver;
 use voussoir_core::certificate::Hinge;
 use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
@@ -126,8 +127,10 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let mut notes = Vec::new();
     let mut best: Option<CaseResult> = None;
+    // Those that `auto` chooses have been asked.
+    let named = matches!(selected, SelectedSolver::Limit(..));
     for (tag, solver) in limit_solvers(selected, problem) {
-        if let Some(why) = solver.refuses(problem) {
+        if named && let Some(why) = solver.refuses(problem) {
             notes.push(format!("{tag}: {why}"));
             continue;
         }

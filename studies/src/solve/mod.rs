@@ -21,11 +21,9 @@ pub(crate) mod restated;
 mod safe_theorem;
 pub mod sensitivity;
 mod settlement;
-mod side_by_side;
 mod statics;
 mod symmetric;
 
 pub use case::{label_of, solve_case, solve_cases, solve_followed, solve_input, solve_unless_cancelled};
 pub use case_input::CaseInput;
 pub use observer::{Observer, PathProgress, RunEvent, Unobserved, Watch};
-pub use side_by_side::side_by_side;

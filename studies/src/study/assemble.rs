@@ -13,7 +13,7 @@ pub(crate) fn read_plugin<T: serde::de::DeserializeOwned>(
     key: &str,
     table: &Json,
 ) -> Option<T> {
-    match serde_json::from_value(table.clone()) {
+    match T::deserialize(table) {
         Ok(plugin) => Some(plugin),
         Err(error) => {
             diagnostics.wrong(key, format!("cannot be read: {error}"), "correct this table");

@@ -2,7 +2,7 @@
 
 use super::assemble::{assembly, catalogue};
 use super::diagnostics::DiagnosticList;
-use super::keys::{kind_tables, study_keys};
+use super::keys::{case_keys, study_keys};
 use super::model::{Case, SelectedSolver};
 use super::numeric_keys::numeric_keys;
 use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
@@ -10,19 +10,28 @@ use super::plausibility::warnings;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::stages::build_stages;
 use crate::config::check::{Checker, Unused};
+use crate::config::checked_keys::{CheckedKey, CheckedKeys};
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
-use crate::config::expand::Expanded;
+use crate::config::expand::{Expanded, Expansion};
 use serde_json::{Map, Value as Json};
-use voussoir_core::plugin::{PluginKind, cards_of, nearest};
+use voussoir_core::plugin::{PluginKind, card, cards_of, nearest};
 
 /// The load factor is not differentiated with respect to longer lists of numbers: they are data, no parameters.
 const LONGEST: usize = 12;
 
+/// What is known of a top-level key that has the same value in other cases.
+pub(super) type KnownKeys<'a> = dyn Fn(&str) -> Option<&'a CheckedKey> + 'a;
+
+/// What is known of a top-level key of all cases of an expansion.
+pub(super) fn shared_key<'a>(checked: &'a CheckedKeys, expansion: &Expansion, name: &str) -> Option<&'a CheckedKey> {
+    checked.get(expansion, case_keys(), name)
+}
+
 /// Checks and builds one case.
-pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<LocatedDiagnostic>> {
+pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -> Result<Case, Vec<LocatedDiagnostic>> {
     let Expanded { variant, scene, parameters, root } = expanded;
-    let (resolved, found, unused) = check_keys(&root)?;
+    let (resolved, found, unused) = check_keys(&root, known)?;
     let mut diagnostics = DiagnosticList::new(&root, found);
     let mut notes: Vec<String> =
         unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
@@ -82,7 +91,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded) -> Result<Case, Vec<Loca
 type Checked = (Map<String, Json>, Vec<LocatedDiagnostic>, Vec<Unused>);
 
 /// The top-level keys with their normalised values, what is wrong with them, and keys without influence.
-fn check_keys(root: &Node) -> Result<Checked, Vec<LocatedDiagnostic>> {
+fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<LocatedDiagnostic>> {
     let mut checker = Checker::new(root);
     let Some(table) = root.table() else {
         return Err(vec![LocatedDiagnostic::new(&root.origin, "", "must be a table")]);
@@ -98,10 +107,13 @@ fn check_keys(root: &Node) -> Result<Checked, Vec<LocatedDiagnostic>> {
         checker.diagnostics.push(wrong);
     }
     let mut resolved = Map::new();
-    let tables = kind_tables();
-    let apart = |name: &str| ["sweep", "variants"].contains(&name) || tables.contains(&name);
-    for parameter in keys.iter().filter(|parameter| !apart(parameter.name)) {
+    for parameter in case_keys() {
         if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
+            continue;
+        }
+        if let Some(key) = known(parameter.name).filter(|key| key.holds_for(&checker)) {
+            resolved.extend(key.value.clone().map(|value| (parameter.name.to_string(), value)));
+            checker.unused.extend(key.unused.iter().cloned());
             continue;
         }
         if let Ok(Some(value)) = checker.parameter(root, table, parameter, "") {
@@ -113,9 +125,57 @@ fn check_keys(root: &Node) -> Result<Checked, Vec<LocatedDiagnostic>> {
 
 fn check_kind(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<String, Json>) {
     let Some(kind) = resolved.get("kind").and_then(Json::as_str) else { return };
-    let kinds: Vec<_> = cards_of(PluginKind::StudyKind).iter().map(|card| card.tag).collect();
-    if !kinds.contains(&kind) {
+    if card(PluginKind::StudyKind, kind).is_none() {
+        let kinds: Vec<_> = cards_of(PluginKind::StudyKind).iter().map(|card| card.tag).collect();
         let help = suggest(kind, &kinds, "kinds available");
         diagnostics.wrong("kind", format!("there is no study kind \"{kind}\""), help);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::study::{Study, load};
+    use serde_json::json;
+
+    const ARCH: &str = include_str!("../commands/new/arch.toml");
+
+    fn study(text: &str) -> Study {
+        load(text, "arch.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"))
+    }
+
+    /// Whether cases change one key or all, each is the one that its own file gives.
+    #[test]
+    fn cases_of_a_study_are_those_of_studies_of_one_case() {
+        let own = |sets: &[(String, String)]| load(ARCH, "arch.toml", sets).unwrap_or_else(|wrong| panic!("{wrong}"));
+        for (key, values) in [
+            ("scene.profile.rise", ["1.5", "2.5"]),
+            ("stages.0.gravity", ["9.81", "5.0"]),
+            ("materials.stone.density", ["\"22 kN/m3\"", "2200.0"]),
+            ("solver.tolerance", ["1e-9", "1e-6"]),
+            ("output.fields", ["true", "false"]),
+        ] {
+            let swept = study(&format!("{ARCH}\n[sweep]\n\"{key}\" = {{ list = [{}] }}\n", values.join(", ")));
+            for (case, value) in swept.cases.iter().zip(values) {
+                let own = &own(&[(key.to_string(), value.to_string())]).cases[0];
+                assert_eq!((&case.resolved, &case.notes), (&own.resolved, &own.notes), "{key} = {value}");
+            }
+        }
+    }
+
+    /// Specific weights follow the gravity of their case, and names the tables of their case.
+    #[test]
+    fn what_a_key_depends_on_is_looked_at_in_each_case() {
+        let heavy = ARCH.replacen("density = 2200.0", "density = \"22 kN/m3\"", 1);
+        assert_ne!(heavy, ARCH);
+        let swept = study(&format!("{heavy}\n[sweep]\n\"stages.0.gravity\" = {{ list = [10.0, 5.0] }}\n"));
+        let densities: Vec<_> =
+            swept.cases.iter().map(|case| &case.resolved["materials"]["stone"]["density"]).collect();
+        assert_eq!(densities, [&json!(2200.0), &json!(4400.0)]);
+        let moved = swept.at(0, &[("stages.0.gravity".into(), json!(20.0))]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        assert_eq!(moved.resolved["materials"]["stone"]["density"], json!(1100.0));
+        let other = "[[variants]]\nname = \"a\"\n[[variants]]\nname = \"b\"\n\
+                     set = { \"joints.damp.law\" = \"coulomb_associated\", \"joints.damp.friction\" = 0.4, \"scene.joint\" = \"damp\" }\n";
+        let joints = study(&format!("{ARCH}\n{other}"));
+        assert_eq!(joints.cases[1].resolved["scene"]["joint"], "damp");
     }
 }

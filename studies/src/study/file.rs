@@ -1,6 +1,6 @@
 //! A study file whose axes are read: the cases are made from here, all of them to be held, or one at a time.
 
-use super::case::build_case;
+use super::case::{build_case, shared_key};
 use super::diagnostics::located;
 use super::error::StudyError;
 use super::keys::{VARIANT, kind_tables, study_keys};
@@ -9,17 +9,21 @@ use super::outline::Outline;
 use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
 use super::sweep::Sweep;
 use crate::config::check::Checker;
+use crate::config::checked_keys::CheckedKeys;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
 use crate::config::origin::Origin;
 use crate::kinds::kind;
+use crate::side_by_side::in_order;
 use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
 use voussoir_core::plugin::{Parameter, Shape};
 
 /// Greatest number of different mistakes reported.
 const MAX_MISTAKES: usize = 100;
+/// Cases that are made before they are handed over.
+const AT_ONCE: usize = 64;
 /// Greatest number of different notes of a sweep that are kept.
 const MAX_NOTES: usize = 100;
 
@@ -28,6 +32,7 @@ const MAX_NOTES: usize = 100;
 pub struct StudyFile {
     root: Node,
     expansion: Expansion,
+    checked: CheckedKeys,
     outline: Outline,
     /// Found wrong so far.
     diagnostics: Vec<LocatedDiagnostic>,
@@ -47,7 +52,7 @@ impl StudyFile {
         let before = diagnostics.len();
         let table = kind_table(&root, &mut diagnostics);
         let table_is_fine = diagnostics.len() == before;
-        let expansion = match Expansion::new(&root, &kind_tables()) {
+        let expansion = match Expansion::new(&root, kind_tables()) {
             Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
@@ -62,7 +67,7 @@ impl StudyFile {
         if table_is_fine {
             check_outline(&root, &outline, &mut diagnostics);
         }
-        Ok(StudyFile { root, expansion, outline, diagnostics })
+        Ok(StudyFile { root, expansion, checked: CheckedKeys::default(), outline, diagnostics })
     }
 
     /// Number of cases.
@@ -73,15 +78,15 @@ impl StudyFile {
     /// The study with all its cases; every mistake at once.
     pub fn study(mut self) -> Result<Study, StudyError> {
         let mut cases = Vec::new();
-        make_cases(&self.expansion, &mut self.diagnostics, |case| cases.push(case));
-        let Sweep { name, kind, outline, output, resolved, expansion, .. } = self.sweep_of(cases.first())?;
-        Ok(Study { name, kind, outline, output, cases, resolved, expansion })
+        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |case| cases.push(case));
+        let Sweep { name, kind, outline, output, resolved, expansion, checked, .. } = self.sweep_of(cases.first())?;
+        Ok(Study { name, kind, outline, output, cases, resolved, expansion, checked })
     }
 
     /// The study with none of its cases kept; each is made once, so that every mistake is told at once.
     pub fn sweep(mut self) -> Result<Sweep, StudyError> {
         let (mut first, mut notes) = (None, Vec::new());
-        make_cases(&self.expansion, &mut self.diagnostics, |case| {
+        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |case| {
             for note in &case.notes {
                 if notes.len() < MAX_NOTES && !notes.contains(note) {
                     notes.push(note.clone());
@@ -94,7 +99,7 @@ impl StudyFile {
 
     /// The study with none of its cases made but the first: for those who know that [`StudyFile::sweep`] takes it.
     pub fn sweep_unchecked(mut self) -> Result<Sweep, StudyError> {
-        let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded));
+        let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded, &|_| None));
         let first = first.map_err(|wrong| self.diagnostics.extend(wrong)).ok();
         self.sweep_of(first.as_ref())
     }
@@ -119,6 +124,7 @@ impl StudyFile {
             notes: Vec::new(),
             resolved: self.root.to_toml(),
             expansion: self.expansion,
+            checked: self.checked,
         })
     }
 }
@@ -137,23 +143,27 @@ fn output(table: &Json, cases: usize) -> Output {
     }
 }
 
-/// Makes every case and hands it over; a mistake that several cases have stands once, with the first of them where not
-/// all have it.
-fn make_cases(expansion: &Expansion, diagnostics: &mut Vec<LocatedDiagnostic>, mut take: impl FnMut(Case)) {
+/// Makes every case, side by side where the caller works so, and hands them over in order; a mistake that several cases
+/// have stands once, with the first of them where not all have it.
+fn make_cases(
+    expansion: &Expansion,
+    checked: &CheckedKeys,
+    diagnostics: &mut Vec<LocatedDiagnostic>,
+    mut take: impl FnMut(Case),
+) {
     let count = expansion.count();
     let mut times: HashMap<LocatedDiagnostic, usize> = HashMap::new();
     let mut order: Vec<(LocatedDiagnostic, String)> = Vec::new();
-    for id in 0..count {
-        let (result, label) = match expansion.case(id) {
-            Ok(expanded) => {
-                let label = describe_case(&expanded);
-                (build_case(id, expanded), label)
-            }
-            Err(wrong) => (Err(wrong), String::new()),
-        };
+    let known = |name: &str| if count > 1 { shared_key(checked, expansion, name) } else { None };
+    let one = |id: &usize| expansion.case(*id).and_then(|expanded| build_case(*id, expanded, &known));
+    // No more at once than fit: a study may have a million.
+    let chunks = (0..count).step_by(AT_ONCE).map(|from| (from..count.min(from + AT_ONCE)).collect::<Vec<_>>());
+    let made = chunks.flat_map(|ids| in_order(&ids, one));
+    for (id, result) in made.enumerate() {
         match result {
             Ok(case) => take(case),
             Err(wrong) => {
+                let label = expansion.case(id).map(|expanded| describe_case(&expanded)).unwrap_or_default();
                 for diagnostic in wrong {
                     let times = times.entry(diagnostic.clone()).or_insert(0);
                     if *times == 0 {

@@ -163,8 +163,15 @@ fn kinds_with_tables() -> impl Iterator<Item = &'static Card> {
 }
 
 /// Names of the tables of study kinds, which are no part of a case.
-pub fn kind_tables() -> Vec<&'static str> {
-    kinds_with_tables().map(|card| card.tag).collect()
+pub fn kind_tables() -> &'static [&'static str] {
+    static TABLES: LazyLock<Vec<&'static str>> = LazyLock::new(|| kinds_with_tables().map(|card| card.tag).collect());
+    &TABLES
+}
+
+/// The top-level keys that are part of a case.
+pub fn case_keys() -> impl Iterator<Item = &'static Parameter> {
+    let apart = |name: &str| ["sweep", "variants"].contains(&name) || kind_tables().contains(&name);
+    study_keys().iter().filter(move |parameter| !apart(parameter.name))
 }
 
 /// The keys of a study file: those that every study has, and the table of each study kind that reads one.

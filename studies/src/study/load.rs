@@ -1,12 +1,13 @@
 //! From the text of a study file to a [`Study`]: every mistake of the whole file at once.
 
-use super::case::build_case;
+use super::case::{build_case, shared_key};
 use super::error::StudyError;
 use super::file::StudyFile;
 use super::model::{Case, Study};
 use super::source::StudySource;
 use super::sweep::Sweep;
 use crate::config::document::{Node, Value};
+use crate::config::dotted_key::segments;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use serde_json::Value as Json;
@@ -37,13 +38,15 @@ impl Study {
             set(&mut expanded.root, key, node, &origin).map_err(|wrong| vec![*wrong])?;
             expanded.parameters.insert(key.clone(), value.clone());
         }
-        Ok(build_case(id, expanded)?)
+        let other = |name: &str| values.iter().any(|(key, _)| segments(key).first().is_some_and(|first| first == name));
+        let known = |name: &str| if other(name) { None } else { shared_key(&self.checked, &self.expansion, name) };
+        Ok(build_case(id, expanded, &known)?)
     }
 }
 
 impl Sweep {
     /// Case `id < count()`.
     pub fn case(&self, id: usize) -> Result<Case, StudyError> {
-        Ok(build_case(id, self.expansion.case(id)?)?)
+        Ok(build_case(id, self.expansion.case(id)?, &|name| shared_key(&self.checked, &self.expansion, name))?)
     }
 }

@@ -3,6 +3,7 @@
 
 use super::numeric_keys::NumericKey;
 use super::outline::Outline;
+use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 use serde_json::{Map, Value as Json};
 use std::io::Write;
@@ -173,4 +174,6 @@ pub struct Study {
     pub resolved: toml::Value,
     /// Its base, variants, scenes and axes, from which cases are made.
     pub(crate) expansion: Expansion,
+    /// What all of them share.
+    pub(super) checked: CheckedKeys,
 }

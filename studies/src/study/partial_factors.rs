@@ -6,6 +6,7 @@
 use super::diagnostics::DiagnosticList;
 use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
+use std::borrow::Cow;
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape, card, nearest};
 
@@ -90,8 +91,8 @@ const CHANGES: &[(&str, &str, Change)] = &[
 ];
 
 /// The tables of a checked case with its design values; factors that change nothing are noted.
-pub fn design(resolved: &Map<String, Json>, notes: &mut Vec<String>) -> Map<String, Json> {
-    let Some(factors) = resolved.get("factors").and_then(Json::as_object) else { return resolved.clone() };
+pub fn design<'a>(resolved: &'a Map<String, Json>, notes: &mut Vec<String>) -> Cow<'a, Map<String, Json>> {
+    let Some(factors) = resolved.get("factors").and_then(Json::as_object) else { return Cow::Borrowed(resolved) };
     let mut out = Json::Object(resolved.clone());
     for (name, factor) in factors.iter().filter_map(|(name, factor)| Some((name, factor.as_f64()?))) {
         let mut changed = name == "loads";
@@ -118,9 +119,9 @@ pub fn design(resolved: &Map<String, Json>, notes: &mut Vec<String>) -> Map<Stri
     match out {
         Json::Object(mut out) => {
             out.remove("factors");
-            out
+            Cow::Owned(out)
         }
-        _ => resolved.clone(),
+        _ => Cow::Borrowed(resolved),
     }
 }
 

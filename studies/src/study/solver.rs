@@ -7,7 +7,7 @@ use crate::config::default_table::default_table;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Bond};
 use voussoir_core::path::{Continuation, PathSettings, PathSolver, StageSettings};
@@ -149,8 +149,8 @@ fn read_solver<T: serde::de::DeserializeOwned>(
     table: &Json,
     card: &Card,
 ) -> Option<T> {
-    let read = |table: Json| serde_json::from_value::<T>(table).map_err(|error| error.to_string());
-    let error = match read(table.clone()) {
+    let read = |table: &Json| T::deserialize(table).map_err(|error| error.to_string());
+    let error = match read(table) {
         Ok(plugin) => return Some(plugin),
         Err(error) => error,
     };
@@ -158,7 +158,7 @@ fn read_solver<T: serde::de::DeserializeOwned>(
     let culprit = table.as_object().into_iter().flatten().map(|(key, _)| key).find(|key| {
         let mut rest = table.clone();
         rest.as_object_mut().map(|rest| rest.remove(*key));
-        *key != card.kind.tag_key() && read(rest).err().as_ref() != Some(&error)
+        *key != card.kind.tag_key() && read(&rest).err().as_ref() != Some(&error)
     });
     let names: Vec<_> = card.parameters.iter().map(|parameter| parameter.name).collect();
     let help = match culprit {
@@ -193,13 +193,11 @@ fn needs_capabilities(
     assembly: &Assembly,
 ) {
     // `auto` needs at least what every solver needs.
-    let everyone: Vec<Requirement> = cards_of(PluginKind::LimitSolver)
-        .iter()
-        .flat_map(|card| card.requires)
-        .filter(|need| solvers_that(|solver| !solver.requires.contains(need)).is_empty())
-        .copied()
-        .collect();
-    let asked = chosen.map_or(everyone.as_slice(), |chosen| chosen.requires);
+    static EVERYONE: LazyLock<Vec<Requirement>> = LazyLock::new(|| {
+        let all = cards_of(PluginKind::LimitSolver).into_iter().flat_map(|card| card.requires);
+        all.filter(|need| solvers_that(|solver| !solver.requires.contains(need)).is_empty()).copied().collect()
+    });
+    let asked = chosen.map_or(EVERYONE.as_slice(), |chosen| chosen.requires);
     let used = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
     let laws = assembly.catalogue.laws.iter().enumerate().filter(|(law, _)| used(*law));
     let laws = laws.map(|(_, (name, _))| ("joints", name, PluginKind::InterfaceLaw));

@@ -4,6 +4,7 @@ use super::diagnostics::DiagnosticList;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
+use serde::Deserialize;
 use serde_json::{Map, Value as Json};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint, Settlement, Stage, Target};
@@ -113,7 +114,7 @@ fn build_loads(
     let (mut all, mut whole) = (Placed::default(), true);
     for (number, table) in stage["loads"].as_array().into_iter().flatten().enumerate() {
         let path = format!("{at}.loads.{number}");
-        let load: Option<Box<dyn LoadKind>> = match serde_json::from_value(table.clone()) {
+        let load: Option<Box<dyn LoadKind>> = match Deserialize::deserialize(table) {
             Ok(load) => Some(load),
             Err(error) => {
                 diagnostics.wrong(&path, format!("cannot be read: {error}"), "correct this load");

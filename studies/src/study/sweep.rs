@@ -2,6 +2,7 @@
 
 use super::model::Output;
 use super::outline::Outline;
+use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 
 /// A study file that holds no mistake, without its cases: what it takes does not grow with their number.
@@ -20,6 +21,7 @@ pub struct Sweep {
     /// The file with `--set` applied, as of [`super::Study`].
     pub resolved: toml::Value,
     pub(crate) expansion: Expansion,
+    pub(super) checked: CheckedKeys,
 }
 
 impl Sweep {

@@ -20,6 +20,7 @@ mod register;
 pub mod report;
 pub mod results_json;
 pub mod results_parquet;
+pub mod results_text;
 pub mod sensitivities_csv;
 pub mod stream;
 pub mod streamed_tables;

@@ -5,6 +5,7 @@ use crate::figures::format::{escape, format_short, format_value, unit_of_key};
 use crate::figures::words::words_of_key;
 use crate::study::{Case, Study};
 use serde_json::Value as Json;
+use std::collections::HashSet;
 use std::fmt::Write;
 
 /// Longest list of numbers that is written out.
@@ -140,12 +141,9 @@ fn quantity(x: f64, unit: &str) -> String {
 fn varied(study: &Study) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     for key in study.outline.axes.iter().flat_map(|(keys, _)| keys) {
-        let mut values: Vec<&Json> = Vec::new();
-        for value in study.cases.iter().filter_map(|case| case.parameters.get(key)) {
-            if !values.contains(&value) {
-                values.push(value);
-            }
-        }
+        let mut seen = HashSet::new();
+        let swept = study.cases.iter().filter_map(|case| case.parameters.get(key));
+        let values: Vec<&Json> = swept.filter(|value| seen.insert(value.to_string())).collect();
         let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
         let words = match values.as_slice() {
             [] => continue,

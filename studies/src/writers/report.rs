@@ -3,6 +3,7 @@
 use super::comparison::{comparison_rows, figure};
 use super::live::case_data;
 use super::page;
+use super::record::record;
 use super::register::register;
 use super::sensitivities_csv;
 use super::study_output::StudyOutput;
@@ -45,8 +46,8 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let cases = &study.results.cases;
     let mut body = format!("<h1>{}</h1>\n", escape(study.name));
     body += &summary(study);
-    if let Some(inputs) = &study.inputs {
-        body += &format!("<details open><summary>Inputs</summary>\n{inputs}</details>\n");
+    if let Some(inputs) = study.inputs {
+        body += &format!("<details open><summary>Inputs</summary>\n{}</details>\n", record(inputs));
     }
     if study.output.figures.anything()
         && let Some(chart) = study_chart(study)

@@ -1,6 +1,5 @@
 //! What writers are given: the results and what they were computed from.
 
-use super::record::record;
 use crate::results::{CaseResult, StudyResults, least_of};
 use crate::study::{Case, Drawn, Output, Study};
 use serde_json::Value as Json;
@@ -24,8 +23,8 @@ pub struct StudyOutput<'a> {
     pub output: Output,
     /// Ids of the cases that are drawn, where not all are.
     pub drawn: Option<BTreeSet<usize>>,
-    /// What was given, as HTML.
-    pub inputs: Option<String>,
+    /// The study whose inputs a page lists.
+    pub inputs: Option<&'a Study>,
 }
 
 /// The scene of a case.
@@ -55,7 +54,7 @@ impl<'a> StudyOutput<'a> {
             sweep_keys: swept.map(|parameters| parameters.keys().cloned().collect()).unwrap_or_default(),
             output: study.output.clone(),
             drawn: drawn(study, results),
-            inputs: Some(record(study)),
+            inputs: Some(study),
         }
     }
 

@@ -6,6 +6,7 @@ use crate::figures::format::{
 };
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use std::collections::HashMap;
 use voussoir_core::limit::Status;
 
 /// One row per case, then each distinct note once with the cases it belongs to.
@@ -22,6 +23,17 @@ pub fn results_table(study: &StudyOutput) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
     let notes = distinct_notes(cases);
+    let mut marks: HashMap<usize, String> = HashMap::new();
+    for (i, (_, ids)) in notes.iter().enumerate() {
+        let mark = format!("[{}]", i + 1);
+        for id in ids {
+            let own = marks.entry(*id).or_default();
+            // A case may say the same twice.
+            if !own.ends_with(&mark) {
+                *own += &mark;
+            }
+        }
+    }
     let factors = aligned(&cases.iter().map(factor).collect::<Vec<_>>());
     let swept: Vec<Vec<String>> = study
         .sweep_keys
@@ -45,12 +57,7 @@ pub fn results_table(study: &StudyOutput) -> String {
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| kind_word(m.kind).into()));
         row.push(hinges(case));
         row.push(if case.certificate.passed { "ok" } else { "FAILED" }.into());
-        let marks = notes
-            .iter()
-            .enumerate()
-            .filter(|(_, (_, ids))| ids.contains(&case.label.id))
-            .map(|(i, _)| format!("[{}]", i + 1));
-        row.push(marks.collect());
+        row.push(marks.get(&case.label.id).cloned().unwrap_or_default());
         table.add_row(row);
     }
     for (index, column) in table.column_iter_mut().enumerate() {

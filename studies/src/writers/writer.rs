@@ -30,12 +30,13 @@ pub fn writers() -> Vec<&'static WriterEntry> {
     all
 }
 
-/// Writes what the study's `[output]` asks for: all writers, or those that it lists and results.json, from which
-/// results are verified.
-pub fn written(study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
-    let wanted = |tag: &str| match &study.output.writers {
-        Some(tags) => tag == "results_json" || tags.iter().any(|wanted| wanted == tag),
-        None => true,
+/// Writes what the study's `[output]` asks for: all writers, or those that it lists; and, if `results`, results.json, from
+/// which results are verified.
+pub fn written(study: &StudyOutput, results: bool) -> Vec<(String, Vec<u8>)> {
+    let wanted = |tag: &str| match (tag, &study.output.writers) {
+        ("results_json", _) => results,
+        (_, Some(tags)) => tags.iter().any(|wanted| wanted == tag),
+        (_, None) => true,
     };
     let options = |tag: &str| match study.output.options.get(tag) {
         Some(options) => options.clone(),

@@ -61,6 +61,7 @@ impl LoadedStudy for PointStudy {
             table: table(self, &results),
             remarks: remarks(request, others, self.cases.len()),
             certified: results.iter().all(|result| result.status == PathStatus::Reached) && !observer.cancelled(),
+            results: None,
         }
     }
 

@@ -92,6 +92,7 @@ impl ReportStudy {
             table: table(&answers, &parts),
             remarks: Vec::new(),
             certified: answers.iter().all(|answer| answer.verdict != Verdict::Undecided),
+            results: None,
         }
     }
 }
