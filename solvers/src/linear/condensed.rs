@@ -330,7 +330,7 @@ impl Condensed {
     pub fn solve(&self, right: &[f64], refinements: usize) -> Option<Vec<f64>> {
         let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut x = self.apply(right)?;
-        let mut left = self.left(right, &x);
+        let mut left = if refinements > 0 { self.left(right, &x) } else { Vec::new() };
         for _ in 0..refinements {
             let step = self.apply(&left)?;
             let better: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();

@@ -141,6 +141,18 @@ fn set_row_product<S: Simd>(_: S, out: &mut DMatrix<f64>, rows: &DMatrix<f64>, a
     }
 }
 
+/// out += f a.
+#[inline(always)]
+fn add_one<S: Simd>(simd: S, out: &mut [f64], a: &[f64], f: f64) {
+    let (a, last) = S::as_simd_f64s(&a[..out.len()]);
+    let (whole, rest) = S::as_mut_simd_f64s(out);
+    let factor = simd.splat_f64s(f);
+    for (out, a) in whole.iter_mut().zip(a) {
+        *out = simd.add_f64s(*out, simd.mul_f64s(*a, factor));
+    }
+    rest.iter_mut().zip(last).for_each(|(out, a)| *out += a * f);
+}
+
 /// A += a bᵀ.
 pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
     with_vectors!('a, add_dyads(target: &'a mut DMatrix<f64>, a: &'a DMatrix<f64>, b: &'a DMatrix<f64>) -> ());
@@ -154,7 +166,7 @@ fn add_dyads<S: Simd>(simd: S, target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &
         factors.iter_mut().enumerate().for_each(|(i, f)| *f = b[(j, i)]);
         match factors.as_slice() {
             [0.0] | [0.0, 0.0] => {}
-            [f] => column.iter_mut().zip(a.as_slice()).for_each(|(t, a)| *t += a * f),
+            [f] => add_one(simd, column, a.as_slice(), *f),
             [f, g] => {
                 let (a, b) = a.as_slice().split_at(height);
                 column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);

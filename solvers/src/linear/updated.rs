@@ -61,6 +61,11 @@ impl<F: Factors> UpdatedFactorisation<F> {
         UpdatedFactorisation { factors, columns: BTreeMap::new() }
     }
 
+    /// Forgets all responses.
+    pub fn forget_responses(&mut self) {
+        self.columns.clear();
+    }
+
     /// Makes sure that the responses to the rows of a point are known, refined so often. Returns how many right-hand
     /// sides that took; `None` where they are not found.
     pub fn respond(&mut self, contact: usize, refinements: usize) -> Option<u64> {

@@ -157,6 +157,8 @@ impl PathChecker {
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs())).max(1e-300);
         let [mut bonded, mut strength, mut penetration, mut complementarity] = [None; 4];
         let note = |worst: &mut Option<f64>, value: f64| worsen(worst.get_or_insert(0.0), value);
+        // Most contact points share the law of the one before.
+        let (mut last, mut asks): (&[Facet], Asks) = (&[], Asks::of(&[]));
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
             let facets = match &contact.law {
                 PointLaw::Bonded => {
@@ -166,7 +168,10 @@ impl PathChecker {
                 PointLaw::Response(_) => continue,
                 PointLaw::Facets(facets) => facets,
             };
-            let asks = Asks::of(facets);
+            let before = std::mem::replace(&mut last, facets);
+            if !std::ptr::eq(before, last) {
+                asks = Asks::of(facets);
+            }
             for facet in facets.iter() {
                 let excess = facet.normal[0] * force[0] + facet.normal[1] * force[1] - facet.bound * contact.area;
                 note(&mut strength, excess);

@@ -34,13 +34,15 @@ impl<'a> Displaced<'a> {
     pub fn new(problem: &'a PathProblem, state: &'a PathState, finite: bool) -> Self {
         let forces = problem.forces_on_points(state, finite);
         let bodies = problem.bodies.iter().zip(&forces).enumerate();
+        let mut flat: Vec<f64> = Vec::new();
         let of = |u: &[f64]| u.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect();
         let deformation =
             bodies.map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
                 (None, ..) => Vec::new(),
                 (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
                 (Some(flexibility), ..) => {
-                    let flat: Vec<f64> = f.iter().flat_map(|f| [f.x, f.y]).collect();
+                    flat.clear();
+                    f.iter().for_each(|f| flat.extend([f.x, f.y]));
                     let mut u = vec![0.0; flat.len()];
                     add_product(&mut u, flexibility.nrows(), flexibility.as_slice(), &flat);
                     of(&u)
@@ -72,18 +74,16 @@ impl<'a> Displaced<'a> {
         [contact.plus, contact.minus].map(|side: Attachment| self.parts(side.body, side.slot, contact.position))
     }
 
-    /// Axes (n, t) of a contact point that have turned with a share β of its bodies' relative turn.
+    /// Axes (n, t) of a contact point that have turned with a share β of its bodies' relative turn, where displacements are
+    /// finite.
     fn axes(&self, contact: &Contact, share: f64) -> [Vec2; 2] {
         let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
         let turn = low + share * (high - low);
-        [contact.normal, contact.tangent].map(|e| if self.finite { rotated(e, turn) } else { e })
+        [contact.normal, contact.tangent].map(|e| rotated(e, turn))
     }
 
-    /// β of a contact point and its derivative by the slip, at its slip in the mean axes.
+    /// β of a contact point and its derivative by the slip, at its slip in the mean axes; displacements are finite.
     fn share(&self, contact: &Contact, [plus, minus]: &[[Vec2; 2]; 2]) -> [f64; 2] {
-        if !self.finite {
-            return [0.5, 0.0];
-        }
         let slip = (plus[0] - minus[0]).dot(&self.axes(contact, 0.5)[1]);
         let [share, first, _] = contact.sliding.share_at(slip);
         [share, first]
@@ -91,16 +91,21 @@ impl<'a> Displaced<'a> {
 
     /// Gaps (n, t) of all contact points from motions, forces and loads \[m\].
     pub fn gaps(&self) -> Vec<[f64; 2]> {
-        let gap = |(contact, force): (&Contact, &[f64; 2])| {
+        let apart = |contact: &Contact| {
+            if !self.finite {
+                let place = |side: Attachment| self.displacement(side.body, side.slot, contact.position);
+                let apart = place(contact.plus) - place(contact.minus);
+                return [apart.dot(&contact.normal), apart.dot(&contact.tangent)];
+            }
             let sides = self.sides(contact);
             let [share, _] = self.share(contact, &sides);
             let ([plus, minus], [of_motion, of_deformation]) =
                 (sides, [share, 0.5].map(|share| self.axes(contact, share)));
-            let of = |k: usize| {
-                let read = (plus[0] - minus[0]).dot(&of_motion[k]) + (plus[1] - minus[1]).dot(&of_deformation[k]);
-                read + contact.compliance[k] * force[k]
-            };
-            [contact.gap + of(0), of(1)]
+            [0, 1].map(|k| (plus[0] - minus[0]).dot(&of_motion[k]) + (plus[1] - minus[1]).dot(&of_deformation[k]))
+        };
+        let gap = |(contact, force): (&Contact, &[f64; 2])| {
+            let ([n, t], [first, second]) = (apart(contact), contact.compliance);
+            [contact.gap + n + first * force[0], t + second * force[1]]
         };
         self.problem.contacts.iter().zip(&self.state.force).map(gap).collect()
     }
@@ -110,9 +115,14 @@ impl<'a> Displaced<'a> {
     pub fn stored(&self) -> Option<f64> {
         let contacts = &self.problem.contacts;
         let pulls = |f: &Facet| f.mode == FacetMode::Opening && f.bound > 0.0;
-        let by_history = |law: &PointLaw| match law {
+        // Most contact points share the law of the one before.
+        let mut last: &[Facet] = &[];
+        let mut by_history = |law: &'a PointLaw| match law {
             PointLaw::Bonded => false,
-            PointLaw::Facets(facets) => facets.iter().any(pulls),
+            PointLaw::Facets(facets) => {
+                let before = std::mem::replace(&mut last, facets);
+                !std::ptr::eq(before, last) && facets.iter().any(pulls)
+            }
             PointLaw::Response(_) => true,
         };
         if self.state.yielded.iter().any(Option::is_some) || contacts.iter().any(|c| by_history(&c.law)) {
@@ -153,7 +163,16 @@ impl<'a> Displaced<'a> {
         }
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
             // With small displacements at its place, wherever that moves.
-            let sides = if self.finite { self.sides(contact) } else { [[Vec2::zeros(); 2]; 2] };
+            if !self.finite {
+                let push = contact.normal * r[0] + contact.tangent * r[1];
+                for (body, push) in [(contact.plus.body, push), (contact.minus.body, -push)] {
+                    let moment = cross(contact.position - problem.bodies[body].pole, push);
+                    let wrench = &mut wrench[body];
+                    *wrench = [wrench[0] + push.x, wrench[1] + push.y, wrench[2] + moment];
+                }
+                continue;
+            }
+            let sides = self.sides(contact);
             let ([plus, minus], [share, by_slip]) = (sides, self.share(contact, &sides));
             let [n, t] = self.axes(contact, share);
             let by_motion = n * r[0] + t * r[1];
@@ -169,12 +188,10 @@ impl<'a> Displaced<'a> {
                 let passing = cross(by_motion, plus[0] - minus[0]) * (high - low) * by_slip;
                 both((plus[0] + minus[0]) * 0.5, mean[1] * passing);
             }
-            if self.finite {
-                // The levers that the deformation of the blocks adds.
-                let moment = cross((plus[1] + minus[1]) * 0.5, mean[0] * r[0] + mean[1] * r[1]);
-                wrench[contact.plus.body][2] += moment;
-                wrench[contact.minus.body][2] -= moment;
-            }
+            // The levers that the deformation of the blocks adds.
+            let moment = cross((plus[1] + minus[1]) * 0.5, mean[0] * r[0] + mean[1] * r[1]);
+            wrench[contact.plus.body][2] += moment;
+            wrench[contact.minus.body][2] -= moment;
         }
         wrench
     }

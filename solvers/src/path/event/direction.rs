@@ -132,6 +132,11 @@ fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool
     // With open points closed: what flows there may be a mechanism.
     let mut closed = modes.to_vec();
     open.iter().for_each(|c| closed[*c] = ContactMode::Stick);
+    if let Some(present) = trace.factors.present.as_mut().filter(|present| present.modes == closed) {
+        // Stale for its responses alone.
+        present.set_refined(refine_columns);
+        return true;
+    }
     factorise(trace, closed, refine_columns)
 }
 

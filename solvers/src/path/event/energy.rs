@@ -1,5 +1,5 @@
-//! What the energy balance needs of a state: displacements of loaded points, reactions of held blocks, energy stored
-//! in blocks and joints.
+//! What a record needs of a state: the deformation of the blocks, which gives gaps and the energy stored in blocks and
+//! joints, displacements of loaded points, and reactions of held blocks.
 //!
 //! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron);
 //! the work of gravity on the elastic displacements vanishes, since their mean does.
@@ -8,7 +8,7 @@ use crate::linear::dense::add_product;
 use crate::linear::inner;
 use crate::path::energy::WorkState;
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::{Contact, PathProblem, PathState};
+use voussoir_core::path::{Attachment, Contact, PathProblem, PathState};
 
 /// Displacement of a point by the rigid motion of its body.
 pub fn rigid(problem: &PathProblem, motion: &[[f64; 3]], body: usize, point: Vec2) -> Vec2 {
@@ -16,31 +16,67 @@ pub fn rigid(problem: &PathProblem, motion: &[[f64; 3]], body: usize, point: Vec
     Vec2::new(x, y) + turned(point - problem.bodies[body].pole) * theta
 }
 
-/// What the work of a step needs of a state, and the elastic energy of blocks and joints \[J\].
-pub fn energies(problem: &PathProblem, state: &PathState) -> (WorkState, f64) {
-    let of_joint = |(contact, f): (&Contact, &[f64; 2])| {
-        0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1])
-    };
-    let mut stored: f64 = problem.contacts.iter().zip(&state.force).map(of_joint).sum();
-    let mut elastic: Vec<Option<Vec<f64>>> = Vec::with_capacity(problem.bodies.len());
-    for (body, f) in problem.bodies.iter().zip(&problem.forces_on_points(state, false)) {
-        elastic.push(body.flexibility.as_ref().map(|flexibility| {
-            let flat: Vec<f64> = f.iter().flat_map(|f| [f.x, f.y]).collect();
-            let mut u = vec![0.0; flat.len()];
-            add_product(&mut u, flexibility, &flat);
-            stored += 0.5 * inner(&flat, &u);
-            u
-        }));
+/// What forces do to the blocks of a state.
+pub struct Deformation {
+    /// Displacements (x, y) of every body's points beside its rigid motion \[m\]; none of a rigid body.
+    points: Vec<Vec<f64>>,
+    /// Elastic energy of blocks and joints \[J\].
+    pub stored: f64,
+}
+
+impl Deformation {
+    /// By the contact forces and loads of a state.
+    pub fn new(problem: &PathProblem, state: &PathState) -> Self {
+        let of_joint = |(contact, f): (&Contact, &[f64; 2])| {
+            0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1])
+        };
+        let mut stored: f64 = problem.contacts.iter().zip(&state.force).map(of_joint).sum();
+        let mut forces: Vec<f64> = Vec::new();
+        let bodies = problem.bodies.iter().zip(problem.forces_on_points(state, false));
+        let points = bodies.map(|(body, on_points)| {
+            let Some(flexibility) = &body.flexibility else { return Vec::new() };
+            forces.clear();
+            on_points.iter().for_each(|f| forces.extend([f.x, f.y]));
+            let mut moved = vec![0.0; forces.len()];
+            add_product(&mut moved, flexibility, &forces);
+            stored += 0.5 * inner(&forces, &moved);
+            moved
+        });
+        Deformation { points: points.collect(), stored }
     }
+
+    /// Displacement of a point of a body beside its rigid motion.
+    fn at(&self, body: usize, slot: Option<usize>) -> Vec2 {
+        let Some(own) = slot.and_then(|slot| self.points[body].get(2 * slot..2 * slot + 2)) else {
+            return Vec2::zeros();
+        };
+        Vec2::new(own[0], own[1])
+    }
+
+    /// Gaps of all contact points \[m\].
+    pub fn gaps(&self, problem: &PathProblem, state: &PathState) -> Vec<[f64; 2]> {
+        let place = |side: Attachment, point: Vec2| {
+            rigid(problem, &state.motion, side.body, point) + self.at(side.body, side.slot)
+        };
+        let gap = |(contact, force): (&Contact, &[f64; 2])| {
+            let apart = place(contact.plus, contact.position) - place(contact.minus, contact.position);
+            let [n, t] = contact.compliance;
+            [contact.gap + apart.dot(&contact.normal) + n * force[0], apart.dot(&contact.tangent) + t * force[1]]
+        };
+        problem.contacts.iter().zip(&state.force).map(gap).collect()
+    }
+}
+
+/// What the work of a step needs of a state with its deformation.
+pub fn work_state(problem: &PathProblem, state: &PathState, deformation: &Deformation) -> WorkState {
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
-        let own = elastic[body].as_ref().zip(slot).map(|(u, slot)| Vec2::new(u[2 * slot], u[2 * slot + 1]));
-        rigid(problem, &state.motion, body, point) + own.unwrap_or_else(Vec2::zeros)
+        rigid(problem, &state.motion, body, point) + deformation.at(body, slot)
     };
     let displacements = problem.load_steps.iter().map(|step| step.loading.forces.iter().map(place).collect());
     let factors = problem.applied(state.load_step, state.factor);
     let unbalanced = unbalanced(problem, state, &factors);
     let displacements = displacements.collect();
-    (WorkState { factors, displacements, motion: state.motion.clone(), unbalanced }, stored)
+    WorkState { factors, displacements, motion: state.motion.clone(), unbalanced }
 }
 
 /// What loads and contact forces leave on every body about its pole.

@@ -85,12 +85,19 @@ impl FactorisedModes {
         self.load_rate.as_ref().map(|(_, x)| x)
     }
 
-    /// Motions that a wrench on the bodies makes with every mode as factorised, in units.
-    pub fn moved_by(&self, system: &System, wrench: &[f64]) -> Option<Vec<f64>> {
+    /// Motions that a wrench on the bodies makes with every mode as factorised, in units; `refined` or not.
+    pub fn moved_by(&self, system: &System, wrench: &[f64], refined: bool) -> Option<Vec<f64>> {
         let first = 2 * system.contacts;
         let mut right = vec![0.0; system.size()];
         right[first..].iter_mut().zip(wrench).for_each(|(right, wrench)| *right = -wrench);
-        self.updated.factors.solve(&right, REFINEMENTS).map(|mut x| x.split_off(first))
+        let refinements = if refined { REFINEMENTS } else { 0 };
+        self.updated.factors.solve(&right, refinements).map(|mut x| x.split_off(first))
+    }
+
+    /// Forgets responses to single points; whether those to come are refined.
+    pub fn set_refined(&mut self, refine_columns: bool) {
+        self.refine_columns = refine_columns;
+        self.updated.forget_responses();
     }
 
     /// Another load comes.

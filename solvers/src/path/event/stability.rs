@@ -46,15 +46,16 @@ impl HeldModes {
         });
         let equations = FactorisedModes::new(system, modes, false)?;
         let motions = system.size() - 2 * system.contacts;
-        let respond = |wrenches: &DMatrix<f64>| {
-            let columns = wrenches.column_iter().map(|wrench| equations.moved_by(system, wrench.as_slice()));
+        let respond = |wrenches: &DMatrix<f64>, refined: bool| {
+            let columns = wrenches.column_iter().map(|wrench| equations.moved_by(system, wrench.as_slice(), refined));
             let columns: Option<Vec<Vec<f64>>> = columns.collect();
             columns.map(|columns| DMatrix::from_fn(motions, columns.len(), |i, j| columns[j][i]))
         };
         let work = if associated {
-            Work::Symmetric(is_stiff(motions, respond)?)
+            // Of the softest motion no more is asked than the order of its flexibility.
+            Work::Symmetric(is_stiff(motions, |wrenches| respond(wrenches, false))?)
         } else {
-            Work::Examined(work_by_responses(motions, respond)?)
+            Work::Examined(work_by_responses(motions, |wrenches| respond(wrenches, true))?)
         };
         Some(HeldModes { equations, work })
     }
@@ -103,8 +104,10 @@ pub fn stage_stability(trace: &Trace, load: &Load) -> StageStability {
     let (free, held) = (modes(trace, released), modes(trace, |_, _| ContactMode::Stick));
     let same = free == held;
     let mut free = HeldModes::new(trace, free);
-    let mut stuck = if same { None } else { HeldModes::new(trace, held) };
     let positive = |found: &Option<HeldModes>| found.as_ref().map(HeldModes::positive);
+    // Positive with all of them free suffices.
+    let enough = same || positive(&free) == Some(true);
+    let mut stuck = if enough { None } else { HeldModes::new(trace, held) };
     let under_load = if same { positive(&free) } else { over_weak_points(positive(&free), positive(&stuck)) };
     let sufficient_only = free.as_ref().is_some_and(|free| matches!(free.work, Work::Examined(_)));
     let under_control = if load.settles || under_load == Some(true) {

@@ -2,7 +2,7 @@
 //! and what was noted on the way.
 
 use super::elastic_chain::ElasticChain;
-use super::energy::{energies, rigid};
+use super::energy::{Deformation, rigid, work_state};
 use super::factorisation::FactorisedModes;
 use super::point::Point;
 use crate::contact::facet::dot;
@@ -87,8 +87,6 @@ pub struct Trace<'a> {
     pub system: System,
     /// Whether all flow is associated.
     pub associated: bool,
-    /// Gaps that each load step's loading opens per unit of its factor \[m\], where it opens any.
-    pub loading_gaps: Vec<Option<Vec<[f64; 2]>>>,
     /// The present state.
     pub state: State,
     /// The factorisation in use.
@@ -103,10 +101,6 @@ impl<'a> Trace<'a> {
     /// At the unloaded state.
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
         let system = System::new(problem, |_| [0.0; 2]);
-        let opened = |load_step: &voussoir_core::path::LoadStep| {
-            let gaps = problem.loading_gaps(&load_step.loading);
-            gaps.iter().flatten().any(|g| *g != 0.0).then_some(gaps)
-        };
         let points = (0..system.contacts).map(|c| Point::untouched(&system, c)).collect();
         let x = vec![0.0; system.size()];
         Trace {
@@ -114,7 +108,6 @@ impl<'a> Trace<'a> {
             settings,
             observer,
             associated: problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated),
-            loading_gaps: problem.load_steps.iter().map(opened).collect(),
             state: State { x, points, load_step: 0, factor: 0.0, energy: EnergyBalance::default() },
             system,
             factors: Factors::default(),
@@ -145,41 +138,29 @@ impl<'a> Trace<'a> {
         load_displacement(self.problem, growing, motion, |body, point| rigid(self.problem, motion, body, point))
     }
 
-    /// Gaps at the present state \[m\].
-    fn gaps(&self) -> Vec<[f64; 2]> {
-        let mut gap = match &self.factors.chain {
-            Some(chain) => chain.gaps(&self.system, &self.state.x),
-            None => self.system.gaps(&self.state.x),
-        };
-        gap.iter_mut().zip(&self.system.gap).for_each(|(g, initial)| g[0] += initial);
-        let applied = self.problem.applied(self.state.load_step, self.state.factor);
-        for (opened, factor) in self.loading_gaps.iter().zip(applied) {
-            if let (Some(opened), true) = (opened, factor != 0.0) {
-                let factor = factor / self.system.units.displacement;
-                gap.iter_mut().flatten().zip(opened.iter().flatten()).for_each(|(g, o)| *g += factor * o);
-            }
-        }
-        gap.iter_mut().flatten().for_each(|g| *g *= self.system.units.displacement);
-        gap
-    }
-
     /// The present state in physical units, with the energies of the last record.
     pub fn present(&self) -> PathState {
+        self.deformed().0
+    }
+
+    /// The same, with the deformation of the blocks.
+    fn deformed(&self) -> (PathState, Deformation) {
         let motion = self.motion();
         let state = &self.state;
-        PathState {
+        let mut present = PathState {
             load_step: state.load_step,
             factor: state.factor,
             force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.units.force)).collect(),
-            gap: self.gaps(),
             stored: self.last.as_ref().map_or(0.0, |(_, stored)| *stored),
             dissipated: state.energy.dissipated,
             work: state.energy.work,
             displacement: self.displacement_of(&motion),
             motion,
-            memory: Vec::new(),
-            yielded: Vec::new(),
-        }
+            ..PathState::default()
+        };
+        let deformation = Deformation::new(self.problem, &present);
+        present.gap = deformation.gaps(self.problem, &present);
+        (present, deformation)
     }
 
     /// Energy that the tensile strength of open points has stored \[J\].
@@ -196,9 +177,9 @@ impl<'a> Trace<'a> {
 
     /// Energy balance and observer. Returns whether to go on.
     pub fn record(&mut self) -> bool {
-        let mut state = self.present();
-        let (now, stored) = energies(self.problem, &state);
-        let stored = stored + self.stored_by_opening();
+        let (mut state, deformation) = self.deformed();
+        let now = work_state(self.problem, &state, &deformation);
+        let stored = deformation.stored + self.stored_by_opening();
         if let Some((before, _)) = &self.last {
             let loadings: Vec<&Loading> = self.problem.load_steps.iter().map(|step| &step.loading).collect();
             self.state.energy.add_work(self.problem, &loadings, before, &now);

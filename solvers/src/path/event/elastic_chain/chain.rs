@@ -293,24 +293,6 @@ impl ElasticChain {
         Some(Rates { x: self.unknowns(system, &rates.own), factor: 1.0, gaps, worst: 0.0, refinements: 0 })
     }
 
-    /// Gaps at a state of the whole system.
-    pub fn gaps(&self, system: &System, x: &[f64]) -> Vec<[f64; 2]> {
-        let own = |factor: &Factor| -> Vec<f64> {
-            let forces = factor.joint.contacts.iter().flat_map(|c| [x[2 * c], x[2 * c + 1]]);
-            forces.chain([0.0; 3]).collect()
-        };
-        let own: Vec<Vec<f64>> = self.factors.all.iter().map(own).collect();
-        let mut gaps = vec![[0.0; 2]; system.contacts];
-        for (e, factor) in self.factors.all.iter().enumerate() {
-            let elastic = factor.joint.gaps(e, &|e: usize| own[e].as_slice());
-            for (gap, c) in elastic.chunks_exact(2).zip(&factor.joint.contacts) {
-                let moved = |i: usize| system.kinematics.row_dot(2 * c + i, &x[2 * system.contacts..]);
-                gaps[*c] = [gap[0] + moved(0), gap[1] + moved(1)];
-            }
-        }
-        gaps
-    }
-
     /// What the rates leave of the resultants, at most: a correction that is far smaller than a step that follows may
     /// leave more than that may.
     pub fn unbalanced(&self) -> f64 {

@@ -42,6 +42,10 @@ pub struct Table {
     pub free: Vec<bool>,
     /// First axis of every point, over (n, t).
     pub axes: Vec<[f64; 2]>,
+    /// 1 for what is free of both directions of every point, else 0.
+    forces: Vec<f64>,
+    /// Whether any axes are others than (n, t).
+    turned: bool,
     /// V.
     pub local: DMatrix<f64>,
     /// Q.
@@ -184,6 +188,8 @@ impl Table {
         Table {
             free: vec![true; 2 * points + 3],
             axes: vec![[1.0, 0.0]; points],
+            forces: vec![1.0; 2 * points],
+            turned: false,
             local: empty(),
             by_outer: empty(),
             handed: empty(),
@@ -195,9 +201,21 @@ impl Table {
     /// Gives a point its directions without changing anything else, before it is condensed.
     pub fn prepare(&mut self, k: usize, mode: ContactMode, facets: Option<&[Facet]>) -> Option<()> {
         let (axis, free) = held_by(mode, facets, self.axes[k])?;
-        self.axes[k] = axis;
-        self.free[2 * k..2 * k + 2].copy_from_slice(&free);
+        self.set_axis(k, axis);
+        (0..2).for_each(|i| self.set_free(2 * k + i, free[i]));
         Some(())
+    }
+
+    fn set_axis(&mut self, k: usize, axis: [f64; 2]) {
+        self.axes[k] = axis;
+        self.turned = self.axes.iter().any(|axis| *axis != [1.0, 0.0]);
+    }
+
+    fn set_free(&mut self, i: usize, free: bool) {
+        self.free[i] = free;
+        if let Some(force) = self.forces.get_mut(i) {
+            *force = f64::from(u8::from(free));
+        }
     }
 
     /// Condenses everything anew. `None` where that is singular.
@@ -279,7 +297,7 @@ impl Table {
         if by == [1.0, 0.0] {
             return;
         }
-        self.axes[k] = axis;
+        self.set_axis(k, axis);
         for matrix in [&mut self.local, &mut self.by_outer] {
             for mut column in matrix.column_iter_mut() {
                 [column[2 * k], column[2 * k + 1]] = into_axes(by, [column[2 * k], column[2 * k + 1]]);
@@ -317,7 +335,7 @@ impl Table {
         }
         let factor = if self.free[i] { 1.0 / pivot } else { -1.0 / pivot };
         add_outer(&mut self.handed, &(&outer * factor), &outer);
-        self.free[i] = !self.free[i];
+        self.set_free(i, !self.free[i]);
         self.changes += 1;
         self.version += 1;
         Some(Change { factor, along })
@@ -374,8 +392,10 @@ impl Table {
     /// Forces of all points over (n, t).
     pub fn forces(&self, out: &[f64], forces: &mut Vec<f64>) {
         forces.clear();
-        let own = out[..2 * self.axes.len()].iter().zip(&self.free);
-        forces.extend(own.map(|(value, free)| if *free { *value } else { 0.0 }));
+        forces.extend(out.iter().zip(&self.forces).map(|(value, free)| value * free));
+        if !self.turned {
+            return;
+        }
         for (axis, force) in self.axes.iter().zip(forces.chunks_exact_mut(2)).filter(|(axis, _)| **axis != [1.0, 0.0]) {
             let turned = out_of_axes(*axis, [force[0], force[1]]);
             force.copy_from_slice(&turned);

@@ -8,8 +8,11 @@
 use super::node::Table;
 use super::tree::Tree;
 use crate::contact::mode::ContactMode;
+use crate::linear::dense::add_block;
 use nalgebra::{DMatrix, Matrix3, Vector3};
+use voussoir_core::linear::vectors::Simd;
 use voussoir_core::path::PathProblem;
+use voussoir_core::with_vectors;
 
 /// Events for which a node is not bounded, at most.
 const MOST_RESTS: u32 = 8;
@@ -104,6 +107,34 @@ struct Norms {
     known: bool,
     /// For each side: version of the norms below, and the greatest stress in this joint apart from those.
     apart: [(u64, Vec<f64>); 2],
+}
+
+/// Adds, row by row, what forces without resultant do at most whose stresses are 1 at points of these areas; `basis`: of
+/// forces with a resultant.
+fn add_without_resultant(sums: &mut [f64], columns: &[f64], basis: &DMatrix<f64>, areas: &[f64]) {
+    let mut with = [0, 1, 2].map(|_| vec![0.0; sums.len()]);
+    let of_basis = basis.as_slice().chunks_exact(basis.nrows());
+    with.iter_mut().zip(of_basis).for_each(|(with, basis)| add_block(with, columns, basis));
+    let parts = (with, basis, areas);
+    let parts = &parts;
+    with_vectors!('a, add_sizes(sums: &'a mut [f64], columns: &'a [f64], parts: &'a ([Vec<f64>; 3], &'a DMatrix<f64>, &'a [f64])) -> ());
+}
+
+#[inline(always)]
+fn add_sizes<S: Simd>(
+    _: S,
+    sums: &mut [f64],
+    columns: &[f64],
+    (with, basis, areas): &([Vec<f64>; 3], &DMatrix<f64>, &[f64]),
+) {
+    let height = sums.len();
+    let [x, y, z] = [0, 1, 2].map(|k| &with[k][..height]);
+    for (j, column) in columns.chunks_exact(height).enumerate() {
+        let (area, [p, q, r]) = (areas[j / 2], [0, 1, 2].map(|k| basis[(j, k)]));
+        for i in 0..height {
+            sums[i] += area * (column[i] - (x[i] * p + y[i] * q + z[i] * r)).abs();
+        }
+    }
 }
 
 /// The greatest stress, at most, of forces of a joint that are at most these in its axes.
@@ -218,14 +249,11 @@ impl Quiet {
             let mut sums = vec![0.0; height];
             let Some(e) = tree.places[m].outer[side] else { return sums };
             let Span { basis, areas, .. } = &self.spans[e];
-            let columns = table.by_outer.columns(first, count);
-            by_redundants += columns * &shapes[side];
-            // Of forces without resultant.
-            let columns = columns - (columns * basis) * basis.transpose();
-            for (j, column) in columns.as_slice().chunks_exact(height).enumerate() {
-                let area = areas[j / 2];
-                sums.iter_mut().zip(column).for_each(|(sum, value)| *sum += area * value.abs());
-            }
+            let columns = &table.by_outer.as_slice()[height * first..height * (first + count)];
+            let sums_of = by_redundants.as_mut_slice().chunks_exact_mut(height);
+            let shape = shapes[side].as_slice().chunks_exact(count);
+            sums_of.zip(shape).for_each(|(sum, shape)| add_block(sum, columns, shape));
+            add_without_resultant(&mut sums, columns, basis, areas);
             sums
         });
         let mut by_resultant = Vec::with_capacity(n);
