@@ -183,6 +183,12 @@ impl Write for Aside {
         self.file.write(bytes)
     }
 
+    // Text comes in pieces of a few bytes.
+    #[inline]
+    fn write_all(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.file.write_all(bytes)
+    }
+
     fn flush(&mut self) -> std::io::Result<()> {
         self.file.flush()
     }
