@@ -41,7 +41,13 @@ impl Stiffness {
     }
 
     /// Factorises the matrix of these roots, with `shift` on its diagonal and of each entry there the share `relative`.
-    pub fn factorise(&mut self, program: &Program, roots: &[Root], shift: f64, relative: f64) -> bool {
+    pub fn factorise<'a>(
+        &mut self,
+        program: &Program,
+        roots: impl Iterator<Item = &'a Root>,
+        shift: f64,
+        relative: f64,
+    ) -> bool {
         let values = self.cholesky.values();
         values.fill(0.0);
         for ((member, root), coupling) in program.members.iter().zip(roots).zip(&self.couplings) {
