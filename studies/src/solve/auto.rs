@@ -13,8 +13,6 @@ use voussoir_core::model::Assembly;
 use voussoir_core::path::{PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Requirement, card, cards_of};
 
-/// A limit solver with its tag.
-pub type TaggedLimitSolver = (String, Arc<dyn LimitSolver>);
 /// A path solver with its tag.
 pub type TaggedPathSolver = (String, Arc<dyn PathSolver>);
 
@@ -86,15 +84,21 @@ pub fn willing<'a>(
     }
 }
 
-/// The limit solvers to try, in order.
-pub fn limit_solvers(selected: &SelectedSolver, problem: &LimitProblem) -> Vec<TaggedLimitSolver> {
+/// The limit solvers to try, in order, built when they are asked for: those that take the problem, and the one that a study names, or why it
+/// does not.
+pub fn limit_solvers<'a>(
+    selected: &'a SelectedSolver,
+    problem: &'a LimitProblem,
+) -> Box<dyn Iterator<Item = (String, Result<Arc<dyn LimitSolver>, String>)> + 'a> {
     if let SelectedSolver::Limit(tag, solver) = selected {
-        return vec![(tag.clone(), solver.clone())];
+        let own = solver.refuses(problem).map_or_else(|| Ok(solver.clone()), Err);
+        return Box::new(std::iter::once((tag.clone(), own)));
     }
     let fits = |card: &&Card| problem.non_associated || !card.offers(Capability::NON_ASSOCIATED);
     let solvers = by_cost(PluginKind::LimitSolver).into_iter().filter(fits);
     let built = solvers.filter_map(|card| Some((card.tag.to_string(), Arc::from(built::<dyn LimitSolver>(card)?))));
-    built.filter(|(_, solver): &TaggedLimitSolver| solver.refuses(problem).is_none()).collect()
+    let taking = built.filter(|(_, solver): &(String, Arc<dyn LimitSolver>)| solver.refuses(problem).is_none());
+    Box::new(taking.map(|(tag, solver)| (tag, Ok(solver))))
 }
 
 /// A solver with the defaults of its keys.

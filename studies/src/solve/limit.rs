@@ -112,10 +112,8 @@ fn settled_hinges(
     }
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let factor = result.proof.field_factor.unwrap_or(0.0);
-    match limit_solvers(selected, problem).iter().find(|(_, solver)| solver.refuses(problem).is_none()) {
-        Some((_, solver)) => {
-            follow_supports(input, index, Settling { solver: &**solver, problem, loads, factor }, result)
-        }
+    match limit_solvers(selected, problem).find_map(|(_, solver)| solver.ok()) {
+        Some(solver) => follow_supports(input, index, Settling { solver: &*solver, problem, loads, factor }, result),
         None => Vec::new(),
     }
 }
@@ -127,10 +125,13 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
     let mut notes = Vec::new();
     let mut best: Option<CaseResult> = None;
     for (tag, solver) in limit_solvers(selected, problem) {
-        if let Some(why) = solver.refuses(problem) {
-            notes.push(format!("{tag}: {why}"));
-            continue;
-        }
+        let solver = match solver {
+            Ok(solver) => solver,
+            Err(why) => {
+                notes.push(format!("{tag}: {why}"));
+                continue;
+            }
+        };
         let asked = ask(stage, problem);
         let solved = solver.solve(problem, asked);
         let mut result = certified(input, stage, (problem, loads), asked, solved);
