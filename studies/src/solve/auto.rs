@@ -13,6 +13,8 @@ use voussoir_core::model::Assembly;
 use voussoir_core::path::{PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Requirement, card, cards_of};
 
+/// A limit solver with its tag, or why it does not take the problem.
+pub type TaggedLimitSolver = (String, Result<Arc<dyn LimitSolver>, String>);
 /// A path solver with its tag.
 pub type TaggedPathSolver = (String, Arc<dyn PathSolver>);
 
@@ -89,7 +91,7 @@ pub fn willing<'a>(
 pub fn limit_solvers<'a>(
     selected: &'a SelectedSolver,
     problem: &'a LimitProblem,
-) -> Box<dyn Iterator<Item = (String, Result<Arc<dyn LimitSolver>, String>)> + 'a> {
+) -> Box<dyn Iterator<Item = TaggedLimitSolver> + 'a> {
     if let SelectedSolver::Limit(tag, solver) = selected {
         let own = solver.refuses(problem).map_or_else(|| Ok(solver.clone()), Err);
         return Box::new(std::iter::once((tag.clone(), own)));
