@@ -13,7 +13,7 @@ use super::rounding::{ROUNDED, jump_rounding, lie};
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::limit::{LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
-use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, add_force};
+use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, Wrenches, add_force};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -124,6 +124,8 @@ struct Check<'a> {
     facets: Vec<Vec<Facet>>,
     polygons: Vec<YieldPolygon>,
     size: f64,
+    /// Sum of the sizes of the fixed and of the varying loads on free bodies \[N\].
+    sizes: [f64; 2],
     certificate: Certificate,
 }
 
@@ -148,10 +150,13 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),
         facets,
         size: assembly.size(),
+        sizes: [0.0; 2],
         assembly,
         loads,
         certificate: Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() },
     };
+    let size = |wrenches: &Wrenches| check.free_bodies().map(|b| wrenches[b][0].hypot(wrenches[b][1])).sum();
+    check.sizes = [size(&loads.fixed), size(&loads.varying)];
     let mut bounds = None;
     match claim.status {
         Status::Stands => {
@@ -202,8 +207,7 @@ impl Check<'_> {
 
     /// Size of the loads in force units.
     fn load_scale(&self, factor: f64) -> f64 {
-        let size = |w: &[f64; 3]| w[0].hypot(w[1]);
-        self.free_bodies().map(|b| size(&self.loads.fixed[b]) + factor.abs() * size(&self.loads.varying[b])).sum()
+        self.sizes[0] + factor.abs() * self.sizes[1]
     }
 
     /// Scale of residuals at a factor [N]: the loads there, or the varying load where there is no
@@ -400,6 +404,8 @@ impl Check<'_> {
         let jumps = jumps(self.assembly, motion);
         let largest = motion_size(&jumps, motion).max(f64::MIN_POSITIVE);
         let (mut dissipated, mut impossible, mut uncertain) = (0.0, 0.0f64, 0.0);
+        let strongest = |polygon: &YieldPolygon| polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+        let strongest: Vec<f64> = self.polygons.iter().map(strongest).collect();
         for (joint, jump) in self.assembly.joints.iter().zip(&jumps) {
             let Bond::Law(law) = joint.bond else {
                 impossible = impossible.max(jump.size());
@@ -411,8 +417,7 @@ impl Check<'_> {
             }
             let area = joint.height() * self.assembly.width;
             dissipated += support_integral(&polygon.vertices, jump) * area;
-            let strongest = polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
-            uncertain += strongest * area * jump_rounding(joint, motion, &centroids);
+            uncertain += strongest[law] * area * jump_rounding(joint, motion, &centroids);
         }
         for (reaction, bounds) in self.assembly.fill_reactions().iter().zip(&self.loads.fill_bounds) {
             let speed = self.fill_speed(reaction, motion);
@@ -582,6 +587,10 @@ fn fill_dissipation([least, greatest]: [f64; 2], speed: f64) -> f64 {
 /// The maximum of linear functions is integrated exactly between their crossings.
 pub(super) fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
     let end = |v: &[f64; 2], i: usize| -(v[0] * jump.open[i] + v[1] * jump.slip);
+    // Dry joints: nothing crosses.
+    if let [vertex] = vertices {
+        return (end(vertex, 0) + end(vertex, 1)) / 2.0;
+    }
     let lines: Vec<[f64; 2]> = vertices.iter().map(|v| [end(v, 0), end(v, 1)]).collect();
     let mut cuts = vec![0.0, 1.0];
     for (i, a) in lines.iter().enumerate() {

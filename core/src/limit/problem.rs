@@ -97,7 +97,7 @@ impl LimitProblem {
         let pole = if assembly.joints.is_empty() { Vec2::zeros() } else { (low + high) / 2.0 };
         let mut read: BTreeMap<usize, UnitStrength> = BTreeMap::new();
         let mut non_associated = false;
-        let mut joints = Vec::new();
+        let mut joints = Vec::with_capacity(assembly.joints.len() + loads.fill_bounds.len());
         for (index, joint) in assembly.joints.iter().enumerate() {
             let (minus, plus) = (group_of[joint.minus], group_of[joint.plus]);
             let Bond::Law(law) = joint.bond else {
@@ -197,7 +197,9 @@ impl LimitProblem {
 
     /// Sum of the sizes of some wrenches as forces \[N\], moments divided by the scene's length.
     pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
-        wrenches.iter().map(|w| w[0].hypot(w[1]).max(w[2].abs() / self.length)).sum()
+        // Most wrenches are vertical, or nothing.
+        let force = |w: &[f64; 3]| if w[0] == 0.0 { w[1].abs() } else { w[0].hypot(w[1]) };
+        wrenches.iter().map(|w| force(w).max(w[2].abs() / self.length)).sum()
     }
 }
 

@@ -1,167 +1,410 @@
-//! L Lᵀ of symmetric positive definite sparse matrices of one pattern, analysed once.
+//! L Lᵀ of symmetric positive definite sparse matrices of 3 × 3 blocks, of one pattern that is analysed once.
+//!
+//! Nodes, of three unknowns each, are eliminated by supernodes, whose columns are dense panels over the rows that they reach
+//! ([`supernodes`]). A panel is factorised three columns at a time; then what it takes off later panels is computed and taken off, three
+//! columns of theirs at a time, which stay in the nearest cache in between: no front is stored or passed on. Panels are a few nodes
+//! wide where bodies touch few others, which is why the work is laid out for three columns and not for large blocks.
+//!
+//! Source: Ng and Peyton 1993, SIAM J. Sci. Comput. 14, 1034–1056 (block sparse Cholesky algorithms).
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::amd;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use faer::{Conj, MatMut, Par, Side};
+use super::panel::{NODE, SPARE, eliminate, inner_products, outer_products, subtract};
+use super::supernodes::{Supernode, supernodes};
+use super::vectors::Simd;
+use crate::with_vectors;
+use std::ops::Range;
 
-/// Work for each entry of the factor from which columns are taken together in dense kernels, in units of 40 operations. Unknowns
-/// come in blocks, so that columns share their rows from the start and this pays sooner than for single unknowns.
-const DENSE: f64 = 0.25;
+/// Pivots that are no greater have vanished to rounding, and what is put in their place.
+const VANISHED: f64 = 1e-30;
+const HUGE: f64 = 1e128;
 
-/// An order of elimination that keeps the factors of a graph's matrices sparse (approximate minimum degree):
-/// which node comes first, second and so on. `edges` join different nodes and may be repeated.
-pub fn elimination_order(nodes: usize, edges: &[(usize, usize)]) -> Option<Vec<usize>> {
-    let mut columns: Vec<Vec<usize>> = (0..nodes).map(|node| vec![node]).collect();
-    edges.iter().for_each(|&(a, b)| columns[a.max(b)].push(a.min(b)));
-    let pattern = upper(columns);
-    let scratch = amd::order_maybe_unsorted_scratch::<usize>(nodes, pattern.compute_nnz());
-    let mut memory = MemBuffer::try_new(scratch).ok()?;
-    let (mut order, mut place) = (vec![0; nodes], vec![0; nodes]);
-    let control = amd::Control::default();
-    amd::order_maybe_unsorted(&mut order, &mut place, pattern.as_ref(), control, MemStack::new(&mut memory)).ok()?;
-    Some(order)
+/// The columns of a supernode.
+#[derive(Debug, Clone)]
+struct Panel {
+    /// First of its unknowns, and their number.
+    first: usize,
+    width: usize,
+    /// Number of rows, those of its unknowns first.
+    height: usize,
+    /// Where it begins in the factor: column by column.
+    start: usize,
+    /// Its rows below, among those of all panels.
+    below: Range<usize>,
+    /// What it takes off others, among the updates of all.
+    updates: Range<usize>,
 }
 
-/// A pattern by columns of row indices up to the diagonal, in any order.
-fn upper(mut columns: Vec<Vec<usize>>) -> SymbolicSparseColMat<usize> {
-    let size = columns.len();
-    let (mut starts, mut rows) = (vec![0], Vec::new());
-    for column in &mut columns {
-        column.sort_unstable();
-        column.dedup();
-        rows.extend_from_slice(column);
-        starts.push(rows.len());
-    }
-    SymbolicSparseColMat::new_checked(size, size, starts, None, rows)
+/// What a panel takes off three columns of another one.
+#[derive(Debug, Clone)]
+struct Update {
+    /// Its first row that has a part in it: that of the first of the three columns.
+    row: usize,
+    /// Where the three columns begin in the factor, and how long they are.
+    column: usize,
+    height: usize,
+    /// Where the rows from that on stand in these columns, by nodes: from here on among the places of all updates.
+    places: usize,
 }
 
-/// L Lᵀ of matrices that share a pattern, in the order in which they come. The pattern is analysed once, and no
-/// factorisation allocates.
-pub struct SparseCholesky {
-    matrix: SparseColMat<usize, f64>,
-    symbolic: SymbolicCholesky<usize>,
+/// Factors of matrices that share a pattern, in the order in which their nodes come. No factorisation allocates.
+pub struct BlockCholesky {
+    panels: Vec<Panel>,
+    /// The panel of each node.
+    panel_of: Vec<usize>,
+    /// First unknowns of the nodes below, panel after panel.
+    below: Vec<usize>,
+    updates: Vec<Update>,
+    places: Vec<usize>,
     factor: Vec<f64>,
-    memory: MemBuffer,
+    products: Vec<f64>,
+    gathered: Vec<f64>,
 }
 
-impl SparseCholesky {
-    /// Analyses a pattern: for each column its rows up to the diagonal, which must be among them. `None` where
-    /// memory is short.
-    pub fn new(columns: Vec<Vec<usize>>) -> Option<Self> {
-        let pattern = upper(columns);
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold(DENSE),
-            ..Default::default()
+impl BlockCholesky {
+    /// Analyses a pattern: for each node the later ones that it is coupled with.
+    pub fn new(columns: Vec<Vec<usize>>) -> Self {
+        let nodes = columns.len();
+        let supernodes = supernodes(columns);
+        let mut panel_of = vec![0; nodes];
+        let (mut panels, mut below, mut start) = (Vec::with_capacity(supernodes.len()), Vec::new(), 0);
+        for (index, own) in supernodes.iter().enumerate() {
+            panel_of[own.nodes.clone()].fill(index);
+            let (width, from) = (NODE * own.nodes.len(), below.len());
+            let height = width + NODE * own.below.len();
+            below.extend(own.below.iter().map(|node| NODE * node));
+            let first = NODE * own.nodes.start;
+            panels.push(Panel { first, width, height, start, below: from..below.len(), updates: 0..0 });
+            start += width * height;
+        }
+        let tallest = panels.iter().map(|panel| panel.height).max().unwrap_or(0);
+        let mut cholesky = BlockCholesky {
+            panels,
+            panel_of,
+            below,
+            updates: Vec::new(),
+            places: Vec::new(),
+            factor: vec![0.0; start + SPARE],
+            products: vec![0.0; NODE * (tallest + SPARE)],
+            gathered: vec![0.0; tallest],
         };
-        let symbolic =
-            factorize_symbolic_cholesky(pattern.as_ref(), Side::Upper, SymmetricOrdering::Identity, params).ok()?;
-        let factorise = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let solve = symbolic.solve_in_place_scratch::<f64>(2, Par::Seq);
-        let memory = MemBuffer::try_new(factorise.or(solve)).ok()?;
-        let (entries, factor) = (vec![0.0; pattern.compute_nnz()], vec![0.0; symbolic.len_val()]);
-        Some(SparseCholesky { matrix: SparseColMat::new(pattern, entries), symbolic, factor, memory })
+        let mut places = vec![0; nodes];
+        for (index, own) in supernodes.iter().enumerate() {
+            let from = cholesky.updates.len();
+            cholesky.plan(own, &supernodes, &mut places);
+            cholesky.panels[index].updates = from..cholesky.updates.len();
+        }
+        cholesky
     }
 
-    /// Where the entry of a row and a column, not below the diagonal, is in [`SparseCholesky::values`]. The pattern
-    /// must have it.
-    pub fn place(&self, row: usize, column: usize) -> Option<usize> {
-        let range = self.matrix.col_range(column);
-        let found = self.matrix.row_idx()[range.clone()].binary_search(&row).ok()?;
-        Some(range.start + found)
+    /// Adds what a supernode takes off others; `places` is of no use outside.
+    fn plan(&mut self, own: &Supernode, supernodes: &[Supernode], places: &mut [usize]) {
+        let (width, below) = (NODE * own.nodes.len(), &own.below);
+        let mut done = 0;
+        while let Some(next) = below.get(done) {
+            let target = self.panel_of[*next];
+            let (other, panel) = (&supernodes[target], &self.panels[target]);
+            other.rows().enumerate().for_each(|(place, node)| places[node] = NODE * place);
+            let end = below.partition_point(|node| *node < other.nodes.end);
+            for (k, node) in below[done..end].iter().enumerate() {
+                self.updates.push(Update {
+                    row: width + NODE * (done + k),
+                    column: panel.start + places[*node] * panel.height,
+                    height: panel.height,
+                    places: self.places.len() + k,
+                });
+            }
+            self.places.extend(below[done..].iter().map(|node| places[*node]));
+            done = end;
+        }
     }
 
-    /// The entries of the next matrix to factorise.
+    /// Where the block of a node's rows and of the columns of one not after it begins in [`BlockCholesky::values`], and how far apart its columns
+    /// are. The pattern must have it.
+    pub fn place(&self, row: usize, column: usize) -> Option<(usize, usize)> {
+        let (row, column) = (NODE * row, NODE * column);
+        let panel = self.panels.get(*self.panel_of.get(column / NODE)?)?;
+        let place = match row.checked_sub(panel.first).filter(|place| *place < panel.width) {
+            Some(place) => place,
+            None => panel.width + NODE * self.below[panel.below.clone()].binary_search(&row).ok()?,
+        };
+        Some((panel.start + (column - panel.first) * panel.height + place, panel.height))
+    }
+
+    /// The entries of the next matrix to factorise: blocks on and below the diagonal, of those on it what is not above. All others are to be
+    /// zeros.
     pub fn values(&mut self) -> &mut [f64] {
-        self.matrix.val_mut()
+        &mut self.factor
     }
 
     /// Factorises the present entries. Pivots that vanish to rounding are replaced by huge ones, which fixes their
     /// unknowns at zero. Whether it went well.
     pub fn factorise(&mut self) -> bool {
-        let regularisation =
-            LltRegularization { dynamic_regularization_delta: 1e128, dynamic_regularization_epsilon: 1e-30 };
-        let stack = MemStack::new(&mut self.memory);
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut self.factor,
-                self.matrix.as_ref(),
-                Side::Upper,
-                regularisation,
-                Par::Seq,
-                stack,
-                Default::default(),
-            )
-            .is_ok()
+        let all = self;
+        with_vectors!('a, factorise(all: &'a mut BlockCholesky) -> bool)
     }
 
-    /// Solves for one or two right-hand sides, one after the other in `right`, by the last factorisation.
+    /// Solves for any number of right-hand sides, one after the other in `right`, by the last factorisation.
     pub fn solve(&mut self, right: &mut [f64]) {
-        let size = self.matrix.nrows();
-        let columns = right.len() / size.max(1);
-        let factor = LltRef::new(&self.symbolic, &self.factor);
-        let right = MatMut::from_column_major_slice_mut(right, size, columns);
-        factor.solve_in_place_with_conj(Conj::No, right, Par::Seq, MemStack::new(&mut self.memory));
+        let all = self;
+        with_vectors!('a, solve(all: &'a mut BlockCholesky, right: &'a mut [f64]) -> ());
     }
+}
+
+/// One over the root of a pivot.
+fn reciprocal(pivot: f64) -> f64 {
+    (if pivot <= VANISHED { HUGE } else { pivot }).sqrt().recip()
+}
+
+/// Three columns of `height` numbers, from `first` of each on.
+#[inline(always)]
+fn three(columns: &[f64], height: usize, first: usize) -> [&[f64]; NODE] {
+    [0, 1, 2].map(|j| &columns[j * height + first..(j + 1) * height])
+}
+
+/// The same to write.
+#[inline(always)]
+fn three_mut(columns: &mut [f64], height: usize, first: usize) -> [&mut [f64]; NODE] {
+    let (a, rest) = columns.split_at_mut(height);
+    let (b, c) = rest.split_at_mut(height);
+    [&mut a[first..], &mut b[first..], &mut c[first..height]]
+}
+
+#[inline(always)]
+fn factorise<S: Simd>(simd: S, all: &mut BlockCholesky) -> bool {
+    let BlockCholesky { panels, updates, places, factor, products, .. } = all;
+    for Panel { width, height, start, updates: own, .. } in panels.iter() {
+        let (width, height, start) = (*width, *height, *start);
+        for column in (0..width).step_by(NODE) {
+            let rows = height - column;
+            if column > 0 {
+                outer_products(simd, products, &factor[start + column..], (height, column), rows);
+            }
+            let columns = three_mut(&mut factor[start + column * height..], height, column);
+            if column > 0 {
+                for (out, products) in columns.into_iter().zip(products.chunks_exact(rows + SPARE)) {
+                    out.iter_mut().zip(products).for_each(|(out, product)| *out -= product);
+                }
+            }
+            let columns = three_mut(&mut factor[start + column * height..], height, column);
+            if !eliminate(simd, columns, reciprocal) {
+                return false;
+            }
+        }
+        for update in &updates[own.clone()] {
+            let rows = height - update.row;
+            outer_products(simd, products, &factor[start + update.row..], (height, width), rows);
+            let columns = three_mut(&mut factor[update.column..], update.height, 0);
+            let places = &places[update.places..update.places + rows / NODE];
+            for (out, products) in columns.into_iter().zip(products.chunks_exact(rows + SPARE)) {
+                subtract_at(out, places, products);
+            }
+        }
+    }
+    true
+}
+
+/// Takes numbers off by nodes at their places.
+#[inline(always)]
+fn subtract_at(out: &mut [f64], places: &[usize], off: &[f64]) {
+    for (place, off) in places.iter().zip(off.as_chunks::<NODE>().0) {
+        if let Some(out) = out[*place..].first_chunk_mut::<NODE>() {
+            out.iter_mut().zip(off).for_each(|(out, off)| *out -= off);
+        }
+    }
+}
+
+#[inline(always)]
+fn solve<S: Simd>(simd: S, all: &mut BlockCholesky, right: &mut [f64]) {
+    let BlockCholesky { panels, panel_of, below, factor, gathered, .. } = all;
+    let size = (NODE * panel_of.len()).max(1);
+    for panel in panels.iter() {
+        for right in right.chunks_exact_mut(size) {
+            forwards(simd, panel, &below[panel.below.clone()], factor, gathered, right);
+        }
+    }
+    for panel in panels.iter().rev() {
+        for right in right.chunks_exact_mut(size) {
+            backwards(simd, panel, &below[panel.below.clone()], factor, gathered, right);
+        }
+    }
+}
+
+/// The part of a panel in the solution of L y = b, in place.
+#[inline(always)]
+fn forwards<S: Simd>(simd: S, panel: &Panel, below: &[usize], factor: &[f64], gathered: &mut [f64], right: &mut [f64]) {
+    let Panel { first, width, height, start, .. } = *panel;
+    let x = &mut gathered[..height];
+    x[..width].copy_from_slice(&right[first..first + width]);
+    x[width..].fill(0.0);
+    let columns = factor[start..start + width * height].chunks_exact(NODE * height);
+    for (k, columns) in columns.enumerate() {
+        let [a, b, c] = three(columns, height, NODE * k);
+        let x = &mut x[NODE * k..];
+        x[0] *= a[0];
+        x[1] = (x[1] - a[1] * x[0]) * b[1];
+        x[2] = (x[2] - a[2] * x[0] - b[2] * x[1]) * c[2];
+        let (known, rest) = x.split_at_mut(NODE);
+        subtract(simd, rest, [&a[NODE..], &b[NODE..], &c[NODE..]], [known[0], known[1], known[2]]);
+    }
+    right[first..first + width].copy_from_slice(&x[..width]);
+    for (at, change) in below.iter().zip(x[width..].as_chunks::<NODE>().0) {
+        if let Some(out) = right[*at..].first_chunk_mut::<NODE>() {
+            out.iter_mut().zip(change).for_each(|(out, change)| *out += change);
+        }
+    }
+}
+
+/// The part of a panel in the solution of Lᵀ x = y, in place.
+#[inline(always)]
+fn backwards<S: Simd>(
+    simd: S,
+    panel: &Panel,
+    below: &[usize],
+    factor: &[f64],
+    gathered: &mut [f64],
+    right: &mut [f64],
+) {
+    let Panel { first, width, height, start, .. } = *panel;
+    let x = &mut gathered[..height];
+    x[..width].copy_from_slice(&right[first..first + width]);
+    for (at, own) in below.iter().zip(x[width..].as_chunks_mut::<NODE>().0) {
+        own.copy_from_slice(&right[*at..*at + NODE]);
+    }
+    let columns = factor[start..start + width * height].chunks_exact(NODE * height);
+    for (k, columns) in columns.enumerate().rev() {
+        let [a, b, c] = three(columns, height, NODE * k);
+        let x = &mut x[NODE * k..];
+        let [p, q, r] = inner_products(simd, &x[NODE..], [&a[NODE..], &b[NODE..], &c[NODE..]]);
+        x[2] = (x[2] - r) * c[2];
+        x[1] = (x[1] - q - b[2] * x[2]) * b[1];
+        x[0] = (x[0] - p - a[1] * x[1] - a[2] * x[2]) * a[0];
+    }
+    right[first..first + width].copy_from_slice(&x[..width]);
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::elimination_order;
     use super::*;
 
-    /// The stiffness of a grid of springs: factorised in the order found, it solves; another one of the same
-    /// pattern does too.
-    #[test]
-    fn matrices_of_one_pattern_are_analysed_once() {
-        let side = 12;
-        let node = |x: usize, y: usize| x * side + y;
-        let mut edges = Vec::new();
-        for x in 0..side {
-            for y in 1..side {
-                edges.push((node(x, y - 1), node(x, y)));
-                edges.push((node(y, x), node(y - 1, x)));
+    /// A matrix of springs between nodes, three numbers of both ends each in three directions, and 0.3 on the diagonal.
+    struct Springs {
+        nodes: usize,
+        pairs: Vec<(usize, usize)>,
+        stretch: f64,
+    }
+
+    impl Springs {
+        /// In the order that keeps the factor sparse.
+        fn ordered(nodes: usize, edges: &[(usize, usize)], stretch: f64) -> Self {
+            let order = elimination_order(nodes, edges).unwrap();
+            let mut place = vec![usize::MAX; nodes];
+            order.iter().enumerate().for_each(|(i, &node)| place[node] = i);
+            assert!(place.iter().all(|p| *p != usize::MAX));
+            let pair = |&(a, b): &(usize, usize)| (place[a].min(place[b]), place[a].max(place[b]));
+            Springs { nodes, pairs: edges.iter().map(pair).collect(), stretch }
+        }
+
+        fn pattern(&self) -> Vec<Vec<usize>> {
+            let mut columns = vec![Vec::new(); self.nodes];
+            self.pairs.iter().for_each(|&(a, b)| columns[a].push(b));
+            columns
+        }
+
+        /// Calls with every 3 × 3 block on and below the diagonal.
+        fn blocks(&self, mut each: impl FnMut(usize, usize, [[f64; 3]; 3])) {
+            let diagonal = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { 0.3 } else { 0.0 }));
+            (0..self.nodes).for_each(|node| each(node, node, diagonal));
+            for (index, &(a, b)) in self.pairs.iter().enumerate() {
+                let end = |of: usize, i: usize, k: usize| {
+                    (self.stretch * ((7 * index + 3 * i + k + 11 * of) as f64 + 0.3).powf(1.3)).sin()
+                };
+                for (row, column, i, j) in [(a, a, 0, 0), (b, b, 1, 1), (b, a, 1, 0)] {
+                    let entry = |r: usize, c: usize| (0..3).map(|k| end(i, r, k) * end(j, c, k)).sum::<f64>();
+                    each(row, column, [0, 1, 2].map(|r| [0, 1, 2].map(|c| entry(r, c))));
+                }
             }
         }
-        let order = elimination_order(side * side, &edges).unwrap();
-        let mut place = vec![usize::MAX; order.len()];
-        order.iter().enumerate().for_each(|(i, &node)| place[node] = i);
-        assert!(place.iter().all(|p| *p != usize::MAX));
-        let mut columns: Vec<Vec<usize>> = (0..side * side).map(|i| vec![i]).collect();
-        let pairs: Vec<(usize, usize)> = edges.iter().map(|&(a, b)| (place[a], place[b])).collect();
-        pairs.iter().for_each(|&(a, b)| columns[a.max(b)].push(a.min(b)));
-        let mut cholesky = SparseCholesky::new(columns).unwrap();
-        for stiffness in [1.0, 37.0] {
-            let size = side * side;
-            let mut dense = vec![0.0; size * size];
+
+        fn fill(&self, cholesky: &mut BlockCholesky) {
             cholesky.values().fill(0.0);
-            let springs = pairs.iter().map(|&(a, b)| (a, b, stiffness)).chain((0..size).map(|i| (i, i, 0.5)));
-            for (a, b, k) in springs {
-                let entries =
-                    if a == b { vec![(a, a, k)] } else { vec![(a, a, k), (b, b, k), (a.min(b), a.max(b), -k)] };
-                for (i, j, k) in entries {
-                    let at = cholesky.place(i, j).unwrap();
-                    cholesky.values()[at] += k;
-                    dense[i * size + j] += k;
-                    if i != j {
-                        dense[j * size + i] += k;
+            self.blocks(|row, column, block| {
+                let (start, apart) = cholesky.place(row, column).unwrap();
+                for (j, i) in (0..3).flat_map(|j| (0..3).map(move |i| (j, i))).filter(|(j, i)| row != column || i >= j)
+                {
+                    cholesky.values()[start + j * apart + i] += block[i][j];
+                }
+            });
+        }
+
+        fn product(&self, x: &[f64]) -> Vec<f64> {
+            let mut out = vec![0.0; x.len()];
+            self.blocks(|row, column, block| {
+                for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                    out[3 * row + i] += block[i][j] * x[3 * column + j];
+                    if row != column {
+                        out[3 * column + j] += block[i][j] * x[3 * row + i];
                     }
                 }
-            }
-            assert!(cholesky.factorise());
-            let x: Vec<f64> = (0..2 * size).map(|i| (i as f64 * 0.7).sin()).collect();
-            let mut right = vec![0.0; 2 * size];
-            for k in 0..2 {
-                for i in 0..size {
-                    right[k * size + i] = (0..size).map(|j| dense[i * size + j] * x[k * size + j]).sum();
-                }
-            }
-            cholesky.solve(&mut right);
-            assert!(right.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-12));
+            });
+            out
         }
+    }
+
+    fn grid(side: usize) -> Vec<(usize, usize)> {
+        let node = |x: usize, y: usize| x * side + y;
+        let lines = (0..side).flat_map(|x| (1..side).map(move |y| (x, y)));
+        lines.flat_map(|(x, y)| [(node(x, y - 1), node(x, y)), (node(y, x), node(y - 1, x))]).collect()
+    }
+
+    /// Grids, rings, stars, full graphs, and nodes without any coupling: factorised in the order found, they solve for two right-hand sides;
+    /// others of the same pattern do too.
+    #[test]
+    fn matrices_of_one_pattern_are_analysed_once() {
+        let ring: Vec<_> = (0..50).map(|node| (node, (node + 1) % 50)).collect();
+        let star: Vec<_> = (1..20).map(|node| (0, node)).collect();
+        let full: Vec<_> = (0..17).flat_map(|a| (0..a).map(move |b| (b, a))).collect();
+        for (nodes, edges) in [(196, grid(14)), (50, ring), (20, star), (17, full), (4, vec![(1, 2)]), (1, Vec::new())]
+        {
+            let mut cholesky = BlockCholesky::new(Springs::ordered(nodes, &edges, 1.0).pattern());
+            for stretch in [1.0, 1.7] {
+                let springs = Springs::ordered(nodes, &edges, stretch);
+                springs.fill(&mut cholesky);
+                assert!(cholesky.factorise());
+                let x: Vec<f64> = (0..6 * nodes).map(|i| (i as f64 * 0.7).sin()).collect();
+                let (first, second) = x.split_at(3 * nodes);
+                let mut right = [springs.product(first), springs.product(second)].concat();
+                cholesky.solve(&mut right);
+                assert!(right.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-12), "{nodes}");
+            }
+        }
+    }
+
+    /// Directions without any stiffness stay at zero and leave the others as they are; numbers that are none are told.
+    #[test]
+    fn vanished_pivots_fix_their_unknowns() {
+        let mut cholesky = BlockCholesky::new(vec![vec![1], vec![]]);
+        let fill = |cholesky: &mut BlockCholesky, last: f64| {
+            cholesky.values().fill(0.0);
+            for (node, k, value) in [(0, 0, 2.0), (0, 2, 4.0), (1, 0, 1.0), (1, 1, 5.0), (1, 2, last)] {
+                let (start, apart) = cholesky.place(node, node).unwrap();
+                cholesky.values()[start + k * apart + k] = value;
+            }
+        };
+        fill(&mut cholesky, 8.0);
+        assert!(cholesky.factorise());
+        let mut right = vec![2.0, 3.0, 4.0, 5.0, 5.0, 4.0];
+        cholesky.solve(&mut right);
+        assert!(right.iter().zip([1.0, 0.0, 1.0, 5.0, 1.0, 0.5]).all(|(a, b)| (a - b).abs() < 1e-15), "{right:?}");
+        for none in [f64::NAN, f64::INFINITY] {
+            fill(&mut cholesky, none);
+            assert!(!cholesky.factorise());
+        }
+    }
+
+    /// A block outside the pattern has no place.
+    #[test]
+    fn only_blocks_of_the_pattern_have_places() {
+        let cholesky = BlockCholesky::new(vec![vec![1], vec![2], vec![], vec![]]);
+        assert!(cholesky.place(3, 0).is_none() && cholesky.place(4, 4).is_none() && cholesky.place(2, 1).is_some());
     }
 }

@@ -29,6 +29,8 @@ pub struct Cone {
     pub forces: usize,
     /// Normals; of forces that the joint does not have the entries are zero.
     pub normals: Vec<[f64; 3]>,
+    /// The same by forces; of rows that the joint does not have the entries are zero.
+    columns: [[f64; ROWS]; 3],
     splits: Vec<Split>,
 }
 
@@ -54,12 +56,25 @@ impl Cone {
             4 => splits.extend((0..4).filter_map(|over| split(&all, Some(over)))),
             _ => return None,
         }
-        (!splits.is_empty()).then_some(Cone { forces, normals, splits })
+        let columns = [0, 1, 2].map(|k| std::array::from_fn(|row| normals.get(row).map_or(0.0, |normal| normal[k])));
+        (!splits.is_empty()).then_some(Cone { forces, normals, columns, splits })
     }
 
-    /// R of (Aᵀ W A)⁻¹ = R Rᵀ and A R, by rows. Weights may differ by any power of ten: the row that weighs least is left
+    /// A x.
+    #[inline(always)]
+    pub fn values(&self, x: &[f64; 3]) -> [f64; ROWS] {
+        combination(&self.columns, x)
+    }
+
+    /// Aᵀ z.
+    #[inline(always)]
+    pub fn weighted(&self, z: &[f64; ROWS]) -> [f64; 3] {
+        self.columns.map(|column| (column[0] * z[0] + column[1] * z[1]) + (column[2] * z[2] + column[3] * z[3]))
+    }
+
+    /// R of (Aᵀ W A)⁻¹ = R Rᵀ by rows, and A R by columns. Weights may differ by any power of ten: the row that weighs least is left
     /// over from a basis, so that no difference is taken of great numbers, in A R neither.
-    pub fn root(&self, weights: &[f64; ROWS]) -> ([[f64; 3]; 3], [[f64; 3]; ROWS]) {
+    pub fn root(&self, weights: &[f64; ROWS]) -> ([[f64; 3]; 3], [[f64; ROWS]; 3]) {
         let weight = |row: usize| if row < self.normals.len() { weights[row] } else { UNBOUNDED };
         let least = |split: &Split| split.over.map_or(0.0, weight);
         let mut split = &self.splits[0];
@@ -80,15 +95,18 @@ impl Cone {
             let along = beta * (scaled[0] * u[0] + scaled[1] * u[1] + scaled[2] * u[2]);
             *line = std::array::from_fn(|i| scaled[i] - along * u[i]);
         }
-        let mut rows = [[0.0; 3]; ROWS];
-        for (i, row) in split.basis.iter().enumerate() {
-            rows[*row] = std::array::from_fn(|k| inverse[i] * (f64::from(u8::from(i == k)) - beta * u[i] * u[k]));
+        let mut columns = [[0.0; ROWS]; 3];
+        for (k, column) in columns.iter_mut().enumerate() {
+            for (i, row) in split.basis.iter().enumerate() {
+                column[*row] = inverse[i] * (f64::from(u8::from(i == k)) - beta * u[i] * u[k]);
+            }
+            if let Some(over) = split.over {
+                column[over] = split.shares[k] * inverse[k] * (1.0 - beta * squared);
+            }
+            // Rows of forces without bounds are none of the joint's.
+            column[self.normals.len()..].fill(0.0);
         }
-        if let Some(over) = split.over {
-            let rest = 1.0 - beta * squared;
-            rows[over] = std::array::from_fn(|k| split.shares[k] * inverse[k] * rest);
-        }
-        (root, rows)
+        (root, columns)
     }
 }
 
@@ -123,7 +141,14 @@ pub fn span(rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
     orthonormal(rows, None).0
 }
 
+/// Σ of three columns times numbers.
+#[inline(always)]
+pub fn combination(columns: &[[f64; ROWS]; 3], x: &[f64; 3]) -> [f64; ROWS] {
+    std::array::from_fn(|row| columns[0][row] * x[0] + columns[1][row] * x[1] + columns[2][row] * x[2])
+}
+
 /// a · b.
+#[inline(always)]
 pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -166,14 +191,15 @@ mod tests {
         ];
         for (forces, normals, weights) in cases {
             let cone = Cone::new(forces, normals.clone()).unwrap();
-            let (root, rows) = cone.root(&weights);
-            for (row, normal) in rows.iter().zip(&normals) {
-                for k in 0..3 {
+            let (root, columns) = cone.root(&weights);
+            for (row, normal) in normals.iter().enumerate() {
+                for (k, column) in columns.iter().enumerate() {
                     let product: f64 = (0..3).map(|i| normal[i] * root[i][k]).sum();
                     let size: f64 = (0..3).map(|i| (normal[i] * root[i][k]).abs()).sum();
-                    assert!((row[k] - product).abs() <= 1e-14 * size, "{forces} {weights:?} {rows:?}");
+                    assert!((column[row] - product).abs() <= 1e-14 * size, "{forces} {weights:?} {columns:?}");
                 }
             }
+            assert!(columns.iter().all(|column| column[normals.len()..].iter().all(|entry| *entry == 0.0)));
             let root = Matrix3::from_fn(|i, k| root[i][k]);
             let mut normal = Matrix3::zeros();
             for (row, weight) in normals.iter().zip(weights) {

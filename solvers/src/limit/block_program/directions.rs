@@ -1,60 +1,35 @@
 //! Directions of the interior point method at a state: one factorisation, several right-hand sides.
+//!
+//! Of n joints, steps, residuals and what is wanted of the products are kept and written anew: nothing is allocated in an
+//! iteration. What is divided by slacks and multipliers is multiplied by their inverses, of which there is one division a state.
 
-use super::cone::{ROWS, dot};
+use super::cone::{ROWS, combination, dot};
 use super::program::Program;
 use super::residuals::Residuals;
 use super::state::{State, Step};
 use super::stiffness::{Root, Stiffness};
+use super::wanted::Wanted;
 use crate::linear::inner;
+use voussoir_core::linear::vectors::Simd;
+use voussoir_core::with_vectors;
 
 /// Added to each pivot, relative to it: far less than what the directions need.
 const RELATIVE: f64 = 1e-14;
 /// Least weight of a row. Where it is more than the row's own, forces change by more than the factors know, and the flow
 /// misses that share of their change.
 const SOFTEST: f64 = 1e-16;
-/// Products s z after a step, in units of their mean, beyond which a corrector moves them; and how much it moves one
-/// at the most.
-const CENTRED: [f64; 2] = [0.1, 10.0];
 
-/// What a direction takes off the products s z.
-#[derive(Debug, Clone)]
-pub struct Wanted {
-    rows: Vec<[f64; ROWS]>,
-    cap: f64,
-}
-
-impl Wanted {
-    /// s z − `mean` of all rows and the cap, with the products of a predictor.
-    pub fn new(state: &State, predictor: Option<&Step>, mean: f64) -> Self {
-        let of = |(index, s): (usize, &[f64; ROWS])| {
-            std::array::from_fn(|row| {
-                let second = predictor.map_or(0.0, |step| step.slacks[index][row] * step.multipliers[index][row]);
-                s[row] * state.multipliers[index][row] - mean + second
-            })
-        };
-        let second = predictor.map_or(0.0, |step| step.cap[0] * step.cap[1]);
-        let rows = state.slacks.iter().enumerate().map(of).collect();
-        Wanted { rows, cap: state.cap[0] * state.cap[1] - mean + second }
-    }
-
-    /// The same where products that would be far from `mean` after steps of these lengths are moved towards it.
-    pub fn centred(&self, program: &Program, state: &State, step: &Step, lengths: [f64; 2], mean: f64) -> Self {
-        let off = |s: f64, ds: f64, z: f64, dz: f64| {
-            let product = (s + lengths[0] * ds) * (z + lengths[1] * dz);
-            (product.clamp(CENTRED[0] * mean, CENTRED[1] * mean) - product).max(-CENTRED[1] * mean)
-        };
-        let mut wanted = self.clone();
-        for (index, member) in program.members.iter().enumerate() {
-            for row in 0..member.rows {
-                let (s, z) = (state.slacks[index][row], state.multipliers[index][row]);
-                wanted.rows[index][row] -= off(s, step.slacks[index][row], z, step.multipliers[index][row]);
-            }
-        }
-        if program.cap.is_some() {
-            wanted.cap -= off(state.cap[0], step.cap[0], state.cap[1], step.cap[1]);
-        }
-        wanted
-    }
+/// What a joint answers to motions with at a state.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Response {
+    /// R of its flexibility R Rᵀ.
+    root: Root,
+    /// A R, by columns.
+    rows: [[f64; ROWS]; 3],
+    /// One over its slacks.
+    slacks: [f64; ROWS],
+    /// One over its multipliers, 0 of rows that it does not have.
+    multipliers: [f64; ROWS],
 }
 
 /// The stiffness matrix at a state, factorised.
@@ -62,9 +37,7 @@ pub struct Directions<'a> {
     pub(super) program: &'a Program,
     /// The matrices of the program.
     pub stiffness: Stiffness,
-    /// R of each joint's flexibility R Rᵀ, and A R.
-    pub(super) roots: Vec<Root>,
-    rows: Vec<[[f64; 3]; ROWS]>,
+    pub(super) responses: Vec<Response>,
     /// The motion that the varying load causes; empty until it is asked for.
     pub(super) v: Vec<f64>,
 }
@@ -72,86 +45,142 @@ pub struct Directions<'a> {
 impl<'a> Directions<'a> {
     /// Of a program. `None` where memory is short.
     pub fn new(program: &'a Program) -> Option<Self> {
-        let (stiffness, count) = (Stiffness::new(program)?, program.members.len());
-        let (roots, rows) = (vec![[[0.0; 3]; 3]; count], vec![[[0.0; 3]; ROWS]; count]);
-        Some(Directions { program, stiffness, roots, rows, v: Vec::new() })
+        let responses = vec![Response::default(); program.members.len()];
+        Some(Directions { program, stiffness: Stiffness::new(program)?, responses, v: Vec::new() })
     }
 
     /// The flexibilities of a state, factorised.
     pub fn factorise(&mut self, state: &State) -> Option<()> {
         self.v.clear();
-        for (index, member) in self.program.members.iter().enumerate() {
-            let (s, z) = (&state.slacks[index], &state.multipliers[index]);
-            let weights = std::array::from_fn(|row| (z[row] / s[row]).max(SOFTEST));
-            (self.roots[index], self.rows[index]) = self.program.cones[member.cone].root(&weights);
-        }
-        self.stiffness.factorise(self.program, &self.roots, 0.0, RELATIVE).then_some(())
+        let (program, responses) = (self.program, self.responses.as_mut_slice());
+        with_vectors!('a, respond(program: &'a Program, state: &'a State, responses: &'a mut [Response]) -> ());
+        let roots = self.responses.iter().map(|response| &response.root);
+        self.stiffness.factorise(self.program, roots, 0.0, RELATIVE).then_some(())
     }
 
     /// The direction in which all residuals and `wanted` vanish, with θ where it moves.
-    pub fn towards(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool) -> Step {
+    pub fn towards(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool, step: &mut Step) {
         let program = self.program;
-        let mut step = Step::none(state.x.len());
-        step.q = residuals.equilibrium.clone();
-        for (index, member) in program.members.iter().enumerate() {
-            let mut g: [f64; 3] = std::array::from_fn(|k| -residuals.flow[index][k]);
-            for (row, normal) in program.cones[member.cone].normals.iter().enumerate() {
-                let (s, z) = (state.slacks[index][row], state.multipliers[index][row]);
-                let by = (wanted.rows[index][row] - z * residuals.slacks[index][row]) / s;
-                (0..3).for_each(|k| g[k] += by * normal[k]);
-            }
-            let root = &self.roots[index];
-            step.along[index] = along(root, &g);
-            program.press(member, &flexed(root, &step.along[index]), &mut step.q);
-        }
+        self.loads(state, residuals, wanted, step);
         if moves && self.v.is_empty() {
             step.q.extend_from_slice(&program.varying);
             self.stiffness.solve(&mut step.q);
-            self.v = step.q.split_off(program.varying.len());
+            self.v.extend(step.q.drain(program.varying.len()..));
         } else {
             self.stiffness.solve(&mut step.q);
         }
+        step.theta = 0.0;
         if moves {
             let stiff = cap_stiffness(program, state);
             let capped = program.cap.is_some();
             let right = -residuals.power + if capped { wanted.cap / state.cap[0] - stiff * residuals.cap } else { 0.0 };
-            step.theta = (right - inner(&program.varying, &step.q)) / (inner(&program.varying, &self.v) + stiff);
-            let theta = step.theta;
+            let theta = (right - inner(&program.varying, &step.q)) / (inner(&program.varying, &self.v) + stiff);
+            step.theta = theta;
             step.q.iter_mut().zip(&self.v).for_each(|(dq, v)| *dq += theta * v);
         }
         let motion = std::mem::take(&mut step.q);
-        self.follow(&motion, &mut step);
+        self.follow(&motion, step);
         step.q = motion;
-        self.complete(state, residuals, wanted, &mut step);
-        step
+        self.complete(state, residuals, wanted, step);
+    }
+
+    /// The forces that joints would have without a motion, as `along`, and what equilibrium then misses, as `q`.
+    fn loads(&self, state: &State, residuals: &Residuals, wanted: &Wanted, step: &mut Step) {
+        let all = (self, state, residuals, wanted);
+        type All<'a> = (&'a Directions<'a>, &'a State, &'a Residuals, &'a Wanted);
+        with_vectors!('a, load(all: All<'a>, step: &'a mut Step) -> ());
     }
 
     /// Takes off the forces what a change of velocities relieves.
     pub(super) fn follow(&self, motion: &[f64], step: &mut Step) {
-        for (index, member) in self.program.members.iter().enumerate() {
-            let root = &self.roots[index];
-            let relieved = along(root, &self.program.jump(member, motion));
-            (0..3).for_each(|k| step.along[index][k] -= relieved[k]);
-            step.x[index] = flexed(root, &step.along[index]);
-        }
+        let (program, responses) = (self.program, self.responses.as_slice());
+        with_vectors!('a, relieve(program: &'a Program, responses: &'a [Response], motion: &'a [f64], step: &'a mut Step) -> ());
     }
 
-    /// The changes of slacks and multipliers that go with those of forces and θ.
+    /// The changes of slacks and multipliers that go with those of forces and θ, and how long a step they allow.
     pub(super) fn complete(&self, state: &State, residuals: &Residuals, wanted: &Wanted, step: &mut Step) {
-        let program = self.program;
-        for (index, member) in program.members.iter().enumerate() {
-            for row in 0..member.rows {
-                let ds = -residuals.slacks[index][row] - dot(&self.rows[index][row], &step.along[index]);
-                let (s, z) = (state.slacks[index][row], state.multipliers[index][row]);
-                step.slacks[index][row] = ds;
-                step.multipliers[index][row] = -(wanted.rows[index][row] + z * ds) / s;
-            }
-        }
-        if program.cap.is_some() {
+        let all = (self, state, residuals, wanted);
+        type All<'a> = (&'a Directions<'a>, &'a State, &'a Residuals, &'a Wanted);
+        let mut worst = with_vectors!('a, follow_rows(all: All<'a>, step: &'a mut Step) -> [f64; 2]);
+        if self.program.cap.is_some() {
             step.cap[0] = -residuals.cap - step.theta;
             step.cap[1] = -(wanted.cap + state.cap[1] * step.cap[0]) / state.cap[0];
+            (0..2).for_each(|i| worst[i] = worst[i].max(-step.cap[i] / state.cap[i]));
+        }
+        step.longest = worst.map(|worst| if worst > 1.0 { 1.0 / worst } else { 1.0 });
+    }
+
+    /// Twice the energy of a change of velocities in the joints.
+    pub(super) fn resisted(&self, motion: &[f64]) -> f64 {
+        let energy = |(member, response): (_, &Response)| {
+            let y = along(&response.root, &self.program.jump(member, motion));
+            dot(&y, &y)
+        };
+        self.program.members.iter().zip(&self.responses).map(energy).sum()
+    }
+}
+
+#[inline(always)]
+fn respond<S: Simd>(_: S, program: &Program, state: &State, responses: &mut [Response]) {
+    let joints = program.members.iter().zip(state.slacks.iter().zip(&state.multipliers));
+    for (response, (member, (s, z))) in responses.iter_mut().zip(joints) {
+        response.slacks = s.map(|s| 1.0 / s);
+        response.multipliers = z.map(|z| if z > 0.0 { 1.0 / z } else { 0.0 });
+        let weights = std::array::from_fn(|row| (z[row] * response.slacks[row]).max(SOFTEST));
+        (response.root, response.rows) = program.cones[member.cone].root(&weights);
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(
+    _: S,
+    (directions, state, residuals, wanted): (&Directions, &State, &Residuals, &Wanted),
+    step: &mut Step,
+) {
+    let program = directions.program;
+    step.q.copy_from_slice(&residuals.equilibrium);
+    let joints = program.members.iter().zip(&directions.responses);
+    let of_rows = wanted.rows.iter().zip(&residuals.slacks).zip(&state.multipliers);
+    let all = joints.zip(of_rows).zip(residuals.flow.iter().zip(&mut step.along));
+    for (((member, response), ((wanted, missed), z)), (flow, own)) in all {
+        let by = std::array::from_fn(|row| (wanted[row] - z[row] * missed[row]) * response.slacks[row]);
+        let pushed = program.cones[member.cone].weighted(&by);
+        *own = along(&response.root, &std::array::from_fn(|k| pushed[k] - flow[k]));
+        program.press(member, &flexed(&response.root, own), &mut step.q);
+    }
+}
+
+#[inline(always)]
+fn relieve<S: Simd>(_: S, program: &Program, responses: &[Response], motion: &[f64], step: &mut Step) {
+    let joints = program.members.iter().zip(responses);
+    for ((member, response), (own, x)) in joints.zip(step.along.iter_mut().zip(&mut step.x)) {
+        let relieved = along(&response.root, &program.jump(member, motion));
+        (0..3).for_each(|k| own[k] -= relieved[k]);
+        *x = flexed(&response.root, own);
+    }
+}
+
+/// The greatest shares of slacks and multipliers that a whole step would take off.
+#[inline(always)]
+fn follow_rows<S: Simd>(
+    _: S,
+    (directions, state, residuals, wanted): (&Directions, &State, &Residuals, &Wanted),
+    step: &mut Step,
+) -> [f64; 2] {
+    let mut worst = [[0.0f64; ROWS]; 2];
+    let of_rows = wanted.rows.iter().zip(&residuals.slacks).zip(&state.multipliers);
+    let changes = step.slacks.iter_mut().zip(&mut step.multipliers).zip(&step.along);
+    for ((response, ((wanted, missed), z)), ((ds, dz), along)) in directions.responses.iter().zip(of_rows).zip(changes)
+    {
+        let carried = combination(&response.rows, along);
+        *ds = std::array::from_fn(|row| -missed[row] - carried[row]);
+        *dz = std::array::from_fn(|row| -(wanted[row] + z[row] * ds[row]) * response.slacks[row]);
+        for row in 0..ROWS {
+            let shares = [-ds[row] * response.slacks[row], -dz[row] * response.multipliers[row]];
+            (0..2).for_each(|i| worst[i][row] = if shares[i] > worst[i][row] { shares[i] } else { worst[i][row] });
         }
     }
+    worst.map(|worst| worst.into_iter().fold(0.0, f64::max))
 }
 
 /// What the cap adds to the stiffness that θ feels.
@@ -160,11 +189,13 @@ pub(super) fn cap_stiffness(program: &Program, state: &State) -> f64 {
 }
 
 /// Rᵀ g.
-pub(super) fn along(root: &Root, g: &[f64; 3]) -> [f64; 3] {
+#[inline(always)]
+fn along(root: &Root, g: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|c| root[0][c] * g[0] + root[1][c] * g[1] + root[2][c] * g[2])
 }
 
 /// R y.
+#[inline(always)]
 fn flexed(root: &Root, y: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| dot(&root[k], y))
 }

@@ -3,13 +3,13 @@
 //! Can the fixed load be carried? The steps hold θ at zero until one of full length makes equilibrium exact: that
 //! point, inside all bounds, is the answer, and the search for the greatest θ goes on from it.
 
-use super::cone::ROWS;
-use super::directions::{Directions, Wanted};
+use super::directions::Directions;
 use super::polish::{polish, unpolished};
 use super::program::Program;
-use super::residuals::Residuals;
+use super::residuals::{Residuals, greatest};
 use super::solution::Solution;
 use super::state::{State, Step};
+use super::wanted::Wanted;
 use voussoir_core::limit::JointForce;
 
 /// Iterations at the most.
@@ -70,8 +70,16 @@ pub fn solve(program: &Program, held: bool) -> Solved {
 fn run(program: &Program, held: bool, greatest: bool) -> Solved {
     let mut solved = Solved { stands: None, solution: None, iterations: 0, factorisations: 0, corrections: 0 };
     let Some(directions) = Directions::new(program) else { return solved };
-    let state = State::start(program, 1.0);
-    let mut method = Method { program, directions, state, iterations: 0, corrections: 0 };
+    let mut method = Method {
+        program,
+        directions,
+        state: State::start(program, 1.0),
+        residuals: Residuals::none(program),
+        steps: [0, 1].map(|_| Step::none(program)),
+        wanted: [0, 1].map(|_| Wanted::none(program.members.len())),
+        iterations: 0,
+        corrections: 0,
+    };
     let carried = !held || method.carry_fixed().is_some();
     if held && carried {
         solved.stands = Some(program.joint_forces(&method.state.x));
@@ -89,6 +97,10 @@ struct Method<'a> {
     program: &'a Program,
     directions: Directions<'a>,
     state: State,
+    residuals: Residuals,
+    /// The step that is best so far and one that is tried, and what they are to reach.
+    steps: [Step; 2],
+    wanted: [Wanted; 2],
     iterations: u64,
     corrections: u64,
 }
@@ -98,18 +110,17 @@ impl Method<'_> {
     fn carry_fixed(&mut self) -> Option<()> {
         let mean = self.state.gap() / self.products();
         for _ in 0..MOST_HELD {
-            let residuals = Residuals::new(self.program, &self.state);
-            if residuals.greatest()[0] < 1e-12 && self.inside() {
+            self.residuals.update(self.program, &self.state);
+            if self.residuals.greatest()[0] < 1e-12 && self.inside() {
                 return Some(());
             }
-            self.directions.factorise(&self.state)?;
-            let wanted = Wanted::new(&self.state, None, mean);
-            let mut step = self.directions.towards(&self.state, &residuals, &wanted, false);
-            self.directions.refined(&self.state, &residuals, &wanted, false, &mut step);
-            let longest = self.state.longest(self.program, &step);
-            let lengths = longest.map(|l| if l < 1.0 { SHORT * l } else { 1.0 });
-            self.state.go(&step, lengths);
-            self.iterations += 1;
+            let Method { directions, state, residuals, steps: [step, _], wanted: [wanted, _], .. } = self;
+            directions.factorise(state)?;
+            wanted.all(state);
+            wanted.but(state, mean);
+            directions.towards(state, residuals, wanted, false, step);
+            directions.refined(state, residuals, wanted, false, step);
+            self.go();
         }
         None
     }
@@ -128,8 +139,8 @@ impl Method<'_> {
         let mut nearest: Option<(f64, State)> = None;
         let (mut least, mut idle, mut polished) = ([f64::INFINITY; 2], 0, f64::INFINITY);
         for _ in 0..MOST {
-            let residuals = Residuals::new(self.program, &self.state);
-            let [statics, kinematics] = residuals.greatest();
+            self.residuals.update(self.program, &self.state);
+            let [statics, kinematics] = self.residuals.greatest();
             let gap = self.state.gap() / (1.0 + self.state.theta.abs());
             if !(gap.is_finite() && statics.is_finite() && kinematics.is_finite()) || self.state.theta.abs() > FAR {
                 break;
@@ -138,7 +149,7 @@ impl Method<'_> {
             let halved: [bool; 2] = std::array::from_fn(|i| missing[i] < 0.5 * least[i]);
             (0..2).filter(|i| halved[*i]).for_each(|i| least[i] = missing[i]);
             idle = if halved.contains(&true) { 0 } else { idle + 1 };
-            let error = self.error(statics, &residuals);
+            let error = self.error(statics);
             // Below the gap that is asked for, rounding of the motion is all that is left.
             let last = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);
             let done = error < SETTLED[0] || (gap < ROUNDING && error < SETTLED[1] && error > 0.5 * last);
@@ -150,7 +161,7 @@ impl Method<'_> {
                 self.polished(&mut best);
             }
             let settled = best.as_ref().is_some_and(|best| best.0 < SETTLED[0]);
-            if settled || done || idle > IDLE || self.improve(&residuals).is_none() {
+            if settled || done || idle > IDLE || self.improve().is_none() {
                 break;
             }
         }
@@ -173,12 +184,12 @@ impl Method<'_> {
     }
 
     /// How far the state itself is from an optimum: the gap in units of θ, what equilibrium misses and what joints resist.
-    fn error(&self, statics: f64, residuals: &Residuals) -> f64 {
-        let moved = residuals.flow.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
-        let largest = self.state.multipliers.iter().flatten().fold(f64::MIN_POSITIVE, |m, z| m.max(*z));
+    fn error(&self, statics: f64) -> f64 {
+        let moved = greatest(self.residuals.flow.as_flattened());
+        let largest = greatest(self.state.multipliers.as_flattened()).max(f64::MIN_POSITIVE);
         let gap = self.state.gap() / self.state.theta.abs().max(LEAST);
         // Without a motion on which the load does work nothing is proved.
-        if residuals.power.abs() > OFF {
+        if self.residuals.power.abs() > OFF {
             return f64::INFINITY;
         }
         // NaN counts as greatest.
@@ -192,48 +203,41 @@ impl Method<'_> {
     }
 
     /// One predictor, with correctors.
-    fn improve(&mut self, residuals: &Residuals) -> Option<()> {
-        let (program, state, directions) = (self.program, &self.state, &mut self.directions);
+    fn improve(&mut self) -> Option<()> {
+        let products = self.products();
+        let Method { directions, state, residuals, steps: [step, other], wanted: [wanted, centred], .. } = self;
         directions.factorise(state)?;
-        let predictor = directions.towards(state, residuals, &Wanted::new(state, None, 0.0), true);
-        let longest = state.longest(program, &predictor);
+        wanted.all(state);
+        directions.towards(state, residuals, wanted, true, step);
         let gap = state.gap();
-        let share = (gap_along(state, &predictor, longest) / gap).powi(3).clamp(1e-8, 1.0);
-        let products = program.rows + usize::from(program.cap.is_some());
-        let mean = share * gap / products as f64;
-        let mut wanted = Wanted::new(state, Some(&predictor), mean);
-        let mut step = directions.towards(state, residuals, &wanted, true);
-        let mut lengths = state.longest(program, &step);
+        let share = (state.gap_after(step) / gap).powi(3).clamp(1e-8, 1.0);
+        let mean = share * gap / products;
+        wanted.but(state, mean);
+        wanted.and_second_order(step);
+        directions.towards(state, residuals, wanted, true, step);
         for _ in 0..CORRECTORS {
+            let lengths = step.longest;
             if lengths[0].min(lengths[1]) > LONG {
                 break;
             }
             let aim = lengths.map(|length| (BEYOND[0] * length + BEYOND[1]).min(1.0));
-            let other = wanted.centred(program, state, &step, aim, mean);
-            let corrected = directions.towards(state, residuals, &other, true);
-            let longer = state.longest(program, &corrected);
-            if longer[0] + longer[1] < lengths[0] + lengths[1] + GAIN {
+            centred.centre(wanted, state, step, aim, mean);
+            directions.towards(state, residuals, centred, true, other);
+            if other.longest[0] + other.longest[1] < lengths[0] + lengths[1] + GAIN {
                 break;
             }
-            (wanted, step, lengths) = (other, corrected, longer);
+            std::mem::swap(wanted, centred);
+            std::mem::swap(step, other);
         }
-        directions.refined(state, residuals, &wanted, true, &mut step);
-        let lengths = state.longest(program, &step).map(|l| if l < 1.0 { SHORT * l } else { 1.0 });
-        self.state.go(&step, lengths);
-        self.iterations += 1;
+        directions.refined(state, residuals, wanted, true, step);
+        self.go();
         Some(())
     }
-}
 
-/// Σ s z after a step.
-fn gap_along(state: &State, step: &Step, [primal, dual]: [f64; 2]) -> f64 {
-    let ahead = |s: f64, ds: f64, z: f64, dz: f64| (s + primal * ds) * (z + dual * dz);
-    let mut sum = ahead(state.cap[0], step.cap[0], state.cap[1], step.cap[1]);
-    for index in 0..state.x.len() {
-        for row in 0..ROWS {
-            let (s, z) = (state.slacks[index][row], state.multipliers[index][row]);
-            sum += ahead(s, step.slacks[index][row], z, step.multipliers[index][row]);
-        }
+    /// Goes along the step, short of the nearest bounds.
+    fn go(&mut self) {
+        let [step, _] = &self.steps;
+        self.state.go(step, step.longest.map(|l| if l < 1.0 { SHORT * l } else { 1.0 }));
+        self.iterations += 1;
     }
-    sum
 }

@@ -16,6 +16,7 @@ mod residuals;
 mod solution;
 mod state;
 mod stiffness;
+mod wanted;
 
 pub use self::interior_point::{Solved, solve, stands};
 pub use self::program::{Loads, Program};

@@ -133,9 +133,9 @@ impl Polish<'_> {
     fn factorise(&mut self, stiffness: &mut Stiffness) -> Option<Vec<f64>> {
         let joints = self.program.members.iter().zip(&self.carrying);
         self.frames = joints.map(|(member, carrying)| Frame::new(&self.program.cones[member.cone], carrying)).collect();
-        let roots: Vec<Root> = self.frames.iter().map(|frame| frame.free).collect();
         let mut v = self.program.varying.clone();
-        stiffness.factorise(self.program, &roots, DELTA, 0.0).then(|| stiffness.solve(&mut v))?;
+        let roots = self.frames.iter().map(|frame| &frame.free);
+        stiffness.factorise(self.program, roots, DELTA, 0.0).then(|| stiffness.solve(&mut v))?;
         Some(v)
     }
 
@@ -329,7 +329,7 @@ impl Polish<'_> {
                 Frame::new(&self.program.cones[member.cone], &yields).free
             })
             .collect();
-        stiffness.factorise(self.program, &roots, DELTA, 0.0).then_some(())?;
+        stiffness.factorise(self.program, roots.iter(), DELTA, 0.0).then_some(())?;
         let q = &self.state.q;
         let squared = inner(q, q);
         let without = |w: &mut Vec<f64>| {

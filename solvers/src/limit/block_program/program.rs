@@ -3,7 +3,7 @@
 //! Forces are in units of the load divided by the root of the number of bodies, which is what a column of them carries; moments are about a
 //! pole of each body, amid its joints, over the mean length of a joint: velocities of all bodies are then of one size.
 
-use super::cone::{Cone, ROWS};
+use super::cone::{Cone, ROWS, dot};
 use crate::limit::scale::force_unit;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 use voussoir_core::linear::elimination_order;
@@ -21,7 +21,7 @@ pub struct Member {
     pub cone: usize,
     /// Number of rows.
     pub rows: usize,
-    /// b of its rows.
+    /// b of its rows, 1 of those that it does not have.
     pub bounds: [f64; ROWS],
 }
 
@@ -129,7 +129,7 @@ impl Program {
     fn member(&mut self, problem: &LimitProblem, index: usize, strengths: bool) -> Option<Member> {
         let joint = &problem.joints[index];
         let forces = joint.components();
-        let (mut normals, mut bounds) = (Vec::new(), [0.0; ROWS]);
+        let (mut normals, mut bounds) = (Vec::new(), [1.0; ROWS]);
         for row in &joint.strength.rows {
             let mut normal = row.normal;
             normal[forces..].fill(0.0);
@@ -175,25 +175,23 @@ impl Program {
     }
 
     /// The jump of a motion at a joint, dual to its forces.
+    #[inline(always)]
     pub fn jump(&self, member: &Member, q: &[f64]) -> [f64; 3] {
         let mut jump = [0.0; 3];
         for (at, wrenches) in member.bodies.iter().zip(&member.wrenches) {
-            if let Some(at) = *at {
-                (0..3).for_each(|k| {
-                    jump[k] += wrenches[k][0] * q[at] + wrenches[k][1] * q[at + 1] + wrenches[k][2] * q[at + 2];
-                });
+            if let Some(q) = at.and_then(|at| q[at..].first_chunk::<3>()) {
+                (0..3).for_each(|k| jump[k] += dot(&wrenches[k], q));
             }
         }
         jump
     }
 
     /// Adds the wrenches of a joint's forces.
+    #[inline(always)]
     pub fn press(&self, member: &Member, x: &[f64; 3], sum: &mut [f64]) {
         for (at, wrenches) in member.bodies.iter().zip(&member.wrenches) {
-            if let Some(at) = *at {
-                (0..3).for_each(|i| {
-                    sum[at + i] += wrenches[0][i] * x[0] + wrenches[1][i] * x[1] + wrenches[2][i] * x[2];
-                });
+            if let Some(sum) = at.and_then(|at| sum[at..].first_chunk_mut::<3>()) {
+                (0..3).for_each(|i| sum[i] += wrenches[0][i] * x[0] + wrenches[1][i] * x[1] + wrenches[2][i] * x[2]);
             }
         }
     }

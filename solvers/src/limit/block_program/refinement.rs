@@ -9,10 +9,10 @@
 //! θ carries what the motions under its load would: corrections (c, τ) keep p·c + k τ = 0 with k the stiffness of the cap, and
 //! on these the preconditioner is a projection. Source: Gould, Hribar and Nocedal (2001), *SIAM J. Sci. Comput.* 23, 1376–1395.
 
-use super::cone::dot;
-use super::directions::{Directions, Wanted, along, cap_stiffness};
-use super::residuals::Residuals;
+use super::directions::{Directions, cap_stiffness};
+use super::residuals::{Residuals, greatest};
 use super::state::{State, Step};
+use super::wanted::Wanted;
 use crate::linear::inner;
 
 /// Corrections of a direction at the most, and the share of the gap that its equilibrium may miss.
@@ -45,7 +45,7 @@ impl Directions<'_> {
             let mut left: Vec<f64> =
                 residuals.equilibrium.iter().zip(&program.varying).map(|(r, p)| r + step.theta * p).collect();
             program.members.iter().zip(&step.x).for_each(|(member, x)| program.press(member, x, &mut left));
-            let error = left.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+            let error = greatest(&left);
             idle = if error < 0.5 * least { 0 } else { idle + 1 };
             least = least.min(error);
             if error < aim || idle == IDLE {
@@ -59,7 +59,9 @@ impl Directions<'_> {
             self.follow(&change, step);
             before = Some(correction);
         }
-        self.complete(state, residuals, wanted, step);
+        if before.is_some() {
+            self.complete(state, residuals, wanted, step);
+        }
     }
 
     /// The correction for what is `left` out of equilibrium, conjugate to the one before.
@@ -84,11 +86,7 @@ impl Directions<'_> {
 
     /// How far a correction goes. `None` where rounding leaves it no stiffness.
     fn length(&self, correction: &Correction, stiff: f64) -> Option<f64> {
-        let energy = |(member, root)| {
-            let y = along(root, &self.program.jump(member, &correction.motion));
-            dot(&y, &y)
-        };
-        let resisted: f64 = self.program.members.iter().zip(&self.roots).map(energy).sum();
+        let resisted = self.resisted(&correction.motion);
         let length = correction.product / (resisted + stiff * correction.theta * correction.theta);
         (length.is_finite() && length > 0.0).then_some(length)
     }

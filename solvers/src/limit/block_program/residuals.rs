@@ -4,6 +4,8 @@ use super::cone::ROWS;
 use super::program::Program;
 use super::state::State;
 use crate::linear::inner;
+use voussoir_core::linear::vectors::Simd;
+use voussoir_core::with_vectors;
 
 /// Residuals of a state.
 pub struct Residuals {
@@ -26,36 +28,56 @@ pub fn imbalance(program: &Program, x: &[[f64; 3]], theta: f64) -> Vec<f64> {
     sum
 }
 
+/// The greatest size; of numbers that are none NaN.
+pub fn greatest(values: &[f64]) -> f64 {
+    let worse = |m: f64, v: f64| if m >= v || m.is_nan() { m } else { v };
+    let (lanes, rest) = values.as_chunks::<8>();
+    let mut worst = [0.0f64; 8];
+    for lane in lanes {
+        (0..8).for_each(|i| worst[i] = worse(worst[i], lane[i].abs()));
+    }
+    worst.into_iter().chain(rest.iter().map(|v| v.abs())).fold(0.0, worse)
+}
+
 impl Residuals {
-    /// Of a state.
-    pub fn new(program: &Program, state: &State) -> Self {
+    /// Of no state yet.
+    pub fn none(program: &Program) -> Self {
         let count = program.members.len();
-        let (mut slacks, mut flow) = (vec![[0.0; ROWS]; count], vec![[0.0; 3]; count]);
-        for (index, member) in program.members.iter().enumerate() {
-            let real = state.true_slacks(program, index);
-            flow[index] = program.jump(member, &state.q);
-            for (row, normal) in program.cones[member.cone].normals.iter().enumerate() {
-                slacks[index][row] = state.slacks[index][row] - real[row];
-                let z = state.multipliers[index][row];
-                (0..3).for_each(|k| flow[index][k] += normal[k] * z);
-            }
-        }
         Residuals {
-            equilibrium: imbalance(program, &state.x, state.theta),
-            slacks,
-            flow,
-            power: inner(&program.varying, &state.q) + state.cap[1] - 1.0,
-            cap: program.cap.map_or(0.0, |cap| state.theta + state.cap[0] - cap),
+            equilibrium: vec![0.0; program.fixed.len()],
+            slacks: vec![[0.0; ROWS]; count],
+            flow: vec![[0.0; 3]; count],
+            power: 0.0,
+            cap: 0.0,
         }
+    }
+
+    /// Those of a state.
+    pub fn update(&mut self, program: &Program, state: &State) {
+        let own = &mut *self;
+        with_vectors!('a, of_joints(own: &'a mut Residuals, program: &'a Program, state: &'a State) -> ());
+        self.power = inner(&program.varying, &state.q) + state.cap[1] - 1.0;
+        self.cap = program.cap.map_or(0.0, |cap| state.theta + state.cap[0] - cap);
     }
 
     /// Greatest residual of statics and of kinematics.
     pub fn greatest(&self) -> [f64; 2] {
-        // NaN counts as greatest.
-        let worse = |m: f64, v: f64| if v.abs() <= m { m } else { v.abs() };
-        let over = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0f64, worse);
-        let statics = over(&mut self.equilibrium.iter().chain(self.slacks.iter().flatten()).copied());
-        let kinematics = over(&mut self.flow.iter().flatten().copied());
-        [statics.max(self.cap.abs()), kinematics.max(self.power.abs())]
+        let statics = [greatest(&self.equilibrium), greatest(self.slacks.as_flattened()), self.cap];
+        [greatest(&statics), greatest(&[greatest(self.flow.as_flattened()), self.power])]
+    }
+}
+
+#[inline(always)]
+fn of_joints<S: Simd>(_: S, own: &mut Residuals, program: &Program, state: &State) {
+    for (sum, (w, p)) in own.equilibrium.iter_mut().zip(program.fixed.iter().zip(&program.varying)) {
+        *sum = w + state.theta * p;
+    }
+    for (index, member) in program.members.iter().enumerate() {
+        let cone = &program.cones[member.cone];
+        program.press(member, &state.x[index], &mut own.equilibrium);
+        let (values, slacks) = (cone.values(&state.x[index]), &state.slacks[index]);
+        own.slacks[index] = std::array::from_fn(|row| values[row] + slacks[row] - member.bounds[row]);
+        let (jump, carried) = (program.jump(member, &state.q), cone.weighted(&state.multipliers[index]));
+        own.flow[index] = std::array::from_fn(|k| jump[k] + carried[k]);
     }
 }

@@ -1,6 +1,6 @@
 //! Iterates of the interior point method.
 
-use super::cone::{ROWS, dot};
+use super::cone::ROWS;
 use super::program::Program;
 
 /// A point in forces and motions.
@@ -35,20 +35,24 @@ pub struct Step {
     pub cap: [f64; 2],
     /// Of q.
     pub q: Vec<f64>,
+    /// The longest steps ≤ 1 in slacks and in multipliers that keep both positive.
+    pub longest: [f64; 2],
     /// Of x as R of each joint's flexibility R Rᵀ times these: of size one however far flexibilities differ.
     pub along: Vec<[f64; 3]>,
 }
 
 impl Step {
-    /// No change of a program of so many joints; of velocities nothing at all.
-    pub fn none(count: usize) -> Self {
+    /// No change of a program.
+    pub fn none(program: &Program) -> Self {
+        let count = program.members.len();
         Step {
             x: vec![[0.0; 3]; count],
             theta: 0.0,
             slacks: vec![[0.0; ROWS]; count],
             multipliers: vec![[0.0; ROWS]; count],
             cap: [0.0; 2],
-            q: Vec::new(),
+            q: vec![0.0; program.fixed.len()],
+            longest: [1.0; 2],
             along: vec![[0.0; 3]; count],
         }
     }
@@ -71,48 +75,44 @@ impl State {
 
     /// Σ s z.
     pub fn gap(&self) -> f64 {
-        let joints = self.slacks.iter().zip(&self.multipliers);
-        joints.map(|(s, z)| (0..ROWS).map(|row| s[row] * z[row]).sum::<f64>()).sum::<f64>() + self.cap[0] * self.cap[1]
+        let mut sums = [0.0; ROWS];
+        for (s, z) in self.slacks.iter().zip(&self.multipliers) {
+            (0..ROWS).for_each(|row| sums[row] += s[row] * z[row]);
+        }
+        sums.iter().sum::<f64>() + self.cap[0] * self.cap[1]
     }
 
-    /// The longest steps ≤ 1 in slacks and in multipliers that keep both positive.
-    pub fn longest(&self, program: &Program, step: &Step) -> [f64; 2] {
-        // −min(ds/s): no branch.
-        let mut worst = [0.0f64; 2];
-        for (index, member) in program.members.iter().enumerate() {
-            for row in 0..member.rows {
-                worst[0] = worst[0].max(-step.slacks[index][row] / self.slacks[index][row]);
-                worst[1] = worst[1].max(-step.multipliers[index][row] / self.multipliers[index][row]);
-            }
+    /// Σ s z after the longest step that keeps all positive.
+    pub fn gap_after(&self, step: &Step) -> f64 {
+        let [primal, dual] = step.longest;
+        let ahead = |s: f64, ds: f64, z: f64, dz: f64| (s + primal * ds) * (z + dual * dz);
+        let mut sums = [0.0; ROWS];
+        let changes = step.slacks.iter().zip(&step.multipliers);
+        for ((s, z), (ds, dz)) in self.slacks.iter().zip(&self.multipliers).zip(changes) {
+            (0..ROWS).for_each(|row| sums[row] += ahead(s[row], ds[row], z[row], dz[row]));
         }
-        if program.cap.is_some() {
-            (0..2).for_each(|i| worst[i] = worst[i].max(-step.cap[i] / self.cap[i]));
-        }
-        worst.map(|worst| if worst > 1.0 { 1.0 / worst } else { 1.0 })
+        sums.iter().sum::<f64>() + ahead(self.cap[0], step.cap[0], self.cap[1], step.cap[1])
     }
 
     /// Goes along a step, by one share in forces and by another in motions.
     pub fn go(&mut self, step: &Step, [primal, dual]: [f64; 2]) {
-        for index in 0..self.x.len() {
-            (0..3).for_each(|k| self.x[index][k] += primal * step.x[index][k]);
-            for row in 0..ROWS {
-                self.slacks[index][row] += primal * step.slacks[index][row];
-                self.multipliers[index][row] += dual * step.multipliers[index][row];
-            }
-        }
+        let add = |own: &mut [f64], change: &[f64], share: f64| {
+            own.iter_mut().zip(change).for_each(|(own, change)| *own += share * change);
+        };
+        add(self.x.as_flattened_mut(), step.x.as_flattened(), primal);
+        add(self.slacks.as_flattened_mut(), step.slacks.as_flattened(), primal);
+        add(self.multipliers.as_flattened_mut(), step.multipliers.as_flattened(), dual);
+        add(&mut self.q, &step.q, dual);
         self.theta += primal * step.theta;
         self.cap[0] += primal * step.cap[0];
         self.cap[1] += dual * step.cap[1];
-        self.q.iter_mut().zip(&step.q).for_each(|(q, dq)| *q += dual * dq);
     }
 
-    /// b − A x of the rows of a joint.
+    /// b − A x of the rows of a joint; 1 of those that it does not have.
+    #[inline(always)]
     pub fn true_slacks(&self, program: &Program, index: usize) -> [f64; ROWS] {
         let member = &program.members[index];
-        let mut slacks = [1.0; ROWS];
-        for (row, normal) in program.cones[member.cone].normals.iter().enumerate() {
-            slacks[row] = member.bounds[row] - dot(normal, &self.x[index]);
-        }
-        slacks
+        let values = program.cones[member.cone].values(&self.x[index]);
+        std::array::from_fn(|row| member.bounds[row] - values[row])
     }
 }

@@ -1,45 +1,39 @@
 //! The stiffness of bodies on springs: E R Rᵀ Eᵀ, R the roots of the joints' flexibilities.
 
+use super::cone::dot;
 use super::program::Program;
-use voussoir_core::linear::SparseCholesky;
+use voussoir_core::linear::BlockCholesky;
 
 /// The root of a joint's flexibility, by forces.
 pub type Root = [[f64; 3]; 3];
 
 /// Stiffness matrices of one program.
 pub struct Stiffness {
-    cholesky: SparseCholesky,
-    /// For each body where its columns begin on the diagonal.
-    diagonals: Vec<[usize; 3]>,
-    /// For each joint between two bodies: which side comes first, and where its columns begin in those of the other.
-    couplings: Vec<Option<(usize, [usize; 3])>>,
+    cholesky: BlockCholesky,
+    /// For each body where its block on the diagonal begins, and how far apart its columns are.
+    diagonals: Vec<(usize, usize)>,
+    /// For each joint between two bodies: which side comes first, and the same of the other's rows in its columns.
+    couplings: Vec<Option<(usize, (usize, usize))>>,
     /// Factorisations done.
     pub factorisations: u64,
 }
 
 impl Stiffness {
-    /// Analyses the pattern. `None` where memory is short.
+    /// Analyses the pattern.
     pub fn new(program: &Program) -> Option<Self> {
-        let size = program.fixed.len();
-        let mut columns: Vec<Vec<usize>> = (0..size).map(|j| (j - j % 3..=j).collect()).collect();
+        let count = program.fixed.len() / 3;
         let pair = |bodies: [Option<usize>; 2]| match bodies {
-            [Some(a), Some(b)] if a < b => Some((0, a, b)),
-            [Some(a), Some(b)] => Some((1, b, a)),
+            [Some(a), Some(b)] if a < b => Some((0, a / 3, b / 3)),
+            [Some(a), Some(b)] => Some((1, b / 3, a / 3)),
             _ => None,
         };
-        for member in &program.members {
-            if let Some((_, first, second)) = pair(member.bodies) {
-                columns[second..second + 3].iter_mut().for_each(|column| column.extend(first..first + 3));
-            }
-        }
-        let cholesky = SparseCholesky::new(columns)?;
-        let place = |row: usize, body: usize| -> Option<[usize; 3]> {
-            let at = |k: usize| cholesky.place(row, body + k);
-            Some([at(0)?, at(1)?, at(2)?])
-        };
-        let diagonals = (0..size / 3).map(|body| place(3 * body, 3 * body)).collect::<Option<_>>()?;
-        let couplings = program.members.iter().map(|member| match pair(member.bodies) {
-            Some((side, first, second)) => Some(Some((side, place(first, second)?))),
+        let pairs: Vec<_> = program.members.iter().map(|member| pair(member.bodies)).collect();
+        let mut columns: Vec<Vec<usize>> = vec![Vec::new(); count];
+        pairs.iter().flatten().for_each(|&(_, first, second)| columns[first].push(second));
+        let cholesky = BlockCholesky::new(columns);
+        let diagonals = (0..count).map(|body| cholesky.place(body, body)).collect::<Option<_>>()?;
+        let couplings = pairs.into_iter().map(|pair| match pair {
+            Some((side, first, second)) => Some(Some((side, cholesky.place(second, first)?))),
             None => Some(None),
         });
         let couplings = couplings.collect::<Option<_>>()?;
@@ -47,7 +41,13 @@ impl Stiffness {
     }
 
     /// Factorises the matrix of these roots, with `shift` on its diagonal and of each entry there the share `relative`.
-    pub fn factorise(&mut self, program: &Program, roots: &[Root], shift: f64, relative: f64) -> bool {
+    pub fn factorise<'a>(
+        &mut self,
+        program: &Program,
+        roots: impl Iterator<Item = &'a Root>,
+        shift: f64,
+        relative: f64,
+    ) -> bool {
         let values = self.cholesky.values();
         values.fill(0.0);
         for ((member, root), coupling) in program.members.iter().zip(roots).zip(&self.couplings) {
@@ -64,29 +64,33 @@ impl Stiffness {
             for (side, at) in member.bodies.iter().enumerate() {
                 let Some(at) = *at else { continue };
                 let f = along(side);
-                for (j, start) in self.diagonals[at / 3].iter().enumerate() {
-                    (0..=j)
-                        .for_each(|i| values[start + i] += f[i][0] * f[j][0] + f[i][1] * f[j][1] + f[i][2] * f[j][2]);
+                let (start, apart) = self.diagonals[at / 3];
+                for (j, b) in f.iter().enumerate() {
+                    for (i, a) in f.iter().enumerate().skip(j) {
+                        values[start + j * apart + i] += dot(a, b);
+                    }
                 }
                 sides[side] = f;
             }
-            if let Some((first, starts)) = coupling {
-                let (a, b) = (&sides[*first], &sides[1 - first]);
-                for (j, start) in starts.iter().enumerate() {
-                    (0..3).for_each(|i| values[start + i] += a[i][0] * b[j][0] + a[i][1] * b[j][1] + a[i][2] * b[j][2]);
+            if let Some((first, (start, apart))) = coupling {
+                for (j, b) in sides[*first].iter().enumerate() {
+                    for (i, a) in sides[1 - first].iter().enumerate() {
+                        values[start + j * apart + i] += dot(a, b);
+                    }
                 }
             }
         }
-        for starts in &self.diagonals {
-            for (j, start) in starts.iter().enumerate() {
-                values[start + j] += shift + relative * values[start + j];
+        for (start, apart) in &self.diagonals {
+            for j in 0..3 {
+                let own = &mut values[start + j * (apart + 1)];
+                *own += shift + relative * *own;
             }
         }
         self.factorisations += 1;
         self.cholesky.factorise()
     }
 
-    /// Solves for one or two right-hand sides in place.
+    /// Solves for right-hand sides in place.
     pub fn solve(&mut self, right: &mut [f64]) {
         self.cholesky.solve(right);
     }

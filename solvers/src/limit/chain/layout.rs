@@ -151,6 +151,29 @@ impl Forms {
         }
         Forms { variables, values }
     }
+
+    /// The form of N_0, N_1 or T of a joint, the constant last.
+    pub fn form(&self, joint: usize, i: usize) -> &[f64] {
+        let length = self.variables + 1;
+        &self.values[(3 * joint + i) * length..][..length]
+    }
+
+    /// The forms of N_0, N_1 and T of a joint.
+    pub fn of_joint(&self, joint: usize) -> &[f64] {
+        let length = 3 * (self.variables + 1);
+        &self.values[joint * length..][..length]
+    }
+}
+
+/// Adds the weighted coefficients of a joint's forms of so many variables to `a`; what is left of a bound when their constants are taken off.
+#[inline(always)]
+pub fn add_weighted(variables: usize, forms: &[f64], weights: &[f64; 3], mut bound: f64, a: &mut [f64]) -> f64 {
+    let a = &mut a[..variables];
+    for (form, weight) in forms.chunks_exact(variables + 1).zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        a.iter_mut().zip(form).for_each(|(a, c)| *a += weight * c);
+        bound -= weight * form[variables];
+    }
+    bound
 }
 
 /// The wrench that each link transmits onto what lies ahead: it balances all loads there.

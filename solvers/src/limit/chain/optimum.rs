@@ -51,7 +51,32 @@ fn rank(matrix: &DMatrix<f64>) -> usize {
             column /= norm;
         }
     }
-    scaled.svd(false, false).rank(1e-9)
+    if clearly_independent(&scaled) { matrix.ncols() } else { scaled.svd(false, false).rank(DEPENDENT) }
+}
+
+/// Singular value of columns of length one below which they depend on each other.
+const DEPENDENT: f64 = 1e-9;
+
+/// Whether columns of length one have no singular value below a thousand times [`DEPENDENT`], by their volume: the product of k singular
+/// values, each at most √k. False does not say that they have.
+fn clearly_independent(columns: &DMatrix<f64>) -> bool {
+    let k = columns.ncols();
+    let mut rest = columns.clone();
+    let mut volume = 1.0;
+    for j in 0..k {
+        let norm = rest.column(j).norm();
+        volume *= norm;
+        if volume.is_nan() || volume <= 1e3 * DEPENDENT * (k as f64).powf((k - 1) as f64 / 2.0) {
+            return false;
+        }
+        let (before, mut after) = rest.columns_range_pair_mut(j..j + 1, j + 1..);
+        let unit = before.column(0) / norm;
+        for mut column in after.column_iter_mut() {
+            let along = unit.dot(&column);
+            column.axpy(-along, &unit, 1.0);
+        }
+    }
+    true
 }
 
 /// A point of {y ≥ 0 : A y = A start} with as many positive entries as any: the mean of points that
@@ -134,4 +159,28 @@ fn analytic_centre(matrix: &DMatrix<f64>, start: DVector<f64>) -> DVector<f64> {
         }
     }
     y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The bound by the volume says of no columns that they are independent of which singular values say otherwise.
+    #[test]
+    fn clearly_independent_columns_have_full_rank() {
+        let column =
+            |k: usize, seed: f64| DVector::from_fn(4, |i, _| (seed * (7 * i * i + 3 * k + 1) as f64).sin()).normalize();
+        for seed in 1..50 {
+            let mut columns: Vec<_> = (0..4).map(|k| column(k, seed as f64)).collect();
+            for near in [1.0, 1e-3, 1e-7, 1e-12, 0.0] {
+                columns[3] = (&columns[0] * 0.3 + &columns[1] + column(3, seed as f64) * near).normalize();
+                let matrix = DMatrix::from_columns(&columns);
+                let least = matrix.clone().svd(false, false).singular_values.min();
+                assert!(!clearly_independent(&matrix) || least > 1e-6, "{seed} {near}: {least}");
+                assert!(near > 1e-9 || !clearly_independent(&matrix));
+            }
+            assert!(clearly_independent(&DMatrix::identity(4, 4)));
+        }
+        assert!(!clearly_independent(&DMatrix::from_element(3, 4, 0.5)));
+    }
 }

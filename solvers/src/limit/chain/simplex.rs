@@ -1,7 +1,7 @@
 //! The simplex method on elementary mechanisms: min β·y with Σ y_i a_i = c, y ≥ 0, columns priced
 //! joint by joint, stress blocks by their tangents.
 
-use super::layout::{Forms, Trees};
+use super::layout::{Forms, Trees, add_weighted};
 use super::small_lu::SmallLu;
 use crate::linear::inner;
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
@@ -31,23 +31,18 @@ pub enum Column {
     Artificial { variable: usize },
 }
 
-/// What every pivot reads of a row of a joint's strength.
-struct Bounded {
-    normal: [f64; 3],
-    /// In units of the force scale.
-    bound: f64,
-    /// 1, or 0 where it can have no slack.
-    margin: f64,
-}
-
 /// A linear program over the affine joint forces.
 pub struct Program<'a> {
     problem: &'a LimitProblem,
     forms: &'a Forms,
     force: f64,
-    /// Rows of all joints, one after the other, and where those of the next joint begin.
-    rows: Vec<Bounded>,
+    /// What every pivot reads of a row of a joint's strength, a row after the other: its coefficients over the variables of `forms`, 1 or 0 where
+    /// it can have no slack, and its bound in units of the force scale, less what the constants of the forms take of it.
+    rows: Vec<f64>,
+    /// For each joint where its rows end, in rows.
     ends: Vec<usize>,
+    /// Whether every row can have slack.
+    slack: bool,
     /// Whether any joint crushes.
     crushes: bool,
     margin: bool,
@@ -108,19 +103,22 @@ enum Ending {
 impl<'a> Program<'a> {
     /// Maximises the last factor of `forms`.
     pub fn new(problem: &'a LimitProblem, forms: &'a Forms, force: f64) -> Self {
-        let count = problem.joints.iter().map(|joint| joint.strength.rows.len()).sum();
-        let (mut rows, mut ends) = (Vec::with_capacity(count), Vec::with_capacity(problem.joints.len()));
+        let count: usize = problem.joints.iter().map(|joint| joint.strength.rows.len()).sum();
+        let mut rows = vec![0.0; count * (forms.variables + 2)];
+        match forms.variables {
+            3 => write_rows(3, problem, forms, force, &mut rows),
+            4 => write_rows(4, problem, forms, force, &mut rows),
+            known => write_rows(known, problem, forms, force, &mut rows),
+        }
+        let (mut ends, mut slack, mut end) = (Vec::with_capacity(problem.joints.len()), true, 0);
         for joint in &problem.joints {
-            rows.extend(joint.strength.rows.iter().map(|row| Bounded {
-                normal: row.normal,
-                bound: row.bound / force,
-                margin: f64::from(u8::from(can_be_slack(row))),
-            }));
-            ends.push(rows.len());
+            end += joint.strength.rows.len();
+            ends.push(end);
+            slack &= joint.strength.rows.iter().all(can_be_slack);
         }
         let crushes = problem.joints.iter().any(|joint| joint.strength.block.is_some());
         let (variables, cap) = (forms.variables, f64::INFINITY);
-        Program { problem, forms, force, rows, ends, crushes, margin: false, any_field: false, cap, variables }
+        Program { problem, forms, force, rows, ends, slack, crushes, margin: false, any_field: false, cap, variables }
     }
 
     /// Maximises the least slack of all rows instead, up to 1.
@@ -134,7 +132,7 @@ impl<'a> Program<'a> {
     /// With a margin, ended at the first point that keeps all rows without it: what it takes from each is then more than what the
     /// worst of them lacks. Not where some row can have no slack, nor where tangents stand for stress blocks within a tolerance.
     pub fn with_any_margin(mut self) -> Self {
-        self.any_field = !self.crushes && self.rows.iter().all(|row| row.margin == 1.0);
+        self.any_field = !self.crushes && self.slack;
         self.with_margin()
     }
 
@@ -145,9 +143,15 @@ impl<'a> Program<'a> {
     }
 
     fn form(&self, joint: usize, i: usize) -> &[f64] {
-        let length = self.forms.variables + 1;
-        let first = (3 * joint + i) * length;
-        &self.forms.values[first..first + length]
+        self.forms.form(joint, i)
+    }
+
+    /// A row of a joint as every pivot reads it.
+    fn row(&self, joint: usize, row: usize) -> (&[f64], f64, f64) {
+        let first = joint.checked_sub(1).map_or(0, |before| self.ends[before]);
+        let stride = self.forms.variables + 2;
+        let (a, rest) = self.rows[(first + row) * stride..][..stride].split_at(self.forms.variables);
+        (a, rest[0], rest[1])
     }
 
     /// (N_0, N_1, T) at a point, in units of the force scale; `constant` 0 drops the fixed loads.
@@ -156,17 +160,6 @@ impl<'a> Program<'a> {
             let form = self.form(joint, i);
             let (coefficients, last) = form.split_at(self.forms.variables);
             coefficients.iter().zip(point).map(|(a, x)| a * x).sum::<f64>() + constant * last[0]
-        })
-    }
-
-    /// The same of V variables.
-    #[inline(always)]
-    fn affine<const V: usize>(&self, joint: usize, point: &[f64], constant: f64) -> [f64; 3] {
-        let (Some(point), length) = (point.first_chunk::<V>(), 3 * (V + 1)) else { return [0.0; 3] };
-        let mut forms = self.forms.values[joint * length..(joint + 1) * length].chunks_exact(V + 1);
-        std::array::from_fn(|_| {
-            let Some((form, last)) = forms.next().and_then(|form| form.split_first_chunk::<V>()) else { return 0.0 };
-            (0..V).map(|k| form[k] * point[k]).sum::<f64>() + constant * last[0]
         })
     }
 
@@ -195,47 +188,38 @@ impl<'a> Program<'a> {
         }
     }
 
-    fn has_margin(&self, column: Column) -> bool {
-        match column {
-            Column::Row { joint, row } => self.margin && can_be_slack(&self.problem.joints[joint].strength.rows[row]),
-            _ => self.margin,
-        }
-    }
-
     /// Writes a of a column; its β.
     fn write(&self, column: Column, a: &mut [f64]) -> f64 {
         a.fill(0.0);
-        let Some((joint, weights)) = self.weights(column) else {
-            return match column {
-                Column::Artificial { variable } => {
-                    a[variable] = 1.0;
-                    0.0
+        let known = self.forms.variables;
+        match column {
+            Column::Row { joint, row } => {
+                let (own, margin, beta) = self.row(joint, row);
+                a[..known].copy_from_slice(own);
+                if self.margin {
+                    a[self.variables - 1] = margin;
                 }
-                _ => {
-                    a[self.variables - 1] = 1.0;
-                    self.cap
-                }
-            };
-        };
-        let mut beta = match column {
-            Column::Row { joint, row } => self.problem.joints[joint].strength.rows[row].bound / self.force,
+                beta
+            }
             Column::Tangent { joint, u, .. } => {
                 let block = self.block(joint).expect("tangents belong to stress blocks");
-                u * u / block.total - 2.0 * u / block.total * block.tension + block.tension
+                let bound = u * u / block.total - 2.0 * u / block.total * block.tension + block.tension;
+                let weights = self.weights(column).map_or([0.0; 3], |(_, weights)| weights);
+                let beta = add_weighted(known, self.forms.of_joint(joint), &weights, bound, a);
+                if self.margin {
+                    a[self.variables - 1] = 1.0;
+                }
+                beta
             }
-            _ => unreachable!("cap and artificials have no weights"),
-        };
-        for (i, weight) in weights.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
-            let form = self.form(joint, i);
-            for k in 0..self.forms.variables {
-                a[k] += weight * form[k];
+            Column::Artificial { variable } => {
+                a[variable] = 1.0;
+                0.0
             }
-            beta -= weight * form[self.forms.variables];
+            Column::Cap => {
+                a[self.variables - 1] = 1.0;
+                self.cap
+            }
         }
-        if self.has_margin(column) {
-            a[self.variables - 1] = 1.0;
-        }
-        beta
     }
 
     /// Calls `visit` with every column whose violation at `point`, as `measure` reads it, is above `least`, and goes on with
@@ -250,29 +234,27 @@ impl<'a> Program<'a> {
     ) {
         let at = (point, constant);
         match self.forms.variables {
-            3 => self.scan_by(at, |joint| self.affine::<3>(joint, point, constant), measure, least, visit),
-            4 => self.scan_by(at, |joint| self.affine::<4>(joint, point, constant), measure, least, visit),
-            _ => self.scan_by(at, |joint| self.evaluate(joint, point, constant), measure, least, visit),
+            3 => self.scan_by(3, at, measure, least, visit),
+            4 => self.scan_by(4, at, measure, least, visit),
+            known => self.scan_by(known, at, measure, least, visit),
         }
     }
 
-    /// The same with the forces of each joint by `evaluate`.
+    /// The same of so many variables.
     #[inline(always)]
     fn scan_by(
         &self,
+        known: usize,
         (point, constant): (&[f64], f64),
-        evaluate: impl Fn(usize) -> [f64; 3],
         measure: impl Fn(f64) -> f64 + Copy,
         mut least: f64,
         visit: &mut dyn FnMut(Column, f64) -> f64,
     ) {
-        let slack = self.slack_variable(point);
+        let (slack, x, stride) = (self.slack_variable(point), &point[..known], known + 2);
         let mut first = 0;
         for (joint, &end) in self.ends.iter().enumerate() {
-            let forces = evaluate(joint);
-            for (row, r) in self.rows[first..end].iter().enumerate() {
-                let carried = r.normal[0] * forces[0] + r.normal[1] * forces[1] + r.normal[2] * forces[2];
-                let size = measure(carried + r.margin * slack - constant * r.bound);
+            for (row, r) in self.rows[first * stride..end * stride].chunks_exact(stride).enumerate() {
+                let size = measure(inner(&r[..known], x) + r[known] * slack - constant * r[known + 1]);
                 if size > least {
                     least = visit(Column::Row { joint, row }, size);
                 }
@@ -281,6 +263,7 @@ impl<'a> Program<'a> {
             if self.crushes
                 && let Some(block) = self.block(joint)
             {
+                let forces = self.evaluate(joint, point, constant);
                 tangents(joint, &block, forces, constant, slack, &mut |column, violation| {
                     let size = measure(violation);
                     if size > least {
@@ -599,6 +582,18 @@ impl<'a> Program<'a> {
             motion[link.ahead] = behind + if joint.plus == Some(link.ahead) { twist } else { -twist };
         }
         motion.into_iter().map(Into::into).collect()
+    }
+}
+
+/// Writes the rows of all joints as every pivot reads them.
+#[inline(always)]
+fn write_rows(known: usize, problem: &LimitProblem, forms: &Forms, force: f64, rows: &mut [f64]) {
+    let mut rows = rows.chunks_exact_mut(known + 2);
+    for (joint, forms) in problem.joints.iter().zip(forms.values.chunks_exact(3 * (known + 1))) {
+        for (row, own) in joint.strength.rows.iter().zip(&mut rows) {
+            let beta = add_weighted(known, forms, &row.normal, row.bound / force, own);
+            (own[known], own[known + 1]) = (f64::from(u8::from(can_be_slack(row))), beta);
+        }
     }
 }
 

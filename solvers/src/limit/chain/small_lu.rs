@@ -2,6 +2,18 @@
 
 use crate::linear::inner;
 
+/// Calls a function with a size and what else it takes; with the sizes of an arch, whose variables are three redundants and a factor, a margin
+/// or both, as constants, without loops.
+macro_rules! of_size {
+    ($size:expr, $function:ident($($argument:ident),+)) => {
+        match $size {
+            4 => $function(4, $($argument),+),
+            5 => $function(5, $($argument),+),
+            n => $function(n, $($argument),+),
+        }
+    };
+}
+
 /// Factors of one matrix at a time, all of the same size.
 #[derive(Debug, Clone)]
 pub struct SmallLu {
@@ -22,67 +34,84 @@ impl SmallLu {
 
     /// Factorises a matrix given by columns. Whether it has an inverse.
     pub fn factorise(&mut self, columns: &[f64]) -> bool {
-        let n = self.size;
-        for (j, column) in columns.chunks_exact(n).enumerate() {
-            column.iter().enumerate().for_each(|(i, v)| self.values[i * n + j] = *v);
-        }
         self.order.iter_mut().enumerate().for_each(|(i, row)| *row = i);
-        for k in 0..n {
-            let size = |row: usize| self.values[row * n + k].abs();
-            let pivot = (k..n).fold(k, |best, row| if size(row) > size(best) { row } else { best });
-            if pivot != k {
-                let (upper, lower) = self.values.split_at_mut(pivot * n);
-                upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
-                self.order.swap(k, pivot);
-            }
-            let (upper, lower) = self.values.split_at_mut((k + 1) * n);
-            let row = &upper[k * n..];
-            if row[k] == 0.0 || !row[k].is_finite() {
-                return false;
-            }
-            for below in lower.chunks_exact_mut(n) {
-                let factor = below[k] / row[k];
-                below[k] = factor;
-                below[k + 1..].iter_mut().zip(&row[k + 1..n]).for_each(|(b, r)| *b -= factor * r);
-            }
-        }
-        true
+        let (values, order) = (self.values.as_mut_slice(), self.order.as_mut_slice());
+        of_size!(self.size, factorise(values, order, columns))
     }
 
     /// Solves A x = b in place.
     pub fn solve(&mut self, b: &mut [f64]) {
-        let n = self.size;
         self.copy.copy_from_slice(b);
-        for i in 0..n {
-            let row = &self.values[i * n..(i + 1) * n];
-            let known = inner(&row[..i], b);
-            b[i] = self.copy[self.order[i]] - known;
-        }
-        for i in (0..n).rev() {
-            let row = &self.values[i * n..(i + 1) * n];
-            let known = inner(&row[i + 1..], &b[i + 1..]);
-            b[i] = (b[i] - known) / row[i];
-        }
+        let (values, order, right) = (self.values.as_slice(), self.order.as_slice(), self.copy.as_slice());
+        of_size!(self.size, solve(values, order, right, b));
     }
 
     /// Solves Aᵀ x = b in place.
     pub fn solve_transposed(&mut self, b: &mut [f64]) {
-        let n = self.size;
         self.copy.copy_from_slice(b);
-        let y = &mut self.copy;
-        for i in 0..n {
-            let row = &self.values[i * n..(i + 1) * n];
-            let x = y[i] / row[i];
-            y[i] = x;
-            y[i + 1..].iter_mut().zip(&row[i + 1..]).for_each(|(y, u)| *y -= u * x);
-        }
-        for i in (0..n).rev() {
-            let x = y[i];
-            let row = &self.values[i * n..i * n + i];
-            y[..i].iter_mut().zip(row).for_each(|(y, l)| *y -= l * x);
-        }
-        self.order.iter().zip(y.iter()).for_each(|(row, x)| b[*row] = *x);
+        let (values, order, y) = (self.values.as_slice(), self.order.as_slice(), self.copy.as_mut_slice());
+        of_size!(self.size, solve_transposed(values, order, y, b));
     }
+}
+
+#[inline(always)]
+fn factorise(n: usize, values: &mut [f64], order: &mut [usize], columns: &[f64]) -> bool {
+    let (values, order) = (&mut values[..n * n], &mut order[..n]);
+    for (j, column) in columns.chunks_exact(n).enumerate() {
+        column.iter().enumerate().for_each(|(i, v)| values[i * n + j] = *v);
+    }
+    for k in 0..n {
+        let size = |row: usize| values[row * n + k].abs();
+        let pivot = (k..n).fold(k, |best, row| if size(row) > size(best) { row } else { best });
+        if pivot != k {
+            let (upper, lower) = values.split_at_mut(pivot * n);
+            upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
+            order.swap(k, pivot);
+        }
+        let (upper, lower) = values.split_at_mut((k + 1) * n);
+        let row = &upper[k * n..];
+        if row[k] == 0.0 || !row[k].is_finite() {
+            return false;
+        }
+        for below in lower.chunks_exact_mut(n) {
+            let factor = below[k] / row[k];
+            below[k] = factor;
+            below[k + 1..].iter_mut().zip(&row[k + 1..n]).for_each(|(b, r)| *b -= factor * r);
+        }
+    }
+    true
+}
+
+#[inline(always)]
+fn solve(n: usize, values: &[f64], order: &[usize], right: &[f64], b: &mut [f64]) {
+    let (values, order, right, b) = (&values[..n * n], &order[..n], &right[..n], &mut b[..n]);
+    for i in 0..n {
+        let row = &values[i * n..(i + 1) * n];
+        let known = inner(&row[..i], &b[..i]);
+        b[i] = right[order[i]] - known;
+    }
+    for i in (0..n).rev() {
+        let row = &values[i * n..(i + 1) * n];
+        let known = inner(&row[i + 1..], &b[i + 1..]);
+        b[i] = (b[i] - known) / row[i];
+    }
+}
+
+#[inline(always)]
+fn solve_transposed(n: usize, values: &[f64], order: &[usize], y: &mut [f64], b: &mut [f64]) {
+    let (values, order, y, b) = (&values[..n * n], &order[..n], &mut y[..n], &mut b[..n]);
+    for i in 0..n {
+        let row = &values[i * n..(i + 1) * n];
+        let x = y[i] / row[i];
+        y[i] = x;
+        y[i + 1..].iter_mut().zip(&row[i + 1..]).for_each(|(y, u)| *y -= u * x);
+    }
+    for i in (0..n).rev() {
+        let x = y[i];
+        let row = &values[i * n..i * n + i];
+        y[..i].iter_mut().zip(row).for_each(|(y, l)| *y -= l * x);
+    }
+    order.iter().zip(y.iter()).for_each(|(row, x)| b[*row] = *x);
 }
 
 #[cfg(test)]
@@ -92,7 +121,19 @@ mod tests {
     /// Both products give the right-hand sides back; a matrix without inverse is seen.
     #[test]
     fn both_systems_are_solved() {
-        let n = 5;
+        for n in [3, 4, 5, 6] {
+            is_solved(n);
+        }
+        let singular = |n: usize| {
+            let mut columns = vec![1.0; n * n];
+            columns[0] = 2.0;
+            let mut lu = SmallLu::new(n);
+            !lu.factorise(&columns) || lu.values[n * n - 1].abs() < 1e-15
+        };
+        assert!([3, 4, 5, 6].into_iter().all(singular) && !SmallLu::new(2).factorise(&[0.0; 4]));
+    }
+
+    fn is_solved(n: usize) {
         // Of k²: sines of k alone are of rank two.
         let columns: Vec<f64> = (0..n * n).map(|k| ((k * k) as f64 * 0.7 + 0.3).sin()).collect();
         let mut lu = SmallLu::new(n);
@@ -106,8 +147,5 @@ mod tests {
             let transposed: f64 = (0..n).map(|j| columns[i * n + j] * y[j]).sum();
             assert!((own - right[i]).abs() < 1e-13 && (transposed - right[i]).abs() < 1e-13);
         }
-        let twice: Vec<f64> = columns[..n].iter().chain(&columns[..n * (n - 1)]).copied().collect();
-        let singular = !lu.factorise(&twice) || lu.values[n * n - 1].abs() < 1e-15;
-        assert!(singular && !SmallLu::new(2).factorise(&[0.0; 4]));
     }
 }
