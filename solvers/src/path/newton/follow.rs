@@ -24,8 +24,8 @@ use super::trial::{StepPlan, Trial, attempt, plan};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Branching, LoadStep};
 
-/// Greatest number of steps of a load step.
-const MOST_STEPS: u64 = 5000;
+/// Greatest number of steps of a load step, those that are tried in vain or taken back among them.
+const MOST_STEPS: u64 = 6000;
 
 /// Contact points up to which every change of mode counts for the length of the next step; of more the
 /// same share does, so that the number of steps does not grow with the number of joints.
