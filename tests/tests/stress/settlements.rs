@@ -92,7 +92,7 @@ fn no_peaks_of_the_energy(study: &str, result: &CaseResult, own: f64) -> Option<
         .map(|trace| trace.last().landing.clone())
         .collect();
     let mut peaks = Vec::new();
-    for largest in [TraceLimits::default().largest, 2e-5] {
+    for largest in [TraceLimits::default().largest, 2e-5, 2e-6] {
         let limits = TraceLimits { largest, ..TraceLimits::default() };
         let of = |landing| load_path(&energy, landing, limits).peaks.iter().map(|peak| peak.factor).collect();
         peaks = ends.iter().map(of).collect::<Vec<Vec<f64>>>();
