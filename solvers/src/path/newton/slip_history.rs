@@ -26,6 +26,8 @@ use voussoir_core::path::{Branching, LoadStepEnd};
 
 /// Steps that are shortened, in all, beyond which none is after a peak.
 const MOST_ARRESTS: u64 = 500;
+/// What counts that they are used up.
+const ENDED: &str = "arrests_ended";
 /// Force that slip missed in a step may leave at a point, relative to the greatest force; and while blocks yield, whose
 /// stresses follow the path of strain to first order in the step anyhow.
 const MISSED: [f64; 2] = [1e-7, 1e-5];
@@ -63,6 +65,9 @@ pub(super) fn missed_slip(
     let goes_to_factor = matches!(following.load_step.end, LoadStepEnd::Factor(_));
     let enough = goes_to_factor || arrests >= MOST_ARRESTS;
     if !matters || (tracer.limit.peak.is_some() && enough) {
+        if matters && !goes_to_factor && !tracer.system.counters.contains_key(ENDED) {
+            note_end(tracer);
+        }
         following.arrest = None;
         return None;
     }
@@ -94,6 +99,15 @@ pub(super) fn missed_slip(
     let whole = following.arrest.map_or(length, |arrest| arrest.whole);
     following.arrest = Some(Arrest { whole, beyond: length });
     Some(length * share.clamp(SHARES[0], most))
+}
+
+/// Says that the history of slip is followed no further: what comes later depends on the step.
+fn note_end(tracer: &mut Tracer) {
+    tracer.system.count(ENDED, 1);
+    tracer.record.notes.push(format!(
+        "from factor {} on steps no longer end where points come to rest, after {MOST_ARRESTS} that did: limit points that follow may depend on the step, by 1e-5 of themselves",
+        tracer.state.factor
+    ));
 }
 
 /// Names a place where points come to rest though all could go on as they are: with friction that is not associated
