@@ -12,8 +12,8 @@
 //! - *It turns in between.* The path goes through pieces on which some points have changed their modes and others have
 //!   not. If the load rises at both ends of the step and falls at the rate of such a piece, or the reverse, a peak and a
 //!   trough may lie in it. Looked at are the modes of the start at the end, those of the end at the start, and at the end those
-//!   with one point changed, or all but one. A peak or trough itself is looked for in
-//!   steps in which no more than one point changes.
+//!   with one point changed, or all but one. A peak or trough itself is looked for in steps in which no more than one point
+//!   changes.
 //!
 //! Such steps are shortened.
 
@@ -22,7 +22,7 @@ use super::slip_history::predicted_event;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_at;
-use super::tracer::{Tracer, moved_along};
+use super::tracer::{Tracer, moved};
 use super::trial::{StepPlan, Trial};
 use nalgebra::Vector2;
 
@@ -73,7 +73,6 @@ pub(super) fn passes_over(
 /// Whether the load turns more often on the pieces of the path that may lie in a step than the rates at its ends say; not
 /// where it falls as fast at both. Which point changes first is not known.
 fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, trial: &Trial, gains: [f64; 2]) -> bool {
-    let begun = moved_along(tracer, &following.branch.tangent, BEGUN * plan.step);
     let Tracer { system, state, .. } = tracer;
     let next = &trial.next;
     let rises = |slope: f64| slope * following.direction > 0.0;
@@ -91,6 +90,7 @@ fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, tr
         swapped.into_iter().for_each(|(c, other)| piece.mode[c] = other.mode[c]);
         piece
     };
+    let begun = moved(state, &following.branch.tangent, BEGUN * plan.step);
     let mut pieces = vec![with(next, state, None), with(&begun, next, None)];
     if changed.len() > 1 {
         pieces.extend(changed.iter().map(|c| with(next, state, Some((*c, next)))));

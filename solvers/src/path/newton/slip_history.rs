@@ -105,7 +105,7 @@ pub(super) fn missed_slip(
 fn note_end(tracer: &mut Tracer) {
     tracer.system.count(ENDED, 1);
     tracer.record.notes.push(format!(
-        "from factor {} on steps no longer end where points come to rest, after {MOST_ARRESTS} that did: limit points that follow may depend on the step, by 1e-5 of themselves",
+        "from factor {} on steps no longer end where points come to rest, after {MOST_ARRESTS} that did: limit points that follow may depend on the step (5e-5 of themselves was seen)",
         tracer.state.factor
     ));
 }
