@@ -12,7 +12,7 @@ use voussoir_core::plugin::Parameter;
 #[derive(Debug, Clone)]
 pub struct CheckedKey {
     /// The normalised value; `None` where the key is optional and absent.
-    pub value: Option<Json>,
+    pub value: Option<Arc<Json>>,
     /// Keys below it without influence.
     pub unused: Vec<Unused>,
     gravity: f64,
@@ -65,6 +65,7 @@ fn checked(
         if checker.diagnostics.is_empty() {
             let names = |table: &&'static str| (*table, names_in(root, table).map(String::from).collect());
             let names = checker.references.iter().map(names).collect();
+            let value = value.map(Arc::new);
             let key = CheckedKey { value, unused: checker.unused, gravity: checker.gravity, names };
             found.insert(parameter.name, key);
         }

@@ -133,7 +133,7 @@ impl Session {
             case,
             count: self.count(),
             labels: self.labels(),
-            resolved: &first.resolved,
+            resolved: &first.resolved.to_json(),
         }))
     }
 }

@@ -8,7 +8,7 @@ pub(crate) fn restated(case: &Case, sets: impl IntoIterator<Item = (String, Json
     // Whatever its study does with many cases, this is one.
     let run = ("kind".to_string(), json!("run"));
     let sets: Vec<_> = [run].into_iter().chain(sets).collect();
-    let study = StudySource::of_value(&case.resolved, &sets).and_then(Study::from_source);
+    let study = StudySource::of_value(&case.resolved.to_json(), &sets).and_then(Study::from_source);
     let study = study
         .map_err(|wrong| wrong.mistakes().first().map_or_else(|| wrong.to_string(), |first| first.message.clone()))?;
     study.cases.into_iter().next().ok_or("the study has no case".into())

@@ -1,8 +1,9 @@
 //! The scene of a case with its materials and joint laws: plug-ins read from their checked tables.
 
 use super::diagnostics::DiagnosticList;
+use super::resolved::Resolved;
 use crate::config::dotted_key::join;
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, InterfaceLaw};
 use voussoir_core::model::{Assembly, Catalogue, Scene};
@@ -34,7 +35,7 @@ fn read_plugins<T: serde::de::DeserializeOwned>(
 }
 
 /// Materials and joint laws by name.
-pub(super) fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<String, Json>) -> Option<Catalogue> {
+pub(super) fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved) -> Option<Catalogue> {
     let materials: Option<Vec<(String, Box<dyn BulkMaterial>)>> =
         resolved.get("materials").and_then(|tables| read_plugins(diagnostics, "materials", tables));
     let laws: Option<Vec<(String, Box<dyn InterfaceLaw>)>> =
@@ -48,7 +49,7 @@ pub(super) fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<Str
 /// The blocks and joints of the scene.
 pub(super) fn assembly(
     diagnostics: &mut DiagnosticList<'_>,
-    resolved: &Map<String, Json>,
+    resolved: &Resolved,
     catalogue: &Catalogue,
 ) -> Option<Assembly> {
     let scene: Box<dyn Scene> = read_plugin(diagnostics, "scene", resolved.get("scene")?)?;

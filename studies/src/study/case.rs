@@ -7,6 +7,7 @@ use super::model::{Case, SelectedSolver};
 use super::numeric_keys::numeric_keys;
 use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::warnings;
+use super::resolved::Resolved;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::stages::build_stages;
 use crate::config::check::{Checker, Unused};
@@ -14,7 +15,8 @@ use crate::config::checked_keys::{CheckedKey, CheckedKeys};
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
+use std::sync::Arc;
 use voussoir_core::plugin::{PluginKind, card, cards_of, nearest};
 
 /// The load factor is not differentiated with respect to longer lists of numbers: they are data, no parameters.
@@ -51,7 +53,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
     }
     match (assembly, stages, solver) {
         (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
-            let output = resolved.get("output").unwrap_or(&Json::Null);
+            let output = &resolved["output"];
             let output_curve = output["curve"] == true;
             let output_states = output["states"].as_u64().unwrap_or(0) as usize;
             let differentiated = output["sensitivities"] == true;
@@ -62,8 +64,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
             }
             notes.extend(warnings(&resolved, &assembly));
             note_of_yielding(&assembly, &resolved, &mut notes);
-            let resolved = Json::Object(resolved);
-            let numbers = || numeric_keys(study_keys(), &resolved, LONGEST);
+            let numbers = || numeric_keys(study_keys(), &resolved.to_json(), LONGEST);
             let output_sensitivities = if differentiated { numbers() } else { Vec::new() };
             let brief = false;
             Ok(Case {
@@ -88,7 +89,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
     }
 }
 
-type Checked = (Map<String, Json>, Vec<LocatedDiagnostic>, Vec<Unused>);
+type Checked = (Resolved, Vec<LocatedDiagnostic>, Vec<Unused>);
 
 /// The top-level keys with their normalised values, what is wrong with them, and keys without influence.
 fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<LocatedDiagnostic>> {
@@ -106,24 +107,26 @@ fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<Located
         let wrong = LocatedDiagnostic::new(&entry.origin, &entry.key, "is not a key of a study").help(help);
         checker.diagnostics.push(wrong);
     }
-    let mut resolved = Map::new();
+    let mut resolved = Resolved::default();
     for parameter in case_keys() {
         if table.get(parameter.name).is_none() && misspelt.contains(&parameter.name) {
             continue;
         }
         if let Some(key) = known(parameter.name).filter(|key| key.holds_for(&checker)) {
-            resolved.extend(key.value.clone().map(|value| (parameter.name.to_string(), value)));
+            if let Some(value) = &key.value {
+                resolved.insert(parameter.name, Arc::clone(value));
+            }
             checker.unused.extend(key.unused.iter().cloned());
             continue;
         }
         if let Ok(Some(value)) = checker.parameter(root, table, parameter, "") {
-            resolved.insert(parameter.name.into(), value);
+            resolved.insert(parameter.name, value.into());
         }
     }
     Ok((resolved, checker.diagnostics, checker.unused))
 }
 
-fn check_kind(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<String, Json>) {
+fn check_kind(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved) {
     let Some(kind) = resolved.get("kind").and_then(Json::as_str) else { return };
     if card(PluginKind::StudyKind, kind).is_none() {
         let kinds: Vec<_> = cards_of(PluginKind::StudyKind).iter().map(|card| card.tag).collect();

@@ -19,15 +19,14 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     let mut study = Map::new();
     study.insert("name".into(), format!("{name}_blocks").into());
     study.insert("scene".into(), scene(case)?);
-    let resolved = case.resolved.as_object().cloned().unwrap_or_default();
-    let tables = design(&resolved, &mut Vec::new());
+    let tables = design(&case.resolved, &mut Vec::new());
     for table in ["materials", "joints", "solver"] {
         study.extend(tables.get(table).map(|value| (table.to_string(), value.clone())));
     }
-    let resolved = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let written = case.resolved["stages"].as_array().map(Vec::as_slice).unwrap_or_default();
     let mut gravity = Vec2::zeros();
     let mut stages = Vec::new();
-    for (stage, table) in case.stages.iter().zip(resolved) {
+    for (stage, table) in case.stages.iter().zip(written) {
         let change = stage.gravity.map_or(Vec2::zeros(), |now| now - gravity);
         gravity += change;
         stages.extend(stage_tables(assembly, stage, table, change));

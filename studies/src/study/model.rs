@@ -3,6 +3,7 @@
 
 use super::numeric_keys::NumericKey;
 use super::outline::Outline;
+use super::resolved::Resolved;
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 use serde_json::{Map, Value as Json};
@@ -66,7 +67,7 @@ pub struct Case {
     /// One of many made from another case, which has the weights that both have: its results leave them out.
     pub brief: bool,
     /// The case's own study file: numbers in SI units, defaults filled in.
-    pub resolved: Json,
+    pub resolved: Resolved,
 }
 
 impl Case {

@@ -159,7 +159,7 @@ mod tests {
     fn every_number_of_an_arch_is_found_with_its_range_and_unit() {
         let text = include_str!("../commands/new/arch.toml");
         let study = load(text, "arch.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
-        let keys = numeric_keys(study_keys(), &study.cases[0].resolved, 12);
+        let keys = numeric_keys(study_keys(), &study.cases[0].resolved.to_json(), 12);
         let of = |key: &str| keys.iter().find(|own| own.key == key).unwrap_or_else(|| panic!("{key} in {keys:?}"));
         assert_eq!((of("scene.profile.span").unit(), of("scene.profile.span").value.is_some()), ("m", true));
         assert!(matches!(of("scene.voussoirs").kind, NumberKind::Whole(..)));

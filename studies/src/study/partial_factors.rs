@@ -4,6 +4,7 @@
 //! loads are multiplied, strengths and coefficients of friction are divided.
 
 use super::diagnostics::DiagnosticList;
+use super::resolved::Resolved;
 use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
@@ -91,13 +92,15 @@ const CHANGES: &[(&str, &str, Change)] = &[
 ];
 
 /// The tables of a checked case with its design values; factors that change nothing are noted.
-pub fn design<'a>(resolved: &'a Map<String, Json>, notes: &mut Vec<String>) -> Cow<'a, Map<String, Json>> {
+pub fn design<'a>(resolved: &'a Resolved, notes: &mut Vec<String>) -> Cow<'a, Resolved> {
     let Some(factors) = resolved.get("factors").and_then(Json::as_object) else { return Cow::Borrowed(resolved) };
-    let mut out = Json::Object(resolved.clone());
+    let mut out = resolved.clone();
     for (name, factor) in factors.iter().filter_map(|(name, factor)| Some((name, factor.as_f64()?))) {
         let mut changed = name == "loads";
         for (_, path, change) in CHANGES.iter().filter(|(of, ..)| of == name) {
-            each(&mut out, path, &mut |value| {
+            let Some((table, path)) = path.split_once('.') else { continue };
+            let Some(table) = out.get_mut(table) else { continue };
+            each(table, path, &mut |value| {
                 if let Some(number) = value.as_f64() {
                     *value = change.apply(number, factor).into();
                     changed = true;
@@ -116,19 +119,14 @@ pub fn design<'a>(resolved: &'a Map<String, Json>, notes: &mut Vec<String>) -> C
              its favourable value decides: solve with fill_weight = 1 besides"
         ));
     }
-    match out {
-        Json::Object(mut out) => {
-            out.remove("factors");
-            Cow::Owned(out)
-        }
-        _ => Cow::Borrowed(resolved),
-    }
+    out.remove("factors");
+    Cow::Owned(out)
 }
 
 /// Joint laws that cannot be with their design values, and stages that do not exist.
-pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<String, Json>, design: &Map<String, Json>) {
+pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, design: &Resolved) {
     let Some(factors) = resolved.get("factors") else { return };
-    let tables = |of: &Map<String, Json>| of.get("joints").and_then(Json::as_object).cloned().unwrap_or_default();
+    let tables = |of: &Resolved| of.get("joints").and_then(Json::as_object).cloned().unwrap_or_default();
     let written = tables(resolved);
     for (name, table) in tables(design).iter().filter(|(name, table)| written.get(*name) != Some(*table)) {
         let card = table["law"].as_str().and_then(|tag| card(PluginKind::InterfaceLaw, tag));
@@ -157,7 +155,7 @@ pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Map<String,
 }
 
 /// Multiplies the loads of stages.
-pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Map<String, Json>) {
+pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Resolved) {
     let Some(loads) = resolved.get("factors").map(|factors| &factors["loads"]) else { return };
     for stage in stages {
         let factor = loads.as_f64().or_else(|| loads[stage.name.as_str()].as_f64()).unwrap_or(1.0);
@@ -167,7 +165,7 @@ pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Map<String, Json>)
 }
 
 /// What a user should know of factors on strengths where blocks yield by laws of their own.
-pub(super) fn note_of_yielding(assembly: &Assembly, resolved: &Map<String, Json>, notes: &mut Vec<String>) {
+pub(super) fn note_of_yielding(assembly: &Assembly, resolved: &Resolved, notes: &mut Vec<String>) {
     let strengths = ["friction", "cohesion", "tensile_strength", "compressive_strength"];
     let given = strengths.iter().any(|name| resolved.get("factors").is_some_and(|factors| !factors[name].is_null()));
     if given && (0..assembly.bodies.len()).any(|body| assembly.yields(body)) {

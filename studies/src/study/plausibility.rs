@@ -1,6 +1,7 @@
 //! Warnings: what can be computed and is hardly meant. They become notes of the case, not mistakes.
 
-use serde_json::{Map, Value as Json};
+use super::resolved::Resolved;
+use serde_json::Value as Json;
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, root};
 
@@ -16,7 +17,7 @@ const SLANT: f64 = 0.05;
 const LISTED: usize = 3;
 
 /// What is hardly meant in a case, from its checked study and its scene.
-pub(super) fn warnings(resolved: &Map<String, Json>, assembly: &Assembly) -> Vec<String> {
+pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly) -> Vec<String> {
     let mut found = Vec::new();
     densities(assembly, &mut found);
     if let Some(fill) = resolved.get("scene").map(|scene| &scene["fill"]) {

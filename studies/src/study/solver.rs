@@ -3,10 +3,11 @@
 
 use super::diagnostics::DiagnosticList;
 use super::model::{SelectedSolver, SolverChoice};
+use super::resolved::Resolved;
 use crate::config::default_table::default_table;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 use std::sync::{Arc, LazyLock};
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Bond};
@@ -27,7 +28,7 @@ fn or_none(tags: &[&str]) -> String {
 pub(super) fn choose_solver(
     diagnostics: &mut DiagnosticList<'_>,
     solver: &Json,
-    resolved: &Map<String, Json>,
+    resolved: &Resolved,
     assembly: Option<&Assembly>,
 ) -> Option<SolverChoice> {
     let tag = solver["solver"].as_str()?;
@@ -125,7 +126,7 @@ fn build_solver(diagnostics: &mut DiagnosticList<'_>, solver: &Json, chosen: Opt
 fn build_settings(
     diagnostics: &mut DiagnosticList<'_>,
     solver: &Json,
-    resolved: &Map<String, Json>,
+    resolved: &Resolved,
     finite: bool,
 ) -> Option<PathSettings> {
     let continuation = strategy(diagnostics, solver.get("continuation"), "solver.continuation");
@@ -189,7 +190,7 @@ fn needs_capabilities(
     diagnostics: &mut DiagnosticList<'_>,
     tag: &str,
     chosen: Option<&Card>,
-    resolved: &Map<String, Json>,
+    resolved: &Resolved,
     assembly: &Assembly,
 ) {
     // `auto` needs at least what every solver needs.
@@ -223,7 +224,7 @@ fn needs_capabilities(
 /// What only a path answers needs something that deforms, and no limit analysis.
 fn needs_deformation(
     diagnostics: &mut DiagnosticList<'_>,
-    resolved: &Map<String, Json>,
+    resolved: &Resolved,
     assembly: Option<&Assembly>,
     chosen: Option<&Card>,
     finite: bool,
@@ -254,7 +255,7 @@ fn needs_deformation(
 }
 
 /// Keys that no limit analysis reads.
-pub(super) fn unused_by_limit_analysis(resolved: &Map<String, Json>) -> Vec<String> {
+pub(super) fn unused_by_limit_analysis(resolved: &Resolved) -> Vec<String> {
     let mut notes = Vec::new();
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
         for stiffness in ["normal_stiffness", "shear_stiffness"].iter().filter(|key| law.get(**key).is_some()) {

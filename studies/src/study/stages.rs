@@ -1,18 +1,19 @@
 //! The stages of a case: what its loads, gravity and settlements do to the blocks.
 
 use super::diagnostics::DiagnosticList;
+use super::resolved::Resolved;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
 use serde::Deserialize;
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint, Settlement, Stage, Target};
 
 /// All stages, or `None` where there is no list of them.
 pub(super) fn build_stages(
     diagnostics: &mut DiagnosticList<'_>,
-    resolved: &Map<String, Json>,
+    resolved: &Resolved,
     assembly: Option<&Assembly>,
     notes: &mut Vec<String>,
 ) -> Option<Vec<Stage>> {
@@ -61,7 +62,7 @@ fn raises_nothing(stage: &Stage) -> bool {
 }
 
 /// What loads need besides their own keys: vehicles, and how the fill spreads loads. The tables have passed their check.
-fn load_tables(resolved: &Map<String, Json>) -> LoadTables {
+fn load_tables(resolved: &Resolved) -> LoadTables {
     let vehicles = resolved.get("vehicles").cloned().and_then(|vehicles| serde_json::from_value(vehicles).ok());
     let dispersion = resolved.get("scene").and_then(|scene| scene.get("fill")?.get("dispersion"));
     let dispersion = dispersion.cloned().and_then(|law| serde_json::from_value(law).ok());

@@ -1,6 +1,6 @@
 //! Places that are tried: even ones, those where axles enter the bridge, and those where edges of their patches meet joints.
 
-use super::request::{Request, Run, value_at};
+use super::request::{Request, Run};
 use crate::loads::dispersion::{Dispersion, Patch};
 use crate::loads::{LoadSite, LoadTables, Track, VehicleAxles, fill_layers, footprints};
 use crate::study::Case;
@@ -23,7 +23,7 @@ pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
     let [from, to] = request.range;
     let last = (request.scan - 1) as f64;
     let even = (0..request.scan).map(|i| if i + 1 == request.scan { to } else { from + (to - from) * i as f64 / last });
-    let load = request.parameter.rsplit_once('.').and_then(|(table, _)| value_at(&case.resolved, table));
+    let load = request.parameter.rsplit_once('.').and_then(|(table, _)| case.resolved.at(table));
     let track = load.and_then(|load| serde_json::from_value(load.get("track")?.clone()).ok());
     let Places { scan: entering, joints } = events(case, run, track.as_ref());
     let tidy = |places: &mut Vec<f64>| {
@@ -43,7 +43,7 @@ fn events(case: &Case, run: &Run, track: Option<&Track>) -> Places {
     let vehicle = case.resolved.get("vehicles").and_then(|all| all.get(name));
     let vehicle: Option<VehicleAxles> = vehicle.and_then(|table| serde_json::from_value(table.clone()).ok());
     let Some(vehicle) = vehicle else { return Places::default() };
-    let law = value_at(&case.resolved, "scene.fill.dispersion").cloned();
+    let law = case.resolved.at("scene.fill.dispersion").cloned();
     let tables =
         LoadTables { dispersion: law.and_then(|law| serde_json::from_value(law).ok()), ..LoadTables::default() };
     let site = LoadSite::new(&case.assembly, &tables, "");

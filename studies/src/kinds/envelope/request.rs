@@ -48,7 +48,7 @@ impl Request {
 
     /// What is tried on a case: vehicle and direction, each where there is one.
     pub fn runs(&self, case: &Case) -> Vec<Run> {
-        let load = self.parameter.rsplit_once('.').and_then(|(table, _)| value_at(&case.resolved, table));
+        let load = self.parameter.rsplit_once('.').and_then(|(table, _)| case.resolved.at(table));
         let own = load.and_then(|load| Some(load.get("vehicle")?.as_str()?.to_string()));
         let Some(own) = own else { return vec![Run { vehicle: None, direction: None }] };
         let vehicles = self.vehicles.clone().unwrap_or_else(|| vec![own]);
@@ -80,12 +80,4 @@ pub(super) struct Run {
     pub vehicle: Option<String>,
     /// Which way it stands.
     pub direction: Option<String>,
-}
-
-/// The value under a dotted key of a checked study.
-pub(super) fn value_at<'a>(root: &'a Json, path: &str) -> Option<&'a Json> {
-    path.split('.').try_fold(root, |value, key| match value {
-        Json::Array(list) => list.get(key.parse::<usize>().ok()?),
-        _ => value.get(key),
-    })
 }

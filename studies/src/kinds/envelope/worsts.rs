@@ -1,6 +1,6 @@
 //! What an envelope adds to the results: the worst place of each case of the study, and the factor at all places.
 
-use super::request::{Request, value_at};
+use super::request::Request;
 use crate::kinds::search::intervals;
 use crate::results::{CaseResult, least_of};
 use crate::study::Study;
@@ -20,7 +20,7 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
     for base in &study.cases {
         let mut places: Vec<Place> = Vec::new();
         for result in cases.iter().filter(|result| belongs(base, result)) {
-            let of = |key: &str| result.label.parameters.get(key).or_else(|| value_at(&base.resolved, key));
+            let of = |key: &str| result.label.parameters.get(key).or_else(|| base.resolved.at(key));
             let Some(value) = of(&request.parameter).and_then(Json::as_f64) else { continue };
             let text = |key: &str| of(&request.beside(key)).and_then(Json::as_str);
             places.push(Place { value, vehicle: text("vehicle"), direction: text("direction"), result });
