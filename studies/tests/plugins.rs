@@ -206,8 +206,8 @@ fn defaults_of_cards_are_those_of_the_types() {
     let problem = LimitProblem::new(&case.assembly, &stage_loads(&case.assembly, &case.stages)[1]).expect("a problem");
     let mut open = problem.clone();
     open.non_associated = true;
-    let chosen = limit_solvers(&SelectedSolver::Auto, &open);
-    assert!(chosen.iter().all(|(tag, _)| tag != "fussy_limit" && tag != "limit_sequential"));
+    let chosen: Vec<_> = limit_solvers(&SelectedSolver::Auto, &open).collect();
+    assert!(chosen.iter().all(|(tag, _)| *tag != "fussy_limit" && *tag != "limit_sequential"));
     let least = voussoir::solvers::limit::nonassociated::LimitNonassociated::default();
     assert_eq!(format!("{:?}", chosen[0].1), format!("{least:?}"));
 }

@@ -3,7 +3,7 @@
 use crate::config::check::{Checker, Unused};
 use crate::config::document::{Node, Table};
 use crate::config::expand::Expansion;
-use serde_json::Value as Json;
+use crate::study::Checked;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use voussoir_core::plugin::Parameter;
@@ -12,7 +12,7 @@ use voussoir_core::plugin::Parameter;
 #[derive(Debug, Clone)]
 pub struct CheckedKey {
     /// The normalised value; `None` where the key is optional and absent.
-    pub value: Option<Arc<Json>>,
+    pub value: Option<Arc<Checked>>,
     /// Keys below it without influence.
     pub unused: Vec<Unused>,
     gravity: f64,
@@ -65,7 +65,7 @@ fn checked(
         if checker.diagnostics.is_empty() {
             let names = |table: &&'static str| (*table, names_in(root, table).map(String::from).collect());
             let names = checker.references.iter().map(names).collect();
-            let value = value.map(Arc::new);
+            let value = value.map(|value| Arc::new(value.into()));
             let key = CheckedKey { value, unused: checker.unused, gravity: checker.gravity, names };
             found.insert(parameter.name, key);
         }

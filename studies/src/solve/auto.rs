@@ -14,7 +14,7 @@ use voussoir_core::path::{PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Requirement, card, cards_of};
 
 /// A limit solver with its tag.
-pub type TaggedLimitSolver = (String, Arc<dyn LimitSolver>);
+pub type TaggedLimitSolver<'a> = (&'a str, &'a dyn LimitSolver);
 /// A path solver with its tag.
 pub type TaggedPathSolver = (String, Arc<dyn PathSolver>);
 
@@ -87,18 +87,23 @@ pub fn willing<'a>(
 }
 
 /// The limit solvers to try, in order; those that `auto` chooses do not refuse the problem.
-pub fn limit_solvers(selected: &SelectedSolver, problem: &LimitProblem) -> Vec<TaggedLimitSolver> {
-    if let SelectedSolver::Limit(tag, solver) = selected {
-        return vec![(tag.clone(), solver.clone())];
-    }
+pub fn limit_solvers<'a>(
+    selected: &'a SelectedSolver,
+    problem: &'a LimitProblem,
+) -> impl Iterator<Item = TaggedLimitSolver<'a>> {
     // Every case of a study asks for them.
     static BUILT: LazyLock<Vec<(&Card, Arc<dyn LimitSolver>)>> = LazyLock::new(|| {
         let solvers = by_cost(PluginKind::LimitSolver).into_iter();
         solvers.filter_map(|card| Some((card, Arc::from(built::<dyn LimitSolver>(card)?)))).collect()
     });
+    let named = match selected {
+        SelectedSolver::Limit(tag, solver) => Some((tag.as_str(), solver.as_ref())),
+        _ => None,
+    };
     let fits = |card: &Card| problem.non_associated || !card.offers(Capability::NON_ASSOCIATED);
-    let willing = BUILT.iter().filter(|(card, solver)| fits(card) && solver.refuses(problem).is_none());
-    willing.map(|(card, solver)| (card.tag.to_string(), solver.clone())).collect()
+    let all: &[_] = if named.is_some() { &[] } else { &BUILT };
+    let willing = all.iter().filter(move |(card, solver)| fits(card) && solver.refuses(problem).is_none());
+    named.into_iter().chain(willing.map(|(card, solver)| (card.tag, solver.as_ref())))
 }
 
 /// A solver with the defaults of its keys.

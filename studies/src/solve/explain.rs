@@ -66,8 +66,7 @@ fn explain_case(case: &Case, text: &mut String) {
             count(Tangential::Stuck),
             count(Tangential::Free),
         );
-        let tag =
-            limit_solvers(input.solver, &problem).first().map_or("no solver".to_string(), |tagged| tagged.0.clone());
+        let tag = limit_solvers(input.solver, &problem).next().map_or("no solver", |(tag, _)| tag).to_string();
         let _ = match stage.target {
             Target::Collapse => {
                 writeln!(text, "  {tag}: stands at factor {}? then the greatest factor", search_start(stage))

@@ -113,10 +113,8 @@ fn settled_hinges(
     }
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let factor = result.proof.field_factor.unwrap_or(0.0);
-    match limit_solvers(selected, problem).iter().find(|(_, solver)| solver.refuses(problem).is_none()) {
-        Some((_, solver)) => {
-            follow_supports(input, index, Settling { solver: &**solver, problem, loads, factor }, result)
-        }
+    match limit_solvers(selected, problem).find(|(_, solver)| solver.refuses(problem).is_none()) {
+        Some((_, solver)) => follow_supports(input, index, Settling { solver, problem, loads, factor }, result),
         None => Vec::new(),
     }
 }
@@ -146,7 +144,7 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
             let easier = [within, bounded].into_iter().flatten();
             result = easier.map(solve).find(|again| again.certificate.passed).unwrap_or(result);
         }
-        result.solver = tag.clone();
+        result.solver = tag.to_string();
         if result.certificate.passed {
             best = Some(result);
             break;

@@ -120,7 +120,7 @@ fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<Located
             continue;
         }
         if let Ok(Some(value)) = checker.parameter(root, table, parameter, "") {
-            resolved.insert(parameter.name, value.into());
+            resolved.insert(parameter.name, Arc::new(value.into()));
         }
     }
     Ok((resolved, checker.diagnostics, checker.unused))

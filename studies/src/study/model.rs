@@ -1,13 +1,13 @@
 //! A study as it was read: its cases, each with everything that is needed to solve it. How it is read
 //! stands in [`super::load`].
 
+use super::fnv::Fnv;
 use super::numeric_keys::NumericKey;
 use super::outline::Outline;
 use super::resolved::Resolved;
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 use serde_json::{Map, Value as Json};
-use std::io::Write;
 use std::sync::Arc;
 use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Stage};
@@ -72,37 +72,13 @@ pub struct Case {
 
 impl Case {
     /// What tells this case from any other: the version of the program, its label and its whole resolved study, as
-    /// 128 bits of FNV-1a in hexadecimal. No seal: it finds confusion, not malice.
+    /// 128 bits of FNV-1a in hexadecimal; of tables their own hashes, which cases share. No seal: it finds confusion, not
+    /// malice.
     pub fn hash(&self) -> String {
-        let label = (self.id, &self.variant, &self.scene, &self.parameters);
-        let mut hash = Fnv::new();
-        // What hashes does not fail.
-        let _ = write!(hash, "{} {label:?} ", env!("CARGO_PKG_VERSION"));
-        let _ = serde_json::to_writer(&mut hash, &self.resolved);
-        format!("{:032x}", hash.0)
-    }
-}
-
-/// 128 bits of FNV-1a of what is written to it.
-struct Fnv(u128);
-
-impl Fnv {
-    const OFFSET: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
-    const PRIME: u128 = (1 << 88) + 0x13b;
-
-    fn new() -> Self {
-        Fnv(Fnv::OFFSET)
-    }
-}
-
-impl Write for Fnv {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0 = bytes.iter().fold(self.0, |hash, byte| (hash ^ u128::from(*byte)).wrapping_mul(Fnv::PRIME));
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
+        let label = (env!("CARGO_PKG_VERSION"), self.id, &self.variant, &self.scene, &self.parameters);
+        let mut hash = Fnv::of(&label);
+        self.resolved.add_hashes(&mut hash);
+        hash.text()
     }
 }
 

@@ -1,17 +1,31 @@
-//! The tables of a checked case by name. Those that cases of a study have in common are held once.
+//! The tables of a checked case by name. Those that cases of a study have in common are held, and hashed, once.
 
+use super::fnv::Fnv;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Map, Value as Json};
 use std::ops::Index;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+/// The checked value of a top-level key.
+#[derive(Debug, Clone, Default)]
+pub struct Checked {
+    value: Json,
+    hash: OnceLock<Fnv>,
+}
+
+impl From<Json> for Checked {
+    fn from(value: Json) -> Self {
+        Checked { value, hash: OnceLock::new() }
+    }
+}
 
 /// A case's own study file, checked: top-level keys with their values, numbers in SI units, defaults filled in.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Resolved(Vec<(&'static str, Arc<Json>)>);
+#[derive(Debug, Clone, Default)]
+pub struct Resolved(Vec<(&'static str, Arc<Checked>)>);
 
 impl Resolved {
     /// Adds a key that is not there yet.
-    pub(super) fn insert(&mut self, name: &'static str, value: Arc<Json>) {
+    pub(super) fn insert(&mut self, name: &'static str, value: Arc<Checked>) {
         self.0.push((name, value));
     }
 
@@ -22,12 +36,23 @@ impl Resolved {
 
     /// The value of a key, to be changed in this case alone.
     pub(super) fn get_mut(&mut self, name: &str) -> Option<&mut Json> {
-        self.0.iter_mut().find(|(own, _)| *own == name).map(|(_, value)| Arc::make_mut(value))
+        let (_, checked) = self.0.iter_mut().find(|(own, _)| *own == name)?;
+        let checked = Arc::make_mut(checked);
+        checked.hash = OnceLock::new();
+        Some(&mut checked.value)
+    }
+
+    /// Adds all names and the hashes of their values.
+    pub(super) fn add_hashes(&self, hash: &mut Fnv) {
+        for (name, checked) in &self.0 {
+            hash.add(name.as_bytes());
+            hash.add_hash(*checked.hash.get_or_init(|| Fnv::of(&checked.value)));
+        }
     }
 
     /// The value of a top-level key.
     pub fn get(&self, name: &str) -> Option<&Json> {
-        self.0.iter().find(|(own, _)| *own == name).map(|(_, value)| value.as_ref())
+        self.0.iter().find(|(own, _)| *own == name).map(|(_, checked)| &checked.value)
     }
 
     /// The value at a dotted path; entries of lists by index.
@@ -40,10 +65,20 @@ impl Resolved {
         })
     }
 
+    /// All names with their values.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Json)> {
+        self.0.iter().map(|(name, checked)| (*name, &checked.value))
+    }
+
     /// All of it as one value.
     pub fn to_json(&self) -> Json {
-        let entry = |(name, value): &(&str, Arc<Json>)| (name.to_string(), value.as_ref().clone());
-        Json::Object(self.0.iter().map(entry).collect::<Map<_, _>>())
+        Json::Object(self.iter().map(|(name, value)| (name.to_string(), value.clone())).collect::<Map<_, _>>())
+    }
+}
+
+impl PartialEq for Resolved {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
     }
 }
 
@@ -59,7 +94,7 @@ impl Index<&str> for Resolved {
 impl Serialize for Resolved {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        self.0.iter().try_for_each(|(name, value)| map.serialize_entry(name, value.as_ref()))?;
+        self.iter().try_for_each(|(name, value)| map.serialize_entry(name, value))?;
         map.end()
     }
 }
