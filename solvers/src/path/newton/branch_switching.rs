@@ -22,7 +22,7 @@ use crate::contact::mode::ContactMode;
 /// Cosine of the angle to the arriving rate below which another one is the way back.
 const BACK: f64 = -1.0 + 1e-6;
 
-/// Shares of a first step ahead at which a rate is asked for its modes.
+/// Shares of the motion of a first step ahead at which a rate is asked for its modes.
 const AHEAD: [f64; 3] = [1e-3, 1e-2, 1e-1];
 
 /// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
@@ -66,11 +66,13 @@ pub(super) fn branch_beyond_fold(
 ) -> Result<Option<(Tangent, Vec<ContactMode>)>, String> {
     let rate = &following.branch.tangent;
     let own = yielding_branch(tracer, rate, share);
+    // Other rates have other sizes: as far as this one moves.
+    let reach = share * motion_size(&tracer.system, rate);
     if !tracer.system.rules.oriented || !tracer.system.piecewise_linear() {
         return Ok(own);
     }
     if let Some((other, modes)) = &own
-        && agrees(tracer, other, modes, share)
+        && agrees(tracer, other, modes, reach)
         && continues(tracer, following, other, modes)
     {
         return Ok(own);
@@ -81,7 +83,7 @@ pub(super) fn branch_beyond_fold(
     let active: Vec<_> = std::iter::once(here).chain(beyond).collect();
     for leads_on in [is_onward as Onward, closes] {
         for modes in &active {
-            if let Some(found) = by_enumeration(tracer, following, modes, leads_on, share) {
+            if let Some(found) = by_enumeration(tracer, following, modes, leads_on, reach) {
                 tracer.system.count("branches", 1);
                 return Ok(Some(found));
             }
@@ -92,7 +94,7 @@ pub(super) fn branch_beyond_fold(
     {
         // At a sharp fold the modes beyond it are right and the sense is not: that of the factor tells it.
         let reversed = other.scaled(-1.0);
-        if agrees(tracer, &reversed, modes, share) && continues(tracer, following, &reversed, modes) {
+        if agrees(tracer, &reversed, modes, reach) && continues(tracer, following, &reversed, modes) {
             tracer.system.count("sharp_folds", 1);
             return Ok(Some((reversed, modes.clone())));
         }
@@ -101,7 +103,7 @@ pub(super) fn branch_beyond_fold(
     match limit_point_test(&mut tracer.system, &state, rate.factor.signum()) {
         // Where the load falls anyway, unloading is a rate of the same sense: one of several, and none that is wanted.
         LimitPointTest::Tangent(other, modes)
-            if modes != state.mode && forwards(rate, &other) && agrees(tracer, &other, &modes, share) =>
+            if modes != state.mode && forwards(rate, &other) && agrees(tracer, &other, &modes, reach) =>
         {
             tracer.system.count("branches", 1);
             Ok(Some((other, modes)))
@@ -175,7 +177,7 @@ fn by_enumeration(
     following: &Following,
     modes: &[ContactMode],
     leads_on: Onward,
-    share: f64,
+    reach: f64,
 ) -> Option<(Tangent, Vec<ContactMode>)> {
     following.orientation.as_ref().filter(|before| !before.is_singular())?;
     let state = State { mode: modes.to_vec(), ..tracer.state.clone() };
@@ -183,7 +185,7 @@ fn by_enumeration(
     let mut onward = rates.into_iter().filter(|(other, modes)| {
         // The arriving rate itself has failed: it may look as if it led on for less than is left to the fold.
         let arriving = *modes == tracer.state.mode && cosine(&following.branch.tangent.motion, &other.motion) > -BACK;
-        !arriving && leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, share)
+        !arriving && leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, reach)
     });
     let found = onward.next()?;
     onward.next().is_none().then_some(found)
@@ -191,11 +193,11 @@ fn by_enumeration(
 
 /// Whether a rate asks for the modes that it was computed with. The nearest state to a fold lies before it by what the
 /// iterations leave, so that near by a joint that is to close may be open still: a longer way along the rate tells.
-fn agrees(tracer: &mut Tracer, rate: &Tangent, modes: &[ContactMode], share: f64) -> bool {
+fn agrees(tracer: &mut Tracer, rate: &Tangent, modes: &[ContactMode], reach: f64) -> bool {
     let state = tracer.state.clone();
     let size = motion_size(&tracer.system, rate).max(1e-300);
     AHEAD.iter().any(|ahead| {
-        let mut ahead = moved_along(tracer, rate, ahead * share / size);
+        let mut ahead = moved_along(tracer, rate, ahead * reach / size);
         ahead.mode = modes.to_vec();
         modes_ahead(&mut tracer.system, &state, &ahead) == modes
     })

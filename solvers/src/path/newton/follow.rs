@@ -27,6 +27,9 @@ use voussoir_core::path::{Branching, LoadStep};
 /// Greatest number of steps of a load step, those that are tried in vain or taken back among them.
 const MOST_STEPS: u64 = 6000;
 
+/// Greatest number of Newton's iterations of a load step with finite displacements; steps of most paths take four.
+const MOST_ITERATIONS: u64 = 100_000;
+
 /// Contact points up to which every change of mode counts for the length of the next step; of more the
 /// same share does, so that the number of steps does not grow with the number of joints.
 const ORDINARY: usize = 200;
@@ -77,7 +80,12 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
         Ok(following) => following,
         Err(outcome) => return outcome,
     };
+    let iterations = |tracer: &Tracer| tracer.system.counters.get("newton_iterations").copied().unwrap_or(0);
+    let before = iterations(tracer);
     for _ in 0..MOST_STEPS {
+        if tracer.system.finite() && iterations(tracer) > before + MOST_ITERATIONS {
+            return out_of_work(tracer, &following, &format!("{MOST_ITERATIONS} iterations"));
+        }
         let end = next_step(tracer, &mut following);
         if let Some(outcome) = go_on(tracer, &mut following, end) {
             return outcome;
@@ -86,7 +94,7 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
             return end_path(tracer, Status::LimitPoint, String::new());
         }
     }
-    out_of_steps(tracer, following.direction, following.limits.linear)
+    out_of_work(tracer, &following, &format!("{MOST_STEPS} steps"))
 }
 
 /// Goes on from the end of a step; how the load step ends with it, if so.
@@ -477,10 +485,10 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
     None
 }
 
-/// The end of a path that takes too many steps.
-fn out_of_steps(tracer: &mut Tracer, direction: f64, linear: bool) -> LoadStepEnding {
-    if linear && !above_all(tracer, direction) && tracer.limit.unproven.is_none() {
-        let why = not_followed(tracer, &format!("{MOST_STEPS} steps were not enough"));
+/// The end of a path that takes too many steps, or too many iterations.
+fn out_of_work(tracer: &mut Tracer, following: &Following, work: &str) -> LoadStepEnding {
+    if following.limits.linear && !above_all(tracer, following.direction) && tracer.limit.unproven.is_none() {
+        let why = not_followed(tracer, &format!("{work} were not enough"));
         return end_path(tracer, Status::LimitPoint, why);
     }
     // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
@@ -490,7 +498,7 @@ fn out_of_steps(tracer: &mut Tracer, direction: f64, linear: bool) -> LoadStepEn
         tracer,
         status,
         format!(
-            "{MOST_STEPS} steps were not enough; the last state is at factor {factor}: larger steps (continuation, first_step) or event_path may pass"
+            "{work} were not enough; the last state is at factor {factor}: larger steps (continuation, first_step) or event_path may pass"
         ),
     )
 }
