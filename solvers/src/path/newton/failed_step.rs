@@ -102,7 +102,7 @@ fn corner(
     let found = match branch_beyond_fold(tracer, following, following.limits.first / plan.per_tangent) {
         Ok(found) => found,
         Err(why) => {
-            if following.slope > 0.0 {
+            if following.slope > 0.0 && following.comes_stable() {
                 note_peak(tracer, &following.branch.tangent, direction);
             }
             let status = match (tracer.system.finite(), following.branch.tangent.factor * direction > 0.0) {
@@ -149,7 +149,7 @@ fn corner(
     {
         (tangent, modes) = falling;
     }
-    if falls && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
+    if falls && following.comes_stable() && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
         note_peak(tracer, &tangent, direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))

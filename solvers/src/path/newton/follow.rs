@@ -21,6 +21,7 @@ use super::tangent::{modes_ahead, tangent_at};
 use super::termination::{ends_in_ray, no_step, snaps, stops};
 use super::tracer::{LoadStepEnding, Tracer, after_peak, commit, end_path, moved};
 use super::trial::{StepPlan, Trial, attempt, plan};
+use crate::contact::mode::ContactMode;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Branching, LoadStep};
 
@@ -357,11 +358,12 @@ fn cut_back(tracer: &mut Tracer, following: &mut Following, why: &str, end: Opti
 fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<LoadStepEnding> {
     if step.folded && !snaps(tracer, following.load_step) {
         // As at a corner that no step passes.
-        note_peak(tracer, &step.tangent, following.direction);
+        if following.comes_stable() {
+            note_peak(tracer, &step.tangent, following.direction);
+        }
         return accept(tracer, following, step);
     }
-    // What an unstable branch carries is no peak of the path under its loads.
-    let stable = following.orientation.as_ref().is_none_or(|before| !before.unstable);
+    let stable = following.comes_stable();
     let Bracketed { state, beyond, kinked } = match locate_peak(tracer, following, following.direction) {
         Some(bracketed) => bracketed,
         None => {
@@ -370,7 +372,10 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
             return go_on(tracer, following, end);
         }
     };
-    if kinked && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
+    // A rate in the modes in which the path has come is that on which it came, to the corner itself.
+    let finite = tracer.system.finite();
+    let another = |(_, modes): &(Tangent, Vec<ContactMode>)| !finite || *modes != state.mode;
+    if kinked && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction).filter(another) {
         // Newton's method went over to a falling branch where another one rises.
         if !commit(tracer, state) {
             return Some(LoadStepEnding::Ended);

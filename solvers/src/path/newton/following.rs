@@ -243,6 +243,12 @@ impl<'d> Following<'d> {
         tracer.limit.unproven.take().is_none()
     }
 
+    /// Whether the present state is not known to be unstable under its loads: what an unstable branch carries is no peak of
+    /// the path under its loads.
+    pub fn comes_stable(&self) -> bool {
+        self.orientation.as_ref().is_none_or(|before| !before.unstable)
+    }
+
     /// Goes on along another branch, with short steps at first.
     pub fn switch_to(&mut self, system: &mut StepSystem, state: &State, branch: Branch) {
         self.slope = branch.tangent.factor * self.direction;

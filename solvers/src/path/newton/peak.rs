@@ -15,6 +15,8 @@ use voussoir_core::path::ProvenPeak;
 
 /// Share of a step up to which the states on both sides of a peak are apart where one branch leads through it.
 const CONTINUOUS: f64 = 1e-3;
+/// Share of the load within which a peak is placed; where states between were not found a shorter step may.
+const PLACED: f64 = 1e-8;
 /// Relative differences of the loads and displacements of two limit points that are one.
 const SAME: f64 = 1e-8;
 /// Fall of the load between two of them, relative to it, from which on the path has been elsewhere.
@@ -33,12 +35,12 @@ pub(super) struct Bracketed {
 /// states on both sides must be close to each other and of one branch by their second-order work; `None` where they are
 /// not, or were not found.
 pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> Option<Bracketed> {
-    let (low, high, share) = bisect(tracer, following, direction);
+    let Bisected { low, high, share, gain } = bisect(tracer, following, direction);
     if !tracer.system.finite() {
         let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
         return Some(Bracketed { state: low, beyond, kinked: true });
     }
-    let (high, beyond) = high?;
+    let (high, beyond) = high.filter(|_| gain <= PLACED)?;
     let apart = increment_between(&tracer.system, &low, &high).motion;
     let step = increment_between(&tracer.system, &tracer.state, &high).motion;
     let oriented = [
@@ -59,14 +61,26 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
     (one_branch && continuous).then_some(Bracketed { state: low, beyond, kinked })
 }
 
-/// Bisects the step from the present state for the point where λ stops growing in the sense `direction`: the last
-/// state before it, the first one beyond it with its rate, and how far apart they are as a share of the step.
-fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State, Option<(State, Tangent)>, f64) {
+/// What a bisection comes to.
+struct Bisected {
+    /// The last state on which λ grows.
+    low: State,
+    /// The first one beyond it, with its rate.
+    high: Option<(State, Tangent)>,
+    /// How far apart they are, as a share of the step.
+    share: f64,
+    /// What λ may gain between, as a share of itself.
+    gain: f64,
+}
+
+/// Bisects the step from the present state for the point where λ stops growing in the sense `direction`.
+fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> Bisected {
     let (rate, previous, length) = (&following.branch.tangent, following.previous, following.length);
     let strategy = tracer.strategy.clone();
-    let per_rate = per_tangent(tracer, rate, previous.as_ref());
+    let (unit, per_rate) = (tracer.system.units().factor, per_tangent(tracer, rate, previous.as_ref()));
     let (mut low, mut high) = (0.0, length);
     let mut best = (tracer.state.clone(), rate.clone());
+    let gain = |best: &(State, Tangent), width: f64| best.1.factor.abs() * width / best.0.factor.abs().max(1e-6 * unit);
     let mut beyond = None;
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -87,12 +101,12 @@ fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> (State,
             high = middle;
             beyond = Some((state, here));
         }
-        let gain = best.1.factor.abs() * (high - low);
-        if low > 0.0 && gain <= 1e-11 * best.0.factor.abs().max(1e-6 * tracer.system.units().factor) {
+        if low > 0.0 && gain(&best, high - low) <= 1e-11 {
             break;
         }
     }
-    (best.0, beyond, (high - low) / length)
+    let gain = gain(&best, high - low);
+    Bisected { low: best.0, high: beyond, share: (high - low) / length, gain }
 }
 
 /// Where the load rises again after a peak with finite displacements: the least load between, if it is
@@ -102,9 +116,9 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
     let lower =
         |factor: f64| tracer.post_peak.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
     if !tracer.post_peak.risen && lower(tracer.state.factor) {
-        let (state, beyond, _) = bisect(tracer, following, -direction);
-        let beyond = beyond.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
-        tracer.post_peak.trough = Some(peak_at(tracer, state, &beyond));
+        let Bisected { low, high, .. } = bisect(tracer, following, -direction);
+        let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
+        tracer.post_peak.trough = Some(peak_at(tracer, low, &beyond));
     }
 }
 
