@@ -10,6 +10,7 @@ pub mod book;
 pub mod by_hand;
 pub mod energy;
 pub mod gates;
+mod keep;
 pub mod known;
 pub mod random;
 pub mod seen;
@@ -19,6 +20,7 @@ mod wall;
 pub mod written;
 
 pub use arch::{Arch, as_blocks};
+pub use keep::keep;
 pub use wall::Wall;
 
 use voussoir::core::limit::Status;

@@ -7,7 +7,7 @@ use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::random::{History, Law, RandomScene, numbers, scene};
-use voussoir_tests::{answered, changed};
+use voussoir_tests::{answered, changed, keep};
 
 /// What a solver did over all scenes.
 #[derive(Default)]
@@ -86,9 +86,7 @@ fn tried(scene: &RandomScene, tally: &mut Tally) {
     let mut results = Vec::new();
     for solver in ["event_path", "newton_path"] {
         let text = scene.study(solver, known);
-        if let Ok(folder) = std::env::var("KEEP") {
-            std::fs::write(format!("{folder}/{number}_{solver}.toml"), &text).expect("the folder exists");
-        }
+        keep(&format!("{number}_{solver}.toml"), &text);
         results.push(answered(&text));
     }
     let [event, newton] = &results[..] else { return };

@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::settled::SettledScene;
-use voussoir_tests::{answered, names_bifurcation};
+use voussoir_tests::{answered, keep, names_bifurcation};
 
 /// Default arc lengths, and such of a quarter of their greatest step.
 const STEPS: [&str; 2] = ["", "continuation = { strategy = \"arc_length\", largest_step = 0.0005 }"];
@@ -65,10 +65,7 @@ fn settlements_differ(scene: &SettledScene, by: [String; 2]) -> (Option<String>,
 /// Compares case `k` by its steps.
 fn compared(k: usize) -> Outcome {
     let (stratum, scene) = scene(k);
-    if let Ok(folder) = std::env::var("KEEP") {
-        std::fs::write(format!("{folder}/settlement{k}.toml"), scene.study(&keys(&stratum, "")))
-            .expect("the folder exists");
-    }
+    keep(&format!("settlement{k}.toml"), &scene.study(&keys(&stratum, "")));
     let by = || STEPS.map(|steps| keys(&stratum, steps));
     let (settled, mut named) = settlements_differ(&scene, by());
     let results = by().map(|keys| answered(&scene.study(&keys)));

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
-use voussoir_tests::{answered, names_bifurcation};
+use voussoir_tests::{answered, keep, names_bifurcation};
 
 /// Strategies: arc length with three step sizes, displacement control, dissipation.
 const STRATEGIES: [(&str, &str); 5] = [
@@ -84,10 +84,8 @@ fn runs(k: usize) -> Runs {
             (", renumbered", scene.renumbered(&solver(strategy))),
         ];
         for (disguise, text) in disguises.into_iter().filter_map(|(d, text)| Some((d, text?))) {
-            if let Ok(folder) = std::env::var("KEEP") {
-                let name = format!("{k}{}{}", name.replace([' ', ',', '/'], "_"), disguise.replace(", ", "_"));
-                std::fs::write(format!("{folder}/strategy{name}.toml"), &text).expect("the folder exists");
-            }
+            let file = format!("{k}{}{}", name.replace([' ', ',', '/'], "_"), disguise.replace(", ", "_"));
+            keep(&format!("strategy{file}.toml"), &text);
             let result = answered(&text);
             out.names_bifurcation |= names_bifurcation(&result);
             let run = format!("{name}{disguise}");
@@ -178,6 +176,19 @@ fn movement_after_a_peak_is_measured_by_the_span() {
     assert_eq!((result.status, result.certificate.passed), (Status::Collapse, true), "{:?}", result.notes);
     let found = result.load_factor.expect("a peak");
     assert!((found - 69.310954782).abs() <= APART * found, "{found}");
+}
+
+/// A peak counts where it is placed. By half the step nothing between was found, and the path ended at the corner before it.
+#[test]
+fn a_peak_that_is_not_placed_shortens_the_step() {
+    for (name, strategy) in &STRATEGIES[..2] {
+        let result = answered(&scene(55).study(&solver(strategy)));
+        assert_eq!((result.status, result.certificate.passed), (Status::Collapse, true), "{name}: {:?}", result.notes);
+        for (found, known) in [(result.load_factor, 7103.169796), (result.path.first_limit_point, 136.833261732)] {
+            let found = found.expect("a peak");
+            assert!((found - known).abs() <= APART * known, "{name}: {found}");
+        }
+    }
 }
 
 /// STRATEGIES=N tries N scenes from FIRST on, 250 by default.

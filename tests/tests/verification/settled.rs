@@ -6,7 +6,7 @@ use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::energy::{EnergyScene, Landing, TraceLimits, load_path, settle};
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
-use voussoir_tests::{answered, assert_close};
+use voussoir_tests::{answered, assert_close, keep};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 /// How far factors may be apart, relative.
@@ -103,9 +103,7 @@ fn tally(range: std::ops::Range<usize>) -> Tally {
     for k in range {
         let settled = scene(k);
         let text = settled.study(FINITE);
-        if let Ok(folder) = std::env::var("KEEP") {
-            std::fs::write(format!("{folder}/settled{k}.toml"), &text).expect("the folder exists");
-        }
+        keep(&format!("settled{k}.toml"), &text);
         let energy = EnergyScene::of_study(&text);
         let branches = branches(&energy);
         tally.scenes += 1;

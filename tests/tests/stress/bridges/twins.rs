@@ -5,7 +5,7 @@ use super::bridge::Bridge;
 use toml::Value;
 use voussoir::core::limit::Status;
 use voussoir::study::as_blocks;
-use voussoir_tests::answered;
+use voussoir_tests::{answered, keep};
 
 /// Relative difference of loads that is none: twice what the bounds of each may be apart, and some.
 const SAME: f64 = 4e-9;
@@ -115,10 +115,7 @@ fn compare(first: u64, count: u64) -> (usize, usize) {
             let other = answered(&toml::to_string(&study).expect("TOML"));
             if other.status == Status::Stalled || own.status == Status::Stalled {
                 println!("{seed}, {index}: {:?} {:?}", own.notes, other.notes);
-                if let Some(folder) = std::env::var_os("KEEP") {
-                    let file = std::path::Path::new(&folder).join(format!("{seed}.toml"));
-                    std::fs::write(file, &blocks).expect("a folder to keep studies in");
-                }
+                keep(&format!("{seed}.toml"), &blocks);
                 stalled += 1;
                 continue;
             }

@@ -12,8 +12,8 @@ use std::time::Duration;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
-use voussoir_tests::first_case;
 use voussoir_tests::gates::above_gates;
+use voussoir_tests::{first_case, keep};
 
 /// Processor time that an answer may take \[s\].
 const LATE: f64 = 60.0;
@@ -114,12 +114,9 @@ fn try_all(wanted: impl Fn(&Extreme, &str) -> bool) -> BTreeMap<Verdict, usize> 
             if verdict != Verdict::Right || std::env::var_os("SHOW").is_some() {
                 println!("{verdict:?}: {name}, {solver}: {said}; {:?}", extreme.known);
             }
-            if verdict != Verdict::Right
-                && let Some(folder) = std::env::var_os("KEEP")
-            {
+            if verdict != Verdict::Right {
                 let file = format!("{name}, {solver}.toml").replace(['/', ' '], "_");
-                std::fs::write(std::path::Path::new(&folder).join(file), extreme.text.replace("SOLVER", solver))
-                    .expect("a folder to keep studies in");
+                keep(&file, &extreme.text.replace("SOLVER", solver));
             }
             *table.entry((extreme.family, solver)).or_default().entry(verdict).or_default() += 1;
             *counts.entry(verdict).or_default() += 1;

@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
-use voussoir_tests::first_case;
 use voussoir_tests::gates::above_gates;
+use voussoir_tests::{first_case, keep};
 
 /// Relative difference of factors that is none.
 const SAME: f64 = 2e-6;
@@ -59,10 +59,7 @@ fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usi
             let said = format!("{:?} {:?} {:?}", result.status, result.load_factor, result.feasible_interval);
             let said = format!("{said}, {:?}, {:?}, {above:?}", result.bounds, result.notes);
             bad.push((verdict, format!("{seed}, {family}: {said}, but {carried:?}")));
-            if let Some(folder) = std::env::var_os("KEEP") {
-                let file = std::path::Path::new(&folder).join(format!("{seed}.toml"));
-                std::fs::write(file, &text).expect("a folder to keep studies in");
-            }
+            keep(&format!("{seed}.toml"), &text);
         }
     }
     bad.sort();
