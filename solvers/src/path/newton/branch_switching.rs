@@ -23,17 +23,25 @@ use crate::contact::mode::ContactMode;
 const BACK: f64 = -1.0 + 1e-6;
 
 /// Shares of the motion of a first step ahead at which a rate is asked for its modes.
-const AHEAD: [f64; 3] = [1e-3, 1e-2, 1e-1];
+const AHEAD: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
 
-/// The rate on which the points at their limit yield, where a small share of `rate` asks for that.
-pub(super) fn yielding_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<(Tangent, Vec<ContactMode>)> {
-    let ahead = moved_along(tracer, rate, 1e-3 * share);
+/// Shares of a first step ahead at which the arriving rate is asked for other modes: a first step may be long for events
+/// that lie close together.
+const BEYOND: [f64; 3] = [1e-3, 1e-5, 1e-7];
+
+/// The rates on which the points at their limit yield, where a small share of `rate` asks for that, the longest share first.
+fn yielding_branches(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Vec<(Tangent, Vec<ContactMode>)> {
     let state = tracer.state.clone();
-    let modes = modes_ahead(&mut tracer.system, &state, &ahead);
-    if modes == state.mode {
-        return None;
+    let mut all: Vec<Vec<ContactMode>> = vec![state.mode.clone()];
+    for beyond in BEYOND {
+        let ahead = moved_along(tracer, rate, beyond * share);
+        let modes = modes_ahead(&mut tracer.system, &state, &ahead);
+        if !all.contains(&modes) {
+            all.push(modes);
+        }
     }
-    tangent_of_yielding(&mut tracer.system, &state, &modes).map(|rate| (rate, modes))
+    let rate = |modes: Vec<ContactMode>| Some((tangent_of_yielding(&mut tracer.system, &state, &modes)?, modes));
+    all.into_iter().skip(1).filter_map(rate).collect()
 }
 
 /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
@@ -65,21 +73,21 @@ pub(super) fn branch_beyond_fold(
     share: f64,
 ) -> Result<Option<(Tangent, Vec<ContactMode>)>, String> {
     let rate = &following.branch.tangent;
-    let own = yielding_branch(tracer, rate, share);
+    let all = yielding_branches(tracer, rate, share);
+    let own = all.first().cloned();
     // Other rates have other sizes: as far as this one moves.
     let reach = share * motion_size(&tracer.system, rate);
     if !tracer.system.rules.oriented || !tracer.system.piecewise_linear() {
         return Ok(own);
     }
-    if let Some((other, modes)) = &own
-        && agrees(tracer, other, modes, reach)
-        && continues(tracer, following, other, modes)
-    {
-        return Ok(own);
+    for (other, modes) in &all {
+        if agrees(tracer, other, modes, reach) && continues(tracer, following, other, modes) {
+            return Ok(Some((other.clone(), modes.clone())));
+        }
     }
     // A point that is about to close is open still: with the modes beyond the fold it counts among those that may turn.
     let here = tracer.state.mode.clone();
-    let beyond = own.iter().map(|(_, modes)| modes.clone());
+    let beyond = all.iter().map(|(_, modes)| modes.clone());
     let active: Vec<_> = std::iter::once(here).chain(beyond).collect();
     for leads_on in [is_onward as Onward, closes] {
         for modes in &active {
@@ -89,14 +97,21 @@ pub(super) fn branch_beyond_fold(
             }
         }
     }
-    if let Some((other, modes)) = &own
-        && !continues(tracer, following, other, modes)
-    {
+    for (other, modes) in &all {
+        if continues(tracer, following, other, modes) {
+            continue;
+        }
         // At a sharp fold the modes beyond it are right and the sense is not: that of the factor tells it.
         let reversed = other.scaled(-1.0);
         if agrees(tracer, &reversed, modes, reach) && continues(tracer, following, &reversed, modes) {
             tracer.system.count("sharp_folds", 1);
             return Ok(Some((reversed, modes.clone())));
+        }
+    }
+    for modes in &active {
+        if let Some(found) = by_enumeration(tracer, following, modes, opens, reach) {
+            tracer.system.count("branches", 1);
+            return Ok(Some(found));
         }
     }
     let state = tracer.state.clone();
@@ -163,6 +178,16 @@ fn closes(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[C
     let open = |c: usize, mode: ContactMode| tracer.system.law(c).is_some_and(|law| law.opens(mode));
     let mut pairs = tracer.state.mode.iter().zip(modes).enumerate();
     pairs.any(|(c, (before, after))| open(c, *before) && !open(c, *after))
+        && cosine(&following.branch.tangent.motion, &rate.motion) > BACK
+        && keeps_orientation(tracer, following, rate, modes)
+}
+
+/// Whether on a rate that goes on along the branch a point opens that was closed, while all that slides comes to rest: the
+/// way back leaves it closed.
+fn opens(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    let open = |c: usize, mode: ContactMode| tracer.system.law(c).is_some_and(|law| law.opens(mode));
+    let mut pairs = tracer.state.mode.iter().zip(modes).enumerate();
+    pairs.any(|(c, (before, after))| !open(c, *before) && open(c, *after))
         && cosine(&following.branch.tangent.motion, &rate.motion) > BACK
         && keeps_orientation(tracer, following, rate, modes)
 }

@@ -30,7 +30,7 @@ const REGULARISATION: f64 = 1e-11;
 /// Linear programs of a search.
 const MOST: u64 = 20_000;
 /// Combinations of modes that are gone through.
-const MOST_COMBINATIONS: usize = 3000;
+const MOST_COMBINATIONS: usize = 140_000;
 
 /// The active set of a state.
 struct ActiveSet {
