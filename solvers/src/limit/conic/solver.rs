@@ -28,6 +28,9 @@ const EXACT: f64 = 1e-11;
 /// Error of a field by blocks, as a share of the loads, up to which it is taken.
 const FIELD: f64 = 1e-11;
 
+/// The same of one that shows only that loads are carried: half of what certificates allow.
+const CARRIED: f64 = 5e-11;
+
 /// Units of force that are tried besides, where the polish does not settle, on scenes of so many bodies at the most.
 const MOST_IN_UNITS: usize = 500;
 const UNITS: [f64; 2] = [0.1, 10.0];
@@ -180,18 +183,25 @@ impl ConicEngine<'_> {
         field_error(self.problem, &loads, &solution.forces) <= FIELD
     }
 
-    /// The greatest share θ ≤ 1 of `loads` by the blocks of the program.
+    /// Whether a field carries loads, but for rounding.
+    fn carries(&self, loads: &Wrenches, field: &[JointForce]) -> bool {
+        field_error(self.problem, loads, field) <= CARRIED
+    }
+
+    /// The greatest share θ ≤ 1 of `loads` by the blocks of the program; `None` where its field does not carry them.
     fn share_by_blocks(&mut self, loads: &Wrenches, strengths: bool) -> Option<Equilibrium> {
         if strengths {
             let held = block_program::Loads { fixed: Some(loads), varying: loads, cap: f64::INFINITY, strengths };
-            if let Some(field) = self.by_blocks(held, block_program::stands)?.stands {
+            let stands = self.by_blocks(held, block_program::stands)?.stands;
+            if let Some(field) = stands.filter(|field| self.carries(loads, field)) {
                 return Some(Equilibrium::Field(field));
             }
         }
         let share = block_program::Loads { fixed: None, varying: loads, cap: 1.0, strengths };
         let solution = self.by_blocks(share, |program| block_program::solve(program, false))?.solution?;
         if solution.factor >= 1.0 - 1e-10 {
-            return Some(Equilibrium::Field(solution.forces));
+            let forces = Some(solution.forces).filter(|field| self.carries(loads, field));
+            return forces.map(Equilibrium::Field);
         }
         let excess = 1.0 - solution.factor;
         let mut motion = with_unit_power(loads, solution.motion);
@@ -363,7 +373,7 @@ impl Engine for ConicEngine<'_> {
     fn greatest_if_carried(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Option<Greatest> {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let solved = self.by_blocks(loads, |program| block_program::solve(program, true))?;
-        let stands = solved.stands?;
+        let stands = solved.stands.filter(|field| self.carries(fixed, field))?;
         let solution = solved.solution.filter(|solution| self.holds(fixed, varying, solution));
         if solution.is_none() {
             self.carried = Some((fixed.clone(), stands));
