@@ -351,6 +351,18 @@ fn a_path_does_not_turn_back_at_a_corner() {
     }
 }
 
+/// Folds beyond which one rate among thousands leads on: a point opens while all that slides comes to rest (1264), or one begins
+/// to slide as others come to rest (1508). Arc lengths lost these paths; those with another first step came to the same loads.
+#[test]
+fn folds_of_many_points_are_passed() {
+    for (k, known) in [(1264, 7.462_409_788), (1508, 7481.227_062)] {
+        let (stratum, scene) = scene(k);
+        let result = answered(&scene.study(&keys(&stratum, "continuation = { strategy = \"arc_length\" }")));
+        let found = factor(&result).unwrap_or_else(|| panic!("{k}: {:?}", result.notes));
+        assert!((found - known).abs() <= 1e-7 * known, "{k}: {found}");
+    }
+}
+
 /// A settlement that goes no further by itself at a corner snaps, and goes on to where it is told. Steps of a thousandth to
 /// a hundred thousandth of the arch say the same factor to 2e-10.
 #[test]

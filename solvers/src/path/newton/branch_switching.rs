@@ -19,6 +19,9 @@ use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
 use super::tracer::{Tracer, moved_along};
 use crate::contact::mode::ContactMode;
 
+/// A rate with the modes on which it starts.
+type Start = (Tangent, Vec<ContactMode>);
+
 /// Cosine of the angle to the arriving rate below which another one is the way back.
 const BACK: f64 = -1.0 + 1e-6;
 
@@ -30,7 +33,7 @@ const AHEAD: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
 const BEYOND: [f64; 3] = [1e-3, 1e-5, 1e-7];
 
 /// The rates on which the points at their limit yield, where a small share of `rate` asks for that, the longest share first.
-fn yielding_branches(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Vec<(Tangent, Vec<ContactMode>)> {
+fn yielding_branches(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Vec<Start> {
     let state = tracer.state.clone();
     let mut all: Vec<Vec<ContactMode>> = vec![state.mode.clone()];
     for beyond in BEYOND {
@@ -71,7 +74,7 @@ pub(super) fn branch_beyond_fold(
     tracer: &mut Tracer,
     following: &Following,
     share: f64,
-) -> Result<Option<(Tangent, Vec<ContactMode>)>, String> {
+) -> Result<Option<Start>, String> {
     let rate = &following.branch.tangent;
     let all = yielding_branches(tracer, rate, share);
     let own = all.first().cloned();
@@ -88,13 +91,11 @@ pub(super) fn branch_beyond_fold(
     // A point that is about to close is open still: with the modes beyond the fold it counts among those that may turn.
     let here = tracer.state.mode.clone();
     let beyond = all.iter().map(|(_, modes)| modes.clone());
-    let active: Vec<_> = std::iter::once(here).chain(beyond).collect();
+    let mut starting = StartingRates::new(std::iter::once(here).chain(beyond));
     for leads_on in [is_onward as Onward, closes] {
-        for modes in &active {
-            if let Some(found) = by_enumeration(tracer, following, modes, leads_on, reach) {
-                tracer.system.count("branches", 1);
-                return Ok(Some(found));
-            }
+        if let Some(found) = starting.only(tracer, following, leads_on, reach) {
+            tracer.system.count("branches", 1);
+            return Ok(Some(found));
         }
     }
     for (other, modes) in &all {
@@ -108,11 +109,9 @@ pub(super) fn branch_beyond_fold(
             return Ok(Some((reversed, modes.clone())));
         }
     }
-    for modes in &active {
-        if let Some(found) = by_enumeration(tracer, following, modes, opens, reach) {
-            tracer.system.count("branches", 1);
-            return Ok(Some(found));
-        }
+    if let Some(found) = starting.only(tracer, following, opens, reach) {
+        tracer.system.count("branches", 1);
+        return Ok(Some(found));
     }
     let state = tracer.state.clone();
     match limit_point_test(&mut tracer.system, &state, rate.factor.signum()) {
@@ -195,25 +194,33 @@ fn opens(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[Co
 /// Which rates may lead on.
 type Onward = fn(&mut Tracer, &Following, &Tangent, &[ContactMode]) -> bool;
 
-/// The one rate among all that start here, in these modes or those of points that may leave them, that leads on; `None`
-/// where there are several, or none was found.
-fn by_enumeration(
-    tracer: &mut Tracer,
-    following: &Following,
-    modes: &[ContactMode],
-    leads_on: Onward,
-    reach: f64,
-) -> Option<(Tangent, Vec<ContactMode>)> {
-    following.orientation.as_ref().filter(|before| !before.is_singular())?;
-    let state = State { mode: modes.to_vec(), ..tracer.state.clone() };
-    let rates = all_rates(&mut tracer.system, &state)?;
-    let mut onward = rates.into_iter().filter(|(other, modes)| {
-        // The arriving rate itself has failed: it may look as if it led on for less than is left to the fold.
-        let arriving = *modes == tracer.state.mode && cosine(&following.branch.tangent.motion, &other.motion) > -BACK;
-        !arriving && leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, reach)
-    });
-    let found = onward.next()?;
-    onward.next().is_none().then_some(found)
+/// All rates that start at the present state, each set of modes that are looked at enumerated once, when it is asked for.
+struct StartingRates(Vec<(Vec<ContactMode>, Option<Vec<Start>>)>);
+
+impl StartingRates {
+    fn new(modes: impl Iterator<Item = Vec<ContactMode>>) -> Self {
+        StartingRates(modes.map(|modes| (modes, None)).collect())
+    }
+
+    /// The one rate, in the first of these modes or those of points that may leave them, that leads on; `None` where there
+    /// are several, or none was found.
+    fn only(&mut self, tracer: &mut Tracer, following: &Following, leads_on: Onward, reach: f64) -> Option<Start> {
+        following.orientation.as_ref().filter(|before| !before.is_singular())?;
+        self.0.iter_mut().find_map(|(modes, rates)| {
+            let rates = rates.get_or_insert_with(|| {
+                let state = State { mode: modes.clone(), ..tracer.state.clone() };
+                all_rates(&mut tracer.system, &state).unwrap_or_default()
+            });
+            let mut onward = rates.iter().filter(|(other, modes)| {
+                // The arriving rate itself has failed: it may look as if it led on for less than is left to the fold.
+                let arriving =
+                    *modes == tracer.state.mode && cosine(&following.branch.tangent.motion, &other.motion) > -BACK;
+                !arriving && leads_on(tracer, following, other, modes) && agrees(tracer, other, modes, reach)
+            });
+            let found = onward.next()?.clone();
+            onward.next().is_none().then_some(found)
+        })
+    }
 }
 
 /// Whether a rate asks for the modes that it was computed with. The nearest state to a fold lies before it by what the
