@@ -28,8 +28,9 @@ use voussoir_core::path::{Branching, LoadStep};
 /// Greatest number of steps of a load step, those that are tried in vain or taken back among them.
 const MOST_STEPS: u64 = 6000;
 
-/// Greatest number of Newton's iterations of a load step with finite displacements; steps of most paths take four.
-const MOST_ITERATIONS: u64 = 100_000;
+/// Newton's iterations and evaluations of laws of a load step with finite displacements beyond both of which it ends: some
+/// twenty seconds. Steps of most paths take four iterations.
+const MOST_WORK: [u64; 2] = [100_000, 20_000_000];
 
 /// Contact points up to which every change of mode counts for the length of the next step; of more the
 /// same share does, so that the number of steps does not grow with the number of joints.
@@ -81,11 +82,14 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
         Ok(following) => following,
         Err(outcome) => return outcome,
     };
-    let iterations = |tracer: &Tracer| tracer.system.counters.get("newton_iterations").copied().unwrap_or(0);
-    let before = iterations(tracer);
+    let work = |tracer: &Tracer| {
+        ["newton_iterations", "law_evaluations"].map(|name| tracer.system.counters.get(name).copied().unwrap_or(0))
+    };
+    let before = work(tracer);
     for _ in 0..MOST_STEPS {
-        if tracer.system.finite() && iterations(tracer) > before + MOST_ITERATIONS {
-            return out_of_work(tracer, &following, &format!("{MOST_ITERATIONS} iterations"));
+        let now = work(tracer);
+        if tracer.system.finite() && (0..2).all(|k| now[k] - before[k] > MOST_WORK[k]) {
+            return out_of_work(tracer, &following, &format!("{} iterations", now[0] - before[0]));
         }
         let end = next_step(tracer, &mut following);
         if let Some(outcome) = go_on(tracer, &mut following, end) {
