@@ -3,7 +3,7 @@
 use crate::config::check::{Checker, Unused};
 use crate::config::document::{Node, Table};
 use crate::config::expand::Expansion;
-use crate::study::Checked;
+use crate::study::CheckedValue;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use voussoir_core::plugin::Parameter;
@@ -12,7 +12,7 @@ use voussoir_core::plugin::Parameter;
 #[derive(Debug, Clone)]
 pub struct CheckedKey {
     /// The normalised value; `None` where the key is optional and absent.
-    pub value: Option<Arc<Checked>>,
+    pub value: Option<Arc<CheckedValue>>,
     /// Keys below it without influence.
     pub unused: Vec<Unused>,
     gravity: f64,

@@ -41,7 +41,7 @@ pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study};
 pub use numeric_keys::{NumberKind, NumericKey, numeric_keys};
 pub use outline::Outline;
 pub use partial_factors::design;
-pub use resolved::{Checked, Resolved};
+pub use resolved::{CheckedValue, Resolved};
 pub(crate) use source::value_of;
 pub use source::{StudySource, kind_of};
 pub use survey::{ReadFile, beside, no_files};

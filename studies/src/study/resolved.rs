@@ -8,24 +8,24 @@ use std::sync::{Arc, OnceLock};
 
 /// The checked value of a top-level key.
 #[derive(Debug, Clone, Default)]
-pub struct Checked {
+pub struct CheckedValue {
     value: Json,
     hash: OnceLock<Fnv>,
 }
 
-impl From<Json> for Checked {
+impl From<Json> for CheckedValue {
     fn from(value: Json) -> Self {
-        Checked { value, hash: OnceLock::new() }
+        CheckedValue { value, hash: OnceLock::new() }
     }
 }
 
 /// A case's own study file, checked: top-level keys with their values, numbers in SI units, defaults filled in.
 #[derive(Debug, Clone, Default)]
-pub struct Resolved(Vec<(&'static str, Arc<Checked>)>);
+pub struct Resolved(Vec<(&'static str, Arc<CheckedValue>)>);
 
 impl Resolved {
     /// Adds a key that is not there yet.
-    pub(super) fn insert(&mut self, name: &'static str, value: Arc<Checked>) {
+    pub(super) fn insert(&mut self, name: &'static str, value: Arc<CheckedValue>) {
         self.0.push((name, value));
     }
 
