@@ -355,7 +355,7 @@ fn a_path_does_not_turn_back_at_a_corner() {
 /// to slide as others come to rest (1508). Arc lengths lost these paths; those with another first step came to the same loads.
 #[test]
 fn folds_of_many_points_are_passed() {
-    for (k, known) in [(1264, 7.462_409_788), (1508, 7481.227_062)] {
+    for (k, known) in [(1264, 7.462_409_788), (1508, 7_481.227_062)] {
         let (stratum, scene) = scene(k);
         let result = answered(&scene.study(&keys(&stratum, "continuation = { strategy = \"arc_length\" }")));
         let found = factor(&result).unwrap_or_else(|| panic!("{k}: {:?}", result.notes));

@@ -17,6 +17,7 @@
 //!
 //! Such steps are shortened.
 
+use super::control::Control;
 use super::following::Following;
 use super::slip_history::predicted_event;
 use super::state::{State, Tangent};
@@ -24,7 +25,10 @@ use super::system::StepSystem;
 use super::tangent::tangent_at;
 use super::tracer::{Tracer, moved};
 use super::trial::{StepPlan, Trial};
+use crate::path::continuation::arc_length::ArcLength;
 use nalgebra::Vector2;
+use std::any::Any;
+use std::sync::Arc;
 
 /// Share of the rate at the start of a step below which it has flattened.
 const FLATTENED: f64 = 0.25;
@@ -91,6 +95,7 @@ fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, tr
         piece
     };
     let begun = moved(state, &following.branch.tangent, BEGUN * plan.step);
+    let control = along_the_path(following, &trial.control);
     let mut pieces = vec![with(next, state, None), with(&begun, next, None)];
     if changed.len() > 1 {
         pieces.extend(changed.iter().map(|c| with(next, state, Some((*c, next)))));
@@ -100,9 +105,23 @@ fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, tr
     }
     pieces.iter().any(|piece| {
         system.count("pieces", 1);
-        let rate = tangent_at(system, state, piece, &trial.control);
+        let rate = tangent_at(system, state, piece, &control);
         rate.is_some_and(|rate| rises(rate.factor) != before)
     })
+}
+
+/// The control by which the rates of pieces are oriented: lengths grow along a path, whatever another strategy measures may not.
+fn along_the_path(following: &Following, control: &Control) -> Control {
+    match control {
+        Control::Strategy { strategy, length, .. } if !(&**strategy as &dyn Any).is::<ArcLength>() => {
+            Control::Strategy {
+                strategy: Arc::new(ArcLength::default()),
+                previous: following.previous,
+                length: *length,
+            }
+        }
+        other => other.clone(),
+    }
 }
 
 /// Whether a step that rises at both ends flattens.
