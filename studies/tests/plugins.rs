@@ -181,7 +181,7 @@ fn auto_chooses_what_it_chose_by_name() {
             assert_eq!(chosen, Vec::<String>::new(), "{name}, case {}", case.id);
             for loads in stage_loads(assembly, &case.stages) {
                 let problem = LimitProblem::new(assembly, &loads).expect("laws of facets");
-                let chosen: Vec<_> = limit_solvers(&SelectedSolver::Auto, &problem).into_iter().map(|s| s.0).collect();
+                let chosen: Vec<_> = limit_solvers(&SelectedSolver::Auto, &problem).map(|s| s.0).collect();
                 let mut expected = vec!["limit_conic"];
                 let chain = voussoir::solvers::limit::chain::LimitChain {};
                 if chain.refuses(&problem).is_none() {
