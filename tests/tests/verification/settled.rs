@@ -237,8 +237,8 @@ fn slip_is_followed_where_the_load_falls() {
     assert!(factor.is_some_and(|factor| (factor / 12_936.539_5 - 1.0).abs() < 1e-8), "{factor:?} {:?}", result.notes);
 }
 
-/// Friction may bring a path back to its peak, over eleven others and 5e-4 beside it: it ends there, with the peak of the
-/// first time.
+/// Friction may bring a path back to its peak, over eleven others, which unstable branches carry, and 5e-4 beside it: it ends
+/// there, with the peak of the first time and no other.
 #[test]
 fn a_path_that_comes_back_to_its_peak_in_a_loop_ends() {
     let result = answered(include_str!("settled/in_a_loop.toml"));
@@ -249,8 +249,7 @@ fn a_path_that_comes_back_to_its_peak_in_a_loop_ends() {
         result.notes
     );
     let peaks: Vec<f64> = result.path.limit_points.iter().map(|peak| peak.factor).collect();
-    assert_eq!(result.load_factor, peaks.first().copied());
-    assert!(peaks.len() > 1 && peaks[1..].iter().all(|peak| *peak < 0.99 * peaks[0]), "{peaks:?}");
+    assert_eq!(result.load_factor.as_slice(), peaks);
 }
 
 /// A strategy that loses its path, for what it measures turns back, is followed by arc lengths from the start; the result
@@ -258,10 +257,11 @@ fn a_path_that_comes_back_to_its_peak_in_a_loop_ends() {
 #[test]
 fn where_the_measure_of_a_strategy_turns_back_arc_lengths_follow() {
     let scene = include_str!("settled/measure_turns_back.toml");
-    let [usual, named] = [answered(scene), by(scene, "\"dissipation\"")];
+    let [usual, named] = [answered(scene), by(scene, "\"displacement_control\"")];
     assert_eq!((usual.status, named.status), (Status::Collapse, Status::Collapse), "{:?}", named.notes);
     assert!(!followed(&usual) && followed(&named) && named.certificate.passed, "{:?}\n{:?}", usual.notes, named.notes);
-    assert_eq!(usual.load_factor, named.load_factor);
+    let [usual, named] = [usual, named].map(|result| result.load_factor.expect("a collapse"));
+    assert!((usual - named).abs() <= 1e-8 * usual, "{usual} {named}");
 }
 
 /// Arc lengths lose this path at a fold: no rate leads on, yet their 25 048.25 is no collapse, since the load has not fallen
