@@ -174,19 +174,24 @@ fn is_onward(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: 
 /// Whether on a rate that goes on along the branch a joint closes that was open, and with it all that slides comes to
 /// rest: no elastic unloading of the state, which would open it.
 fn closes(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
-    let open = |c: usize, mode: ContactMode| tracer.system.law(c).is_some_and(|law| law.opens(mode));
-    let mut pairs = tracer.state.mode.iter().zip(modes).enumerate();
-    pairs.any(|(c, (before, after))| open(c, *before) && !open(c, *after))
-        && cosine(&following.branch.tangent.motion, &rate.motion) > BACK
-        && keeps_orientation(tracer, following, rate, modes)
+    changes_contact(tracer, following, (rate, modes), false)
 }
 
-/// Whether on a rate that goes on along the branch a point opens that was closed, while all that slides comes to rest: the
-/// way back leaves it closed.
+/// The same where a point opens that was closed: the way back leaves it closed.
 fn opens(tracer: &mut Tracer, following: &Following, rate: &Tangent, modes: &[ContactMode]) -> bool {
+    changes_contact(tracer, following, (rate, modes), true)
+}
+
+/// Whether a rate that goes on along the branch opens a point that is closed, or closes one that is open.
+fn changes_contact(
+    tracer: &mut Tracer,
+    following: &Following,
+    (rate, modes): (&Tangent, &[ContactMode]),
+    opens: bool,
+) -> bool {
     let open = |c: usize, mode: ContactMode| tracer.system.law(c).is_some_and(|law| law.opens(mode));
     let mut pairs = tracer.state.mode.iter().zip(modes).enumerate();
-    pairs.any(|(c, (before, after))| !open(c, *before) && open(c, *after))
+    pairs.any(|(c, (before, after))| open(c, *before) != opens && open(c, *after) == opens)
         && cosine(&following.branch.tangent.motion, &rate.motion) > BACK
         && keeps_orientation(tracer, following, rate, modes)
 }

@@ -4,7 +4,7 @@ use super::branch_switching::{branch_beyond_fold, yielding_blocks_branch};
 use super::creeping::CREEPS;
 use super::following::{Branch, Following};
 use super::limit_point::{above_all, falling_branch, not_followed, rising_branch};
-use super::peak::note_peak;
+use super::peak::{PLACED, note_peak};
 use super::state::Tangent;
 use super::system::StepFailure;
 use super::termination::{no_step, snaps};
@@ -20,9 +20,6 @@ pub(super) const CORNER: f64 = 1e-7;
 
 /// Length, relative to the first step, below which there is no step.
 pub(super) const SHORTEST: f64 = 1e-10;
-
-/// Share of the load within which a corner at which it is greatest is placed, as far as steps can be that short.
-const PLACED: f64 = 1e-8;
 
 /// Steps after which the rates are searched again where steps are not followed.
 const AGAIN: u64 = 20;

@@ -15,8 +15,8 @@ use voussoir_core::path::ProvenPeak;
 
 /// Share of a step up to which the states on both sides of a peak are apart where one branch leads through it.
 const CONTINUOUS: f64 = 1e-3;
-/// Share of the load within which a peak is placed; where states between were not found a shorter step may.
-const PLACED: f64 = 1e-8;
+/// Share of the load within which a peak, smooth or a corner, is placed, as far as steps can be that short.
+pub(super) const PLACED: f64 = 1e-8;
 /// Relative differences of the loads and displacements of two limit points that are one.
 const SAME: f64 = 1e-8;
 /// Fall of the load between two of them, relative to it, from which on the path has been elsewhere.
