@@ -1,12 +1,14 @@
 //! Ctrl-C: what is finished stays, and how to go on is said.
 
-use std::sync::Mutex;
+use super::journal::Journal;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, Weak};
 
 /// The exit code of a program that was interrupted.
 const INTERRUPTED: i32 = 130;
 
 static COMMAND: Mutex<Option<String>> = Mutex::new(None);
+static JOURNAL: Mutex<Weak<Mutex<Option<Journal>>>> = Mutex::new(Weak::new());
 static FINISHED: AtomicUsize = AtomicUsize::new(0);
 static ALL: AtomicUsize = AtomicUsize::new(0);
 
@@ -18,6 +20,12 @@ pub fn catch(arguments: &[String]) {
     }
     // Where signals cannot be caught the journal still keeps what is finished.
     drop(ctrlc::set_handler(|| {
+        let journal = JOURNAL.lock().map(|own| own.upgrade()).unwrap_or_default();
+        // Held until the end: what is finished from now on is not counted.
+        let mut journal = journal.as_ref().and_then(|own| own.lock().ok());
+        if let Some(Err(error)) = journal.as_mut().and_then(|own| own.as_mut()).map(Journal::write) {
+            eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
+        }
         let (finished, all) = (FINISHED.load(Ordering::Relaxed), ALL.load(Ordering::Relaxed));
         let command = COMMAND.lock().ok().and_then(|own| own.clone()).unwrap_or_default();
         eprintln!(
@@ -25,6 +33,13 @@ pub fn catch(arguments: &[String]) {
         );
         std::process::exit(INTERRUPTED);
     }));
+}
+
+/// Where finished cases are kept.
+pub fn keeps(journal: &Arc<Mutex<Option<Journal>>>) {
+    if let Ok(mut own) = JOURNAL.lock() {
+        *own = Arc::downgrade(journal);
+    }
 }
 
 /// So many cases are going to be solved.

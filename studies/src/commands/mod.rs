@@ -12,6 +12,7 @@ pub mod files;
 mod folder;
 mod http;
 mod interrupt;
+mod journal;
 pub mod merge;
 pub mod new;
 pub mod new_law;

@@ -2,14 +2,15 @@
 
 use super::codes::say;
 use super::interrupt;
+use super::journal::Journal;
 use crate::results::CaseResult;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value as Json;
 use std::collections::BTreeSet;
-use std::io::Write;
-use std::sync::Mutex;
+use std::fs::File;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// What a run shows.
@@ -31,7 +32,7 @@ pub struct Progress {
     started: Instant,
     /// When a path was last shown, in tenths of a second since the start.
     shown: AtomicU64,
-    journal: Mutex<Option<std::fs::File>>,
+    journal: Arc<Mutex<Option<Journal>>>,
     /// Ids of the cases whose lines are on standard output.
     said: Mutex<BTreeSet<usize>>,
 }
@@ -41,14 +42,16 @@ const LONG: u64 = 10;
 
 impl Progress {
     /// Progress of the study called `name`; finished cases are added to the file `journal`.
-    pub fn new(name: &str, shown_as: Shown, journal: Option<std::fs::File>) -> Self {
+    pub fn new(name: &str, shown_as: Shown, journal: Option<File>) -> Self {
+        let journal = Arc::new(Mutex::new(journal.map(Journal::new)));
+        interrupt::keeps(&journal);
         Progress {
             bar: ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
             shown_as,
             name: name.into(),
             started: Instant::now(),
             shown: AtomicU64::new(0),
-            journal: Mutex::new(journal),
+            journal,
             said: Mutex::default(),
         }
     }
@@ -69,12 +72,15 @@ impl Progress {
 }
 
 impl Progress {
-    /// Adds the line of a finished case to the journal, in one piece.
-    fn keep(&self, line: &[u8]) {
+    /// Writes what waits to be written to the journal.
+    pub fn keep_all(&self) {
+        self.keep(Journal::write);
+    }
+
+    /// Does something to the journal, which is given up where it fails.
+    fn keep(&self, what: impl FnOnce(&mut Journal) -> std::io::Result<()>) {
         let Ok(mut journal) = self.journal.lock() else { return };
-        if let Some(file) = journal.as_mut()
-            && let Err(error) = file.write_all(line)
-        {
+        if let Some(Err(error)) = journal.as_mut().map(what) {
             // It costs only the chance to go on after an interruption.
             eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
             *journal = None;
@@ -106,9 +112,11 @@ impl Observer for Progress {
             line.truncate(1);
         }
         line.push(b'\n');
-        self.keep(&line);
+        self.keep(|journal| journal.add(&line));
         interrupt::finished();
         if self.shown_as == Shown::Lines {
+            // Whoever reads what is said on standard output may take his time.
+            self.keep_all();
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);
             }
@@ -123,6 +131,7 @@ impl Observer for Progress {
     }
 
     fn on_path(&self, at: &PathProgress) {
+        self.keep(Journal::write_late);
         let now = self.started.elapsed().as_millis() as u64 / 100;
         if self.bar.is_hidden() || now < LONG || self.shown.swap(now, Ordering::Relaxed) == now {
             return;
