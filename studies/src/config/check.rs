@@ -251,9 +251,9 @@ impl<'a> Checker<'a> {
         what: &str,
         key: &str,
     ) -> Option<&'n str> {
-        let list = format!("choices: {}", tags.join(", "));
+        let list = || format!("choices: {}", tags.join(", "));
         let Some(value) = table.get(tag_key) else {
-            self.wrong_with_help(&node.origin, &join(key, tag_key), "is missing".into(), list);
+            self.wrong_with_help(&node.origin, &join(key, tag_key), "is missing".into(), list());
             return None;
         };
         let Some(tag) = value.text() else {
