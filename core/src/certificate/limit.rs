@@ -7,7 +7,7 @@
 //! combinations of the facets' flow directions and their power with the field's distance from the
 //! yield surface must vanish, joint by joint.
 
-use super::mechanism::{CentroidVelocity, Jump, jumps, velocity_at};
+use super::mechanism::{CentroidVelocity, Jump, jumps_about, velocity_at};
 use super::products::proved;
 use super::rounding::{ROUNDED, jump_rounding, lie};
 use crate::law::{Facet, FacetMode, YieldPolygon};
@@ -123,6 +123,8 @@ struct Check<'a> {
     groups: Vec<Option<usize>>,
     facets: Vec<Vec<Facet>>,
     polygons: Vec<YieldPolygon>,
+    /// Of every body.
+    centroids: Vec<Vec2>,
     size: f64,
     /// Sum of the sizes of the fixed and of the varying loads on free bodies \[N\].
     sizes: [f64; 2],
@@ -149,6 +151,7 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         groups: assembly.rigid_groups().0,
         polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),
         facets,
+        centroids: (0..assembly.bodies.len()).map(|body| assembly.inertia(body).centroid).collect(),
         size: assembly.size(),
         sizes: [0.0; 2],
         assembly,
@@ -245,7 +248,7 @@ impl Check<'_> {
             let Some(group) = self.groups[body] else {
                 continue;
             };
-            let pole = *pole[group].get_or_insert_with(|| self.assembly.inertia(body).centroid);
+            let pole = *pole[group].get_or_insert(self.centroids[body]);
             for (wrenches, factor) in [(&self.loads.fixed, dead), (&self.loads.varying, factor)] {
                 let [x, y, moment] = wrenches[body];
                 sums[group][0] += factor * x;
@@ -287,6 +290,9 @@ impl Check<'_> {
             sum[1] += contact.force[1];
             sum[2] += contact.force[0] * lever;
         }
+        let directions = |facet: &Facet| if admitted == Admitted::NoWorkOnFlow { facet.flow } else { facet.normal };
+        let sizes = |facets: &Vec<Facet>| facets.iter().map(directions).map(|[a, b]| a.hypot(b)).collect::<Vec<f64>>();
+        let sizes: Vec<Vec<f64>> = self.facets.iter().map(sizes).collect();
         let mut worst = 0.0f64;
         for (joint, resultant) in self.assembly.joints.iter().zip(resultants) {
             let (Some([n, t, m]), Bond::Law(law)) = (resultant, joint.bond) else { continue };
@@ -306,9 +312,9 @@ impl Check<'_> {
                 let depth = if full > 0.0 { block / full } else { 0.0 };
                 worst = worst.max(arm - block.max(0.0) * (1.0 - depth));
             }
-            for facet in self.facets[law].iter().filter(|f| f.normal[1] != 0.0) {
-                let [a, b] = if admitted == Admitted::NoWorkOnFlow { facet.flow } else { facet.normal };
-                worst = worst.max((a * n + b * t - facet.bound * scale) / a.hypot(b));
+            for (facet, size) in self.facets[law].iter().zip(&sizes[law]).filter(|(f, _)| f.normal[1] != 0.0) {
+                let [a, b] = directions(facet);
+                worst = worst.max((a * n + b * t - facet.bound * scale) / size);
             }
         }
         worst
@@ -362,7 +368,7 @@ impl Check<'_> {
             return self.fail("no ray that refutes the motion of the supports");
         };
         let still: Vec<CentroidVelocity> = supports.iter().map(|motion| motion.unwrap_or_default()).collect();
-        let moved = |body: usize, point: Vec2| velocity_at(self.assembly.inertia(body).centroid, still[body], point);
+        let moved = |body: usize, point: Vec2| velocity_at(self.centroids[body], still[body], point);
         let (mut work, mut forces, mut greatest) = (0.0, 0.0, 0.0f64);
         for contact in ray {
             let joint = &self.assembly.joints[contact.joint];
@@ -387,7 +393,7 @@ impl Check<'_> {
     fn powers(&self, motion: &[CentroidVelocity]) -> Powers {
         let (mut fixed, mut varying, mut turnover) = (0.0, 0.0, [0.0; 2]);
         let lie = self.assembly.joints.iter().map(lie).fold(1.0, f64::max);
-        let centroids: Vec<Vec2> = (0..motion.len()).map(|body| self.assembly.inertia(body).centroid).collect();
+        let centroids = &self.centroids;
         for body in self.free_bodies() {
             let c = centroids[body];
             let [vx, vy, omega] = motion[body];
@@ -401,7 +407,7 @@ impl Check<'_> {
             turnover[0] += terms(&self.loads.fixed[body]);
             turnover[1] += terms(&self.loads.varying[body]);
         }
-        let jumps = jumps(self.assembly, motion);
+        let jumps = jumps_about(self.assembly, &self.centroids, motion);
         let largest = motion_size(&jumps, motion).max(f64::MIN_POSITIVE);
         let (mut dissipated, mut impossible, mut uncertain) = (0.0, 0.0f64, 0.0);
         let strongest = |polygon: &YieldPolygon| polygon.vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
@@ -417,7 +423,7 @@ impl Check<'_> {
             }
             let area = joint.height() * self.assembly.width;
             dissipated += support_integral(&polygon.vertices, jump) * area;
-            uncertain += strongest[law] * area * jump_rounding(joint, motion, &centroids);
+            uncertain += strongest[law] * area * jump_rounding(joint, motion, centroids);
         }
         for (reaction, bounds) in self.assembly.fill_reactions().iter().zip(&self.loads.fill_bounds) {
             let speed = self.fill_speed(reaction, motion);
@@ -431,8 +437,7 @@ impl Check<'_> {
 
     /// Velocity of the point where the fill presses, towards the ring.
     fn fill_speed(&self, reaction: &FillReaction, motion: &[CentroidVelocity]) -> f64 {
-        let centroid = self.assembly.inertia(reaction.body).centroid;
-        velocity_at(centroid, motion[reaction.body], reaction.point).dot(&reaction.direction)
+        velocity_at(self.centroids[reaction.body], motion[reaction.body], reaction.point).dot(&reaction.direction)
     }
 
     /// Σ |H u + dissipation| over the forces H of the fill: zero where each flows only on its bound.
@@ -460,7 +465,7 @@ impl Check<'_> {
         self.held(motion);
         let varying = self.powers(motion).varying;
         let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
-        let jumps = jumps(self.assembly, motion);
+        let jumps = jumps_about(self.assembly, &self.centroids, motion);
         let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
         let laws = (&self.facets[..], &self.polygons[..]);
         let (impossible, mut idle) = idle_power(self.assembly, laws, field, (&jumps, largest), |_| true);
@@ -537,7 +542,7 @@ impl Check<'_> {
         let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
         self.residual("flow", impossible, ROUNDING);
         let excess = fixed + claim.start * varying - dissipated;
-        let largest = motion_size(&jumps(self.assembly, motion), motion);
+        let largest = motion_size(&jumps_about(self.assembly, &self.centroids, motion), motion);
         let scale = self.residual_scale(claim.start) * largest;
         if excess.is_nan() || excess <= EXCESS * scale {
             self.fail(format!("the loads do no more work on the motion than is dissipated: excess {excess:.3e}"));

@@ -21,20 +21,21 @@ impl YieldPolygon {
     pub fn of(facets: &[Facet]) -> Self {
         let scale = facets.iter().map(|f| f.bound.abs()).fold(0.0, f64::max).max(1.0);
         let length = |a: [f64; 2]| a[0].hypot(a[1]);
+        let lengths: Vec<f64> = facets.iter().map(|f| length(f.normal)).collect();
+        let all = || facets.iter().zip(&lengths);
         let mut vertices: Vec<[f64; 2]> = Vec::new();
         let mut rays: Vec<[f64; 2]> = Vec::new();
-        for (i, f) in facets.iter().enumerate() {
+        for (i, (f, l)) in all().enumerate() {
             for sense in [1.0, -1.0] {
-                let l = length(f.normal);
                 let ray = [-sense * f.normal[1] / l, sense * f.normal[0] / l];
-                let admissible = facets.iter().all(|g| dot(g.normal, ray) <= 1e-12 * length(g.normal));
+                let admissible = all().all(|(g, length)| dot(g.normal, ray) <= 1e-12 * length);
                 if admissible && !rays.iter().any(|r| (dot(*r, ray) - 1.0).abs() < 1e-12) {
                     rays.push(ray);
                 }
             }
-            for g in &facets[i + 1..] {
+            for (g, other) in all().skip(i + 1) {
                 let determinant = f.normal[0] * g.normal[1] - f.normal[1] * g.normal[0];
-                if determinant.abs() <= 1e-12 * length(f.normal) * length(g.normal) {
+                if determinant.abs() <= 1e-12 * l * other {
                     continue;
                 }
                 let vertex = [
@@ -42,7 +43,7 @@ impl YieldPolygon {
                     (g.bound * f.normal[0] - f.bound * g.normal[0]) / determinant,
                 ];
                 let tolerance = 1e-12 * scale.max(length(vertex));
-                let inside = facets.iter().all(|h| dot(h.normal, vertex) <= h.bound + tolerance * length(h.normal));
+                let inside = all().all(|(h, length)| dot(h.normal, vertex) <= h.bound + tolerance * length);
                 if inside && !vertices.iter().any(|v| length([v[0] - vertex[0], v[1] - vertex[1]]) <= tolerance) {
                     vertices.push(vertex);
                 }
@@ -50,10 +51,9 @@ impl YieldPolygon {
         }
         if rays.iter().any(|a| rays.iter().any(|b| dot(*a, *b) < -1.0 + 1e-12)) {
             // A half plane: the rays along its edge do not show that it is open inwards.
-            for f in facets {
-                let l = length(f.normal);
+            for (f, l) in all() {
                 let inwards = [-f.normal[0] / l, -f.normal[1] / l];
-                if facets.iter().all(|g| dot(g.normal, inwards) <= 1e-12 * length(g.normal)) {
+                if all().all(|(g, length)| dot(g.normal, inwards) <= 1e-12 * length) {
                     rays.push(inwards);
                 }
             }
