@@ -1,6 +1,6 @@
 //! The engine of `limit_chain`, to which `limit_conic` turns where its programs do not settle.
 
-use super::layout::{Forms, Trees, trees};
+use super::layout::{Forms, Redundants, Trees, trees};
 use super::optimum::centre;
 use super::simplex::{Outcome, Program, Solved};
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
@@ -12,6 +12,7 @@ use voussoir_core::model::Wrenches;
 pub struct ChainEngine<'a> {
     problem: &'a LimitProblem,
     trees: Trees,
+    redundants: Redundants,
     pivots: u64,
     newton_iterations: u64,
     programs: u64,
@@ -20,14 +21,16 @@ pub struct ChainEngine<'a> {
 impl<'a> ChainEngine<'a> {
     /// Of a problem, if few joints close its bodies to rings.
     pub fn new(problem: &'a LimitProblem) -> Option<Self> {
-        Some(ChainEngine { problem, trees: trees(problem)?, pivots: 0, newton_iterations: 0, programs: 0 })
+        let trees = trees(problem)?;
+        let redundants = Redundants::new(problem, &trees);
+        Some(ChainEngine { problem, trees, redundants, pivots: 0, newton_iterations: 0, programs: 0 })
     }
 
     /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given; or `any` field.
     fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>, any: bool) -> Equilibrium {
         let force = force_unit(self.problem, fixed);
         let columns: Vec<_> = varying.iter().map(|v| (*v, force / force_unit(self.problem, v))).collect();
-        let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &columns, force);
+        let forms = self.forms((fixed, &columns), force);
         let program = Program::new(self.problem, &forms, force);
         let program = if any { program.with_any_margin() } else { program.with_margin() };
         match self.run(&program) {
@@ -41,6 +44,11 @@ impl<'a> ChainEngine<'a> {
             Outcome::Unbounded(_) => Equilibrium::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Equilibrium::Failed(why),
         }
+    }
+
+    /// Joint forces by the redundants and by loads, the first of which stand still.
+    fn forms(&self, loads: (&Wrenches, &[(&Wrenches, f64)]), force: f64) -> Forms {
+        Forms::new(self.problem, &self.trees, &self.redundants, loads, force)
     }
 
     fn run(&mut self, program: &Program) -> Outcome {
@@ -68,7 +76,7 @@ impl Engine for ChainEngine<'_> {
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
         let force = force_scale(self.problem, fixed, varying);
         let factor_unit = force / force_unit(self.problem, varying);
-        let forms = Forms::new(self.problem, &self.trees, (fixed, 1.0), &[(varying, factor_unit)], force);
+        let forms = self.forms((fixed, &[(varying, factor_unit)]), force);
         let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
         match self.run(&program) {
             Outcome::Optimal(Solved { columns, capped: false, .. }) if columns.is_empty() => {

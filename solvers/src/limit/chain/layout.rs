@@ -98,6 +98,46 @@ impl Touching {
     }
 }
 
+/// (N_0, N_1, T) of every joint by the redundants, three a closing joint: the same whatever the loads are.
+#[derive(Debug, Clone)]
+pub struct Redundants {
+    /// Their number.
+    count: usize,
+    /// For each joint three rows of so many numbers.
+    values: Vec<f64>,
+}
+
+impl Redundants {
+    /// Of a problem whose bodies are trees.
+    pub fn new(problem: &LimitProblem, trees: &Trees) -> Self {
+        let count = 3 * trees.cuts.len();
+        let mut values = vec![0.0; 3 * count * problem.joints.len()];
+        let mut set = |joint: usize, column: usize, forces: [f64; 3]| {
+            (0..3).for_each(|i| values[(3 * joint + i) * count + column] = forces[i]);
+        };
+        let mut loads = vec![Vector3::zeros(); problem.groups];
+        for (number, &cut) in trees.cuts.iter().enumerate() {
+            let joint = &problem.joints[cut];
+            for k in 0..3 {
+                let mut wrench = Vector3::zeros();
+                wrench[k] = if k == 2 { problem.length } else { 1.0 };
+                loads.fill(Vector3::zeros());
+                for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
+                    group.into_iter().for_each(|group| loads[group] += wrench * sign);
+                }
+                set(cut, 3 * number + k, resolved(problem, cut, joint.plus, wrench));
+                transmit(trees, &mut loads, |link, wrench| {
+                    // Branches that the cut does not close stay without forces.
+                    if wrench != Vector3::zeros() {
+                        set(link.joint, 3 * number + k, resolved(problem, link.joint, Some(link.ahead), wrench));
+                    }
+                });
+            }
+        }
+        Redundants { count, values }
+    }
+}
+
 /// (N_0, N_1, T) of every joint as affine forms of the variables, in units of the force scale.
 #[derive(Debug, Clone)]
 pub struct Forms {
@@ -108,46 +148,29 @@ pub struct Forms {
 }
 
 impl Forms {
-    /// Variables: three redundants per closing joint, then one factor per entry of `columns`
-    /// (loads with the factor that one unit of the variable stands for).
+    /// Variables: the redundants, then one factor per entry of `columns` (loads with the factor that one unit of the
+    /// variable stands for).
     pub fn new(
         problem: &LimitProblem,
         trees: &Trees,
-        constant: (&Wrenches, f64),
-        columns: &[(&Wrenches, f64)],
+        redundants: &Redundants,
+        (constant, columns): (&Wrenches, &[(&Wrenches, f64)]),
         force: f64,
     ) -> Self {
-        let redundants = 3 * trees.cuts.len();
-        let variables = redundants + columns.len();
-        let stride = 3 * (variables + 1);
-        let mut values = vec![0.0; stride * problem.joints.len()];
-        let mut set = |joint: usize, column: usize, forces: [f64; 3]| {
-            (0..3).for_each(|i| values[joint * stride + i * (variables + 1) + column] = forces[i]);
-        };
-        for (place, &(wrenches, factor)) in columns.iter().chain([&constant]).enumerate() {
-            let loads = wrenches.iter().map(|wrench| Vector3::from(*wrench)).collect();
-            for (link, wrench) in trees.links.iter().zip(transmitted(trees, loads)) {
-                let forces = resolved(problem, link.joint, Some(link.ahead), wrench * (factor / force));
-                set(link.joint, redundants + place, forces);
-            }
+        let variables = redundants.count + columns.len();
+        let mut values = vec![0.0; 3 * (variables + 1) * problem.joints.len()];
+        if redundants.count > 0 {
+            let rows = values.chunks_exact_mut(variables + 1).zip(redundants.values.chunks_exact(redundants.count));
+            rows.for_each(|(row, own)| row[..redundants.count].copy_from_slice(own));
         }
-        for (number, &cut) in trees.cuts.iter().enumerate() {
-            let joint = &problem.joints[cut];
-            for k in 0..3 {
-                let mut wrench = Vector3::zeros();
-                wrench[k] = if k == 2 { problem.length } else { 1.0 };
-                let mut loads = vec![Vector3::zeros(); problem.groups];
-                for (group, sign) in [(joint.plus, 1.0), (joint.minus, -1.0)] {
-                    group.into_iter().for_each(|group| loads[group] += wrench * sign);
-                }
-                set(cut, 3 * number + k, resolved(problem, cut, joint.plus, wrench));
-                for (link, wrench) in trees.links.iter().zip(transmitted(trees, loads)) {
-                    // Branches that the cut does not close stay without forces.
-                    if wrench != Vector3::zeros() {
-                        set(link.joint, 3 * number + k, resolved(problem, link.joint, Some(link.ahead), wrench));
-                    }
-                }
-            }
+        let mut loads = vec![Vector3::zeros(); problem.groups];
+        for (place, &(wrenches, factor)) in columns.iter().chain([&(constant, 1.0)]).enumerate() {
+            loads.iter_mut().zip(wrenches).for_each(|(load, wrench)| *load = Vector3::from(*wrench));
+            transmit(trees, &mut loads, |link, wrench| {
+                let forces = resolved(problem, link.joint, Some(link.ahead), wrench * (factor / force));
+                let rows = &mut values[3 * (variables + 1) * link.joint..];
+                (0..3).for_each(|i| rows[i * (variables + 1) + redundants.count + place] = forces[i]);
+            });
         }
         Forms { variables, values }
     }
@@ -176,15 +199,14 @@ pub fn add_weighted(variables: usize, forms: &[f64], weights: &[f64; 3], mut bou
     bound
 }
 
-/// The wrench that each link transmits onto what lies ahead: it balances all loads there.
-fn transmitted(trees: &Trees, mut loads: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
-    let mut wrenches = vec![Vector3::zeros(); trees.links.len()];
-    for (link, wrench) in trees.links.iter().zip(&mut wrenches).rev() {
+/// Calls with every link, those away from the roots first, and the wrench that it transmits onto what lies ahead: it
+/// balances all loads there, which add up towards the roots.
+fn transmit(trees: &Trees, loads: &mut [Vector3<f64>], mut each: impl FnMut(&Link, Vector3<f64>)) {
+    for link in trees.links.iter().rev() {
         let sum = loads[link.ahead];
         link.behind.into_iter().for_each(|behind| loads[behind] += sum);
-        *wrench = -sum;
+        each(link, -sum);
     }
-    wrenches
 }
 
 /// (N_0, N_1, T) of a joint that transmits `wrench` (about the pole) onto what lies ahead.
