@@ -41,10 +41,13 @@ pub(super) struct SecondOrderWork {
     pub turned: usize,
     /// Whether K is symmetric.
     pub symmetric: bool,
-    /// The direction of the least second-order work, of unit size in the unknowns' units, and its eigenvalue.
-    pub critical: (Vec<f64>, f64),
+    /// The least second-order work of a motion of unit size in the unknowns' units.
+    pub curvature: f64,
     /// Magnitude of the eigenvalue nearest to nothing.
     pub nearest: f64,
+    /// ½(S + Sᵀ), over the columns of a basis where there is one.
+    half: DMatrix<f64>,
+    basis: Option<DMatrix<f64>>,
 }
 
 /// Second-order work of a state with `motions` unknown motions, from what wrenches on them, column by column, move.
@@ -60,10 +63,8 @@ pub(super) fn work_by_responses(
     for _ in 0..ITERATIONS {
         basis = respond(&basis)?.qr().q();
     }
-    let mut found = SecondOrderWork::of(&(basis.transpose() * respond(&basis)?), SOFTEST)?;
-    let mode = &basis * DVector::from_vec(found.critical.0);
-    found.critical.0 = mode.as_slice().to_vec();
-    Some(found)
+    let found = SecondOrderWork::of(&(basis.transpose() * respond(&basis)?), SOFTEST)?;
+    Some(SecondOrderWork { basis: Some(basis), ..found })
 }
 
 /// Whether what is decided with the weakly active points free and with them held decides of the state: positive with
@@ -87,9 +88,9 @@ impl SecondOrderWork {
         let transposed = flexibility.transpose();
         let symmetric = (flexibility - &transposed).amax() <= ASYMMETRY * size;
         let half = (flexibility + &transposed) * 0.5;
-        let eigen = half.try_symmetric_eigen(1e-15, 0)?;
-        let nothing = softest.max(ROUNDING * eigen.eigenvalues.amax());
-        let negative = eigen.eigenvalues.iter().filter(|s| **s < -nothing).count();
+        let eigenvalues = half.symmetric_eigenvalues();
+        let nothing = softest.max(ROUNDING * eigenvalues.amax());
+        let negative = eigenvalues.iter().filter(|s| **s < -nothing).count();
         // Real parts of eigenvalues are no less than the least one of the symmetric part (Bendixson 1902).
         let turned = if symmetric || negative == 0 {
             negative
@@ -99,13 +100,20 @@ impl SecondOrderWork {
             values.iter().filter(|s| s.re < -nothing && s.im.abs() <= 1e-9 * s.re.abs()).count()
         };
         // 1/s is least where s is negative and nearest to nothing, else where it is greatest.
-        let curvature = |i: &usize| 1.0 / eigen.eigenvalues[*i];
-        let relevant = (0..eigen.eigenvalues.len()).filter(|i| eigen.eigenvalues[*i].abs() > nothing);
-        let least = relevant.min_by(|a, b| curvature(a).total_cmp(&curvature(b)))?;
-        let mode: DVector<f64> = eigen.eigenvectors.column(least).into();
-        let critical = (mode.as_slice().to_vec(), curvature(&least));
-        let nearest = 1.0 / eigen.eigenvalues.amax();
-        Some(SecondOrderWork { negative, turned, symmetric, critical, nearest })
+        let relevant = eigenvalues.iter().filter(|s| s.abs() > nothing);
+        let curvature = relevant.map(|s| 1.0 / s).min_by(f64::total_cmp)?;
+        let nearest = 1.0 / eigenvalues.amax();
+        Some(SecondOrderWork { negative, turned, symmetric, curvature, nearest, half, basis: None })
+    }
+
+    /// The motion of the least second-order work, of unit size in the unknowns' units.
+    pub fn critical_mode(&self) -> Vec<f64> {
+        let eigen = self.half.clone().symmetric_eigen();
+        let off = |i: &usize| (1.0 / eigen.eigenvalues[*i] - self.curvature).abs();
+        let least = (0..eigen.eigenvalues.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        let mode = eigen.eigenvectors.column(least);
+        let mode: DVector<f64> = self.basis.as_ref().map_or_else(|| mode.into(), |basis| basis * mode);
+        mode.as_slice().to_vec()
     }
 
     /// Whether second-order work is positive with the load point held, whose displacement grows by `yields` a unit of
@@ -128,7 +136,7 @@ mod tests {
             &turn * DMatrix::from_diagonal(&DVector::from_vec(vec![-1.0, 0.5, -1e-18])) * turn.transpose();
         let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
         assert_eq!((found.negative, found.turned, found.symmetric), (1, 1, true));
-        assert!((found.critical.1 + 1.0).abs() < 1e-12 && (found.critical.0[0].abs() - c).abs() < 1e-12);
+        assert!((found.curvature + 1.0).abs() < 1e-12 && (found.critical_mode()[0].abs() - c).abs() < 1e-12);
         // Held at a point whose load softens it, the structure is stable; at one whose load does not, unstable.
         assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
     }

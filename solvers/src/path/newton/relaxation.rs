@@ -53,7 +53,7 @@ pub(super) fn relaxations(system: &mut StepSystem, state: &State, work: &SecondO
 
 /// A descent in one sense of the critical mode.
 fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense: f64) -> Option<Relaxation> {
-    let (mode, curvature) = &work.critical;
+    let mode = &work.critical_mode();
     let (u, control) = (system.units(), Control::Factor(from.factor));
     let size = mode.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut anchor = from.motion.clone();
@@ -61,7 +61,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         let Some(free) = system.scaled.free[body] else { continue };
         (0..3).for_each(|k| q[k] += sense * PUSH * u.motion()[k] * mode[3 * free + k] / size);
     }
-    let mut rate = (2.0 * curvature.abs()).max(LEAST);
+    let mut rate = (2.0 * work.curvature.abs()).max(LEAST);
     let (mut state, mut dissipated, mut failures) = (from.clone(), 0.0, 0);
     let mut last_moved = f64::INFINITY;
     for _ in 0..MOST_STEPS {
@@ -97,7 +97,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         system.damping = None;
         rate = match second_order_work(system, &state) {
             // Each step is unique, and doubles what grows.
-            Some(work) if work.turned > 0 => 2.0 * work.critical.1.abs().max(LEAST),
+            Some(work) if work.turned > 0 => 2.0 * work.curvature.abs().max(LEAST),
             _ if iterations <= 10 => (0.5 * rate).max(LEAST),
             _ => rate,
         };
@@ -110,7 +110,7 @@ fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64
     let (next, _) = iterate(system, state, state.clone(), control, 8, None).ok()?;
     let work = second_order_work(system, &next).filter(|work| work.negative == 0 || work.turned == 0)?;
     // By the damped step's own equation: what is left to go is about κ / k of it.
-    let left = moved * (1.0 + rate / work.critical.1.abs().max(1e-12));
+    let left = moved * (1.0 + rate / work.curvature.abs().max(1e-12));
     (distance(system, state, &next) <= 4.0 * left).then_some(next)
 }
 
