@@ -38,6 +38,8 @@ SIZES = {
 }
 
 
+FINE = arch(100, material=ELASTIC, mesh="mesh = { elements = [4, 6], order = 2 }", solver="event_path")
+
 # What a study may be spared, and the same question with it: name, spared, not spared.
 REDUCTIONS = [
     ("an arch is a chain: `limit_chain`, not `limit_conic`, 1000 voussoirs", arch(1000), arch(1000, solver="limit_conic")),
@@ -47,6 +49,8 @@ REDUCTIONS = [
     ("from event to event instead of in steps, 13 elastic voussoirs", arch(material=ELASTIC, solver="event_path"), arch(material=ELASTIC, solver="newton_path")),
     ("forces and motions are not written where nobody reads them, 10 000 voussoirs", arch(10_000, output=f"{NO_WRITERS}\nfields = false"), arch(10_000)),
     ("no report and no figures where nobody looks at them", arch(), arch(output="")),
+    ("figures of the worst case, not of all, of 200", arch(sweep=sweep(200), output='writers = ["figures"]\nfigures = "worst"'), arch(sweep=sweep(200), output='writers = ["figures"]\nfigures = "all"')),
+    ("voussoirs of one shape are condensed once, 100 of them (their thickness varies by 1e-7 else)", FINE, FINE.replace("thickness = 0.6", "thickness = { crown = 0.6, springing = 0.6000001 }")),
 ]
 
 
