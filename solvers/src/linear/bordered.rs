@@ -90,6 +90,11 @@ impl<E: Factorised> BorderedFactors<E> {
         None
     }
 
+    /// The equations, with a row of their own in the control's place.
+    pub fn equations(&self) -> &E {
+        &self.equations
+    }
+
     /// Whether it serves a control.
     pub fn serves(&self, control: &[f64]) -> bool {
         match (&self.last, few(control)) {

@@ -44,11 +44,19 @@ pub struct BodyRows {
     pub shift: f64,
 }
 
+/// Rows of contact points and of bodies: all equations but the last.
+pub struct ChainRows {
+    /// Gaps over all unknowns.
+    pub gaps: Rc<GapRows>,
+    /// Rows of the bodies.
+    pub bodies: BodyRows,
+    /// Of every contact point.
+    pub points: Vec<PointRows>,
+}
+
 /// The equations.
 struct Equations {
-    gaps: Rc<GapRows>,
-    bodies: BodyRows,
-    points: Vec<PointRows>,
+    above: ChainRows,
     /// The last row.
     last: Vec<(usize, f64)>,
     /// P⁻¹ of points that are condensed out.
@@ -81,15 +89,84 @@ fn own_inverse(rows: &PointRows) -> Option<[[f64; 2]; 2]> {
     strong.then(|| [[at(1, 1), -at(0, 1)], [-at(1, 0), at(0, 0)]].map(|row| row.map(|v| v / determinant)))
 }
 
-impl Equations {
+impl ChainRows {
     fn forces(&self) -> usize {
         2 * self.points.len()
+    }
+
+    /// The two rows of a contact point times all unknowns, with what is added to them if `shifted`.
+    pub fn point(&self, contact: usize, x: &[f64], shifted: bool) -> [f64; 2] {
+        let rows = &self.points[contact];
+        let gap = [0, 1].map(|l| self.gaps.row_dot(2 * contact + l, x));
+        let added = f64::from(u8::from(shifted));
+        [0, 1].map(|k| {
+            let term = |l: usize| {
+                let [force, gap_weight] =
+                    [rows.force[k][l] + added * rows.force_shift[k][l], rows.gap[k][l] + added * rows.gap_shift[k][l]];
+                force * x[2 * contact + l] + gap_weight * gap[l]
+            };
+            term(0) + term(1)
+        })
+    }
+
+    /// What the rows leave of a right-hand side.
+    pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
+        let gap = self.gaps.product(x);
+        let mut left = Vec::with_capacity(right.len());
+        for (c, rows) in self.points.iter().enumerate() {
+            let [force, gap] = [&x[2 * c..2 * c + 2], &gap[2 * c..2 * c + 2]];
+            left.extend([0, 1].map(|k| {
+                let [p, s] = [rows.force[k], rows.gap[k]];
+                right[2 * c + k] - p[0] * force[0] - p[1] * force[1] - s[0] * gap[0] - s[1] * gap[1]
+            }));
+        }
+        let forces = self.forces();
+        left.extend(
+            (0..self.bodies.rows.len())
+                .map(|i| right[forces + i] - self.bodies.diagonal * x[forces + i] - self.bodies.rows.row_dot(i, x)),
+        );
+        left
+    }
+
+    /// The same, and the greatest backward error of a row.
+    pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        let (gap, gap_sizes) = self.gaps.product_and_sizes(x);
+        let mut left = Vec::with_capacity(right.len());
+        let mut worst = 0.0f64;
+        let mut take = |rest: f64, size: f64| {
+            worst = worst.max(row_error(rest, size));
+            left.push(rest);
+        };
+        for (c, rows) in self.points.iter().enumerate() {
+            for k in 0..2 {
+                let (mut rest, mut size) = (right[2 * c + k], right[2 * c + k].abs());
+                for l in 0..2 {
+                    let (own, of_gap) = (rows.force[k][l] * x[2 * c + l], rows.gap[k][l]);
+                    rest -= own + of_gap * gap[2 * c + l];
+                    size += own.abs() + of_gap.abs() * gap_sizes[2 * c + l];
+                }
+                take(rest, size);
+            }
+        }
+        let forces = self.forces();
+        for i in 0..self.bodies.rows.len() {
+            let damped = self.bodies.diagonal * x[forces + i];
+            let (rest, size) = self.bodies.rows.left_of_row(i, right[forces + i] - damped, x);
+            take(rest, size + damped.abs());
+        }
+        (left, worst)
+    }
+}
+
+impl Equations {
+    fn forces(&self) -> usize {
+        self.above.forces()
     }
 
     /// A sum of both rows of a contact point over the unknowns that are no forces.
     fn others(&self, contact: usize, weights: [f64; 2], mut each: impl FnMut(usize, f64)) {
         for (k, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
-            for &(j, v) in self.gaps.others.row(2 * contact + k) {
+            for &(j, v) in self.above.gaps.others.row(2 * contact + k) {
                 let value = weight * v;
                 if value != 0.0 {
                     each(j, value);
@@ -100,14 +177,14 @@ impl Equations {
 
     /// Weights of the gaps of a row of a point, what is added among them.
     fn gap_weights(&self, i: usize) -> [f64; 2] {
-        let (rows, k) = (&self.points[i / 2], i % 2);
+        let (rows, k) = (&self.above.points[i / 2], i % 2);
         [rows.gap[k][0] + rows.gap_shift[k][0], rows.gap[k][1] + rows.gap_shift[k][1]]
     }
 
     /// What the spring that is added to a point which is condensed out gives in a row of a body in which its forces have
     /// these factors: weights of the gaps of that point.
     fn condensed(&self, contact: usize, factors: [f64; 2]) -> Option<[f64; 2]> {
-        let (inverse, rows) = (self.inverse[contact]?, &self.points[contact]);
+        let (inverse, rows) = (self.inverse[contact]?, &self.above.points[contact]);
         let by = [0, 1].map(|i| factors[0] * inverse[0][i] + factors[1] * inverse[1][i]);
         Some([0, 1].map(|k| -(by[0] * rows.gap_shift[0][k] + by[1] * rows.gap_shift[1][k])))
     }
@@ -115,10 +192,10 @@ impl Equations {
     /// Rows of the bodies and the last one over kept unknowns.
     fn reduced_rows(&self) -> CsrMatrix {
         let forces = self.forces();
-        let mut rows = CsrMatrix::with_capacity(self.bodies.rows.entries());
+        let mut rows = CsrMatrix::with_capacity(self.above.bodies.rows.entries());
         let mut sum = vec![0.0; self.kept.len()];
         let mut met = vec![usize::MAX; self.kept.len()];
-        for i in 0..self.bodies.rows.len() {
+        for i in 0..self.above.bodies.rows.len() {
             let row = rows.open_row();
             let begin = row.len();
             let mut add = |j: usize, v: f64| {
@@ -129,14 +206,14 @@ impl Equations {
                 }
                 sum[at] += v;
             };
-            for &(j, v) in self.bodies.rows.row(i) {
+            for &(j, v) in self.above.bodies.rows.row(i) {
                 if self.place[j] != usize::MAX {
                     add(j, v);
                 } else if let Some(weights) = self.condensed(j / 2, if j % 2 == 0 { [v, 0.0] } else { [0.0, v] }) {
                     self.others(j / 2, weights, &mut add);
                 }
             }
-            add(forces + i, self.bodies.diagonal + self.bodies.shift);
+            add(forces + i, self.above.bodies.diagonal + self.above.bodies.shift);
             row[begin..].iter_mut().for_each(|entry| entry.1 = sum[entry.0]);
             rows.end_row();
         }
@@ -159,7 +236,7 @@ impl Equations {
 
     /// Runs of rows of points of one group among rows: where they begin and end.
     fn runs<'r>(&'r self, rows: &'r [usize]) -> impl Iterator<Item = (usize, &'r [usize])> {
-        let pattern = self.gaps.forces.pattern();
+        let pattern = self.above.gaps.forces.pattern();
         let group = |k: &usize| Some(self.kept[*k]).filter(|i| *i < self.forces()).map(|i| pattern.group(i / 2));
         let mut first = 0;
         rows.chunk_by(move |a, b| group(a).is_some() && group(a) == group(b)).map(move |run| {
@@ -181,7 +258,7 @@ impl FrontRows for Equations {
             return;
         }
         // Unknowns of a group have one rank.
-        let pattern = self.gaps.forces.pattern();
+        let pattern = self.above.gaps.forces.pattern();
         pattern
             .beside(pattern.group(i / 2))
             .filter_map(|group| self.forces_of[group].clone().next())
@@ -190,7 +267,7 @@ impl FrontRows for Equations {
     }
 
     fn unknowns(&self, rows: &[usize], each: &mut dyn FnMut(usize)) {
-        let pattern = self.gaps.forces.pattern();
+        let pattern = self.above.gaps.forces.pattern();
         for (_, run) in self.runs(rows) {
             let first = self.kept[run[0]];
             if first >= self.forces() {
@@ -219,11 +296,11 @@ impl FrontRows for Equations {
                 }
                 continue;
             }
-            let group = self.gaps.forces.pattern().group(lead / 2);
-            let start = self.gaps.forces.pattern().contacts(group).start;
+            let group = self.above.gaps.forces.pattern().group(lead / 2);
+            let start = self.above.gaps.forces.pattern().contacts(group).start;
             let combined: Vec<(usize, [f64; 2])> =
                 run.iter().map(|row| (2 * (self.kept[*row] / 2 - start), self.gap_weights(self.kept[*row]))).collect();
-            for (j, column) in self.gaps.forces.columns(group).filter(|(j, _)| self.place[*j] != usize::MAX) {
+            for (j, column) in self.above.gaps.forces.columns(group).filter(|(j, _)| self.place[*j] != usize::MAX) {
                 let target = &mut values[place[self.place[j]] * height + top..][..run.len()];
                 for (target, (row, [a, b])) in target.iter_mut().zip(&combined) {
                     *target += a * column[*row] + b * column[row + 1];
@@ -231,11 +308,11 @@ impl FrontRows for Equations {
             }
             for (k, row) in run.iter().enumerate() {
                 let (i, mut add) = (self.kept[*row], |j: usize, v: f64| values[place[j] * height + top + k] += v);
-                let (c, weights, rows) = (i / 2, self.gap_weights(i), &self.points[i / 2]);
+                let (c, weights, rows) = (i / 2, self.gap_weights(i), &self.above.points[i / 2]);
                 for (l, weight) in weights.into_iter().enumerate().filter(|(l, _)| self.place[2 * c + l] != usize::MAX)
                 {
                     let own = rows.force[i % 2][l] + rows.force_shift[i % 2][l];
-                    add(self.place[2 * c + l], own + weight * self.gaps.forces.diagonal(2 * c + l));
+                    add(self.place[2 * c + l], own + weight * self.above.gaps.forces.diagonal(2 * c + l));
                 }
                 self.others(c, weights, |j, v| add(self.place[j], v));
             }
@@ -246,22 +323,16 @@ impl FrontRows for Equations {
 impl ChainFactors {
     /// Factorises the rows of contact points, of bodies and the `last` one; `chain` has the rank of every unknown but the
     /// last, which is eliminated at the end. `None` where they are singular in their pattern.
-    pub fn new(
-        gaps: Rc<GapRows>,
-        bodies: BodyRows,
-        points: Vec<PointRows>,
-        last: Vec<(usize, f64)>,
-        chain: &[usize],
-    ) -> Option<Self> {
-        let forces = 2 * points.len();
-        let size = forces + bodies.rows.len() + 1;
-        let inverse: Vec<_> = points.iter().map(own_inverse).collect();
+    pub fn new(above: ChainRows, last: Vec<(usize, f64)>, chain: &[usize]) -> Option<Self> {
+        let forces = above.forces();
+        let size = forces + above.bodies.rows.len() + 1;
+        let inverse: Vec<_> = above.points.iter().map(own_inverse).collect();
         let kept: Vec<usize> = (0..size).filter(|i| *i >= forces || inverse[i / 2].is_none()).collect();
         let mut place = vec![usize::MAX; size];
         kept.iter().enumerate().for_each(|(k, i)| place[*i] = k);
         let end = chain.iter().copied().max().unwrap_or(0);
         let rank: Vec<usize> = kept.iter().map(|i| chain.get(*i).copied().unwrap_or(end)).collect();
-        let pattern = gaps.forces.pattern();
+        let pattern = above.gaps.forces.pattern();
         let mut of = 0;
         let forces_of = (0..pattern.groups()).map(|group| {
             let kept = pattern.contacts(group).filter(|c| inverse[*c].is_none()).count();
@@ -270,24 +341,30 @@ impl ChainFactors {
         });
         let forces_of = forces_of.collect();
         let reduced = CsrMatrix::empty(0);
-        let mut equations = Equations { gaps, bodies, points, last, inverse, reduced, forces_of, kept, place };
+        let mut equations = Equations { above, last, inverse, reduced, forces_of, kept, place };
         equations.reduced = equations.reduced_rows();
         let factors = FrontalLu::of(equations.kept.len(), &equations, &rank)?;
         Some(ChainFactors { equations, factors })
     }
 
+    /// The two rows of a contact point as they are factorised times all unknowns.
+    pub fn point(&self, contact: usize, x: &[f64]) -> [f64; 2] {
+        let own = &self.equations;
+        own.above.point(contact, x, own.inverse[contact].is_none())
+    }
+
     /// What forces alone give, taken out of a right-hand side; kept rows of it.
     fn without(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
         let own = &self.equations;
-        let forces = own.forces();
+        let (above, forces) = (&own.above, own.forces());
         let mut gap = vec![0.0; forces];
-        own.gaps.forces.add_product(&x[..forces], &mut gap);
+        above.gaps.forces.add_product(&x[..forces], &mut gap);
         let left = |i: &usize| match *i {
             i if i < forces => {
-                let row = own.points[i / 2].gap[i % 2];
+                let row = above.points[i / 2].gap[i % 2];
                 right[i] - row[0] * gap[i - i % 2] - row[1] * gap[i - i % 2 + 1]
             }
-            i if i + 1 < x.len() => right[i] - own.bodies.rows.row_dot(i - forces, x),
+            i if i + 1 < x.len() => right[i] - above.bodies.rows.row_dot(i - forces, x),
             i => right[i] - self.last_row_dot(x),
         };
         own.kept.iter().map(left).collect()
@@ -324,34 +401,12 @@ impl Factorised for ChainFactors {
 
     fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let own = &self.equations;
-        let (gap, gap_sizes) = own.gaps.product_and_sizes(x);
-        let mut left = Vec::with_capacity(right.len());
-        let mut worst = 0.0f64;
-        let mut take = |rest: f64, size: f64| {
-            worst = worst.max(row_error(rest, size));
-            left.push(rest);
-        };
-        for (c, rows) in own.points.iter().enumerate() {
-            for k in 0..2 {
-                let (mut rest, mut size) = (right[2 * c + k], right[2 * c + k].abs());
-                for l in 0..2 {
-                    let (own, of_gap) = (rows.force[k][l] * x[2 * c + l], rows.gap[k][l]);
-                    rest -= own + of_gap * gap[2 * c + l];
-                    size += own.abs() + of_gap.abs() * gap_sizes[2 * c + l];
-                }
-                take(rest, size);
-            }
-        }
-        let forces = own.forces();
-        for i in 0..own.bodies.rows.len() {
-            let damped = own.bodies.diagonal * x[forces + i];
-            let (rest, size) = own.bodies.rows.left_of_row(i, right[forces + i] - damped, x);
-            take(rest, size + damped.abs());
-        }
+        let (mut left, worst) = own.above.errors(right, x);
         let products = || own.last.iter().map(|&(j, v)| v * x[j]);
         let last = right[right.len() - 1];
-        take(last - products().sum::<f64>(), last.abs() + products().map(f64::abs).sum::<f64>());
-        (left, worst)
+        let (rest, size) = (last - products().sum::<f64>(), last.abs() + products().map(f64::abs).sum::<f64>());
+        left.push(rest);
+        (left, worst.max(row_error(rest, size)))
     }
 
     fn last_row_dot(&self, x: &[f64]) -> f64 {

@@ -1,7 +1,7 @@
 //! What the deformation of bodies adds to gaps and equilibrium (see `kinematics`), with its derivatives.
 
 use super::blocks::YieldingBlock;
-use super::derivatives::{Gradient, Hessian};
+use super::derivatives::{Gradient, Hessian, OfPair};
 use super::geometry::{Geometry, Place, Side};
 use super::loads::Loads;
 use crate::linear::dense::add_product;
@@ -148,7 +148,9 @@ fn forces_by_rotations(
     out: &mut Hessian,
 ) -> Vec<(usize, Vec<f64>)> {
     let problem = geometry.problem;
-    let theta = |b: usize| 2 * problem.contacts.len() + 3 * b + 2;
+    let base = 2 * problem.contacts.len();
+    let theta = |b: usize| base + 3 * b + 2;
+    let mut bends = OfPair::default();
     let rows = v.len();
     let mut columns: Vec<(usize, Vec<f64>)> = vec![(body, vec![0.0; rows])];
     let mut add = |of: usize, slot: usize, value: Vec2| {
@@ -165,9 +167,13 @@ fn forces_by_rotations(
         add(c.plus.body, side.slot, swing);
         add(c.minus.body, side.slot, -swing);
         let bend = -0.25 * side.sign * (turn * r).dot(&at(v, side.slot));
+        bends.begin([3 * c.plus.body, 3 * c.minus.body].map(|own| base + own), &mut out.entries);
         let (plus, minus) = (theta(c.plus.body), theta(c.minus.body));
-        out.entries.extend([(plus, plus, bend), (minus, minus, bend), (plus, minus, -bend), (minus, plus, -bend)]);
+        [(plus, plus, bend), (minus, minus, bend), (plus, minus, -bend), (minus, plus, -bend)]
+            .into_iter()
+            .for_each(|(i, j, value)| bends.add(i, j, value));
     }
+    bends.end(&mut out.entries);
     let back = geometry.turn(-place.motion[body][2]);
     for (factor, loading) in &place.loads.parts {
         for (_, slot, _, load) in loading.forces.iter().filter(|l| l.0 == body) {

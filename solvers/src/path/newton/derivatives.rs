@@ -16,6 +16,41 @@ pub(super) struct Gradient {
     pub stored: f64,
 }
 
+/// Second derivatives by the motions of two bodies, which the contact points of a joint add up.
+#[derive(Debug, Default)]
+pub(super) struct OfPair {
+    /// Where the motions of both begin.
+    at: [usize; 2],
+    values: [[f64; 6]; 6],
+}
+
+impl OfPair {
+    /// Goes on with two bodies, whose motions begin there; what those before have added up to becomes entries.
+    pub fn begin(&mut self, at: [usize; 2], entries: &mut Vec<(usize, usize, f64)>) {
+        if self.at != at {
+            self.end(entries);
+            self.at = at;
+        }
+    }
+
+    /// Adds a derivative by two of the motions.
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        let [i, j] =
+            [i, j].map(|i| if (self.at[0]..self.at[0] + 3).contains(&i) { i - self.at[0] } else { i - self.at[1] + 3 });
+        self.values[i][j] += value;
+    }
+
+    /// What has been added up becomes entries.
+    pub fn end(&mut self, entries: &mut Vec<(usize, usize, f64)>) {
+        let place = |i: usize| self.at[i / 3] + i % 3;
+        for (i, row) in self.values.iter().enumerate() {
+            let of_row = row.iter().enumerate().filter(|(_, value)| **value != 0.0);
+            entries.extend(of_row.map(|(j, value)| (place(i), place(j), *value)));
+        }
+        self.values = [[0.0; 6]; 6];
+    }
+}
+
 /// Second derivatives of Π over (r, q of all bodies), and the derivative of the gradient by the factor that grows.
 #[derive(Debug, Clone)]
 pub(super) struct Hessian {

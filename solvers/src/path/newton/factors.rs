@@ -6,6 +6,8 @@ use crate::linear::bordered::BorderedFactors;
 use crate::linear::chain::ChainFactors;
 use crate::linear::condensed::{Condensed, Elimination};
 use crate::linear::factorised::Factorised;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
 /// Factorised equations of contact modes.
@@ -62,19 +64,35 @@ pub(super) struct Kept {
     /// Rate of viscous wrenches.
     pub damping: f64,
     pub held: Rc<BorderedFactors<ModeEquations>>,
+    /// What unit right-hand sides of the two rows of contact points give, an unknown held in the control's place.
+    pub responses: RefCell<BTreeMap<usize, [Vec<f64>; 2]>>,
 }
 
-/// What the last factorisation leaves to the next.
+/// Factors that are held: of the beginning and the end of a step, and of what lies between.
+const HELD: usize = 4;
+
+/// What factorisations leave to the next.
 #[derive(Default)]
 pub(super) struct LastFactors {
-    /// The last ones, where nothing but modes and laws makes the matrix.
-    pub last: Option<Kept>,
+    /// The last ones, where nothing but modes and laws makes the matrix; the latest first.
+    held: VecDeque<Rc<Kept>>,
     pub elimination: Elimination,
 }
 
 impl LastFactors {
-    /// Another load grows.
+    /// Another load grows, or factors have not served.
     pub fn forget(&mut self) {
-        self.last = None;
+        self.held.clear();
+    }
+
+    /// Holds factors.
+    pub fn hold(&mut self, kept: Kept) {
+        self.held.push_front(Rc::new(kept));
+        self.held.truncate(HELD);
+    }
+
+    /// All that are held.
+    pub fn held(&self) -> impl Iterator<Item = &Rc<Kept>> {
+        self.held.iter()
     }
 }

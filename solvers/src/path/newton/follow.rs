@@ -11,7 +11,7 @@ use super::passed_over::passes_over;
 use super::peak::{Bracketed, locate_peak, note_peak, note_proven_peak, note_trough, peak_at};
 use super::plastic_plateau::note_plateau;
 use super::response::branch_changes;
-use super::slip_history::missed_slip;
+use super::slip_history::{missed_slip, plainly_missed_slip};
 use super::softening::{dissipating_sense, softening_peak};
 use super::stable_branch::{Departure, leave_unstable};
 use super::state::Tangent;
@@ -179,6 +179,9 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
         return StepEnd::CutBack(following.length * accuracy.clamp(0.25, 0.7));
     }
     following.refinements = 0;
+    if let Some(shorter) = plainly_missed_slip(tracer, following, plan, &trial) {
+        return StepEnd::CutBack(shorter);
+    }
     let (direction, rate, next) = (following.direction, &following.branch.tangent, &trial.next);
     let Some(tangent) = tangent_at(&mut tracer.system, &tracer.state, next, &trial.control) else {
         return cut_back(tracer, following, "the state has no rate", None);

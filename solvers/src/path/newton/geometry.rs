@@ -47,6 +47,67 @@ impl Frame {
     }
 }
 
+/// The rotation of a body.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    angle: f64,
+    rotation: Matrix2<f64>,
+    /// Sines of the angle and of its half.
+    sine: f64,
+    half: f64,
+}
+
+impl Turn {
+    fn by(angle: f64) -> Self {
+        let (sine, cosine) = angle.sin_cos();
+        Turn { angle, rotation: Matrix2::new(cosine, -sine, sine, cosine), sine, half: (0.5 * angle).sin() }
+    }
+}
+
+/// Frames of contact points one after the other: of rotations, which those of one joint have in common, sines and cosines
+/// are taken once.
+pub(super) struct Frames<'m> {
+    geometry: &'m Geometry<'m>,
+    motion: &'m [[f64; 3]],
+    turns: Vec<Turn>,
+    /// The last angles of axes, and of axes in the middle, with their rotations.
+    last: [(f64, Matrix2<f64>); 2],
+}
+
+impl Frames<'_> {
+    /// Rotation by an angle which those before may have had, none where displacements are small.
+    fn turn(&mut self, which: usize, angle: f64) -> Matrix2<f64> {
+        if self.last[which].0 != angle {
+            self.last[which] = (angle, self.geometry.turn(angle));
+        }
+        self.last[which].1
+    }
+
+    /// Displacement of a point of a body by its rigid motion.
+    fn rigid(&self, body: usize, point: Vec2) -> Vec2 {
+        self.geometry.displaced(body, point, self.motion[body], &self.turns[body])
+    }
+
+    /// Of a contact point.
+    pub fn of(&mut self, contact: usize) -> Frame {
+        let geometry = self.geometry;
+        let c = &geometry.problem.contacts[contact];
+        let (minus, plus) = (c.minus.body, c.plus.body);
+        let (low, high) = (self.turns[minus].angle, self.turns[plus].angle);
+        let arm = |body: usize| self.turns[body].rotation * (c.position - geometry.problem.bodies[body].pole);
+        let arms = [arm(plus), arm(minus)];
+        let jump = self.rigid(plus, c.position) - self.rigid(minus, c.position);
+        let turn = high - low;
+        let mut share = [c.sliding.share, 0.0, 0.0];
+        if geometry.finite && c.sliding.passing != 0.0 {
+            let middle = self.turn(1, low + 0.5 * turn) * c.tangent;
+            share = c.sliding.share_at(middle.dot(&jump));
+        }
+        let axes = self.turn(0, low + share[0] * turn);
+        Frame { arms, jump, axes: [axes * c.normal, axes * c.tangent], share, turn }
+    }
+}
+
 /// Geometry of a problem as the path solver sees it.
 pub(super) struct Geometry<'a> {
     pub problem: &'a PathProblem,
@@ -93,40 +154,39 @@ impl<'a> Geometry<'a> {
         Geometry { problem, finite, sides, pattern }
     }
 
-    /// Rotation by an angle, none where displacements are small.
-    pub fn turn(&self, angle: f64) -> Matrix2<f64> {
-        if self.finite { rotation(angle) } else { Matrix2::identity() }
+    fn turned(&self, angle: f64) -> Turn {
+        if self.finite { Turn::by(angle) } else { Turn { angle, ..Turn::by(0.0) } }
     }
 
-    /// Displacement of a point of a body by its rigid motion.
-    pub fn rigid(&self, body: usize, point: Vec2, motion: &[[f64; 3]]) -> Vec2 {
-        let [x, y, theta] = motion[body];
+    fn displaced(&self, body: usize, point: Vec2, [x, y, _]: [f64; 3], turn: &Turn) -> Vec2 {
         let arm = point - self.problem.bodies[body].pole;
         // R a − a without the difference of what is as large as the arm: gaps round by the motions, not by the scene.
         let swing = if self.finite {
-            let half = (0.5 * theta).sin();
-            turned(arm) * theta.sin() - arm * (2.0 * half * half)
+            turned(arm) * turn.sine - arm * (2.0 * turn.half * turn.half)
         } else {
-            turned(arm) * theta
+            turned(arm) * turn.angle
         };
         Vec2::new(x, y) + swing
     }
 
-    /// Of a contact point.
-    pub fn frame(&self, contact: usize, motion: &[[f64; 3]]) -> Frame {
-        let c = &self.problem.contacts[contact];
-        let (minus, plus) = (c.minus.body, c.plus.body);
-        let (low, high) = (motion[minus][2], motion[plus][2]);
-        let arm = |body: usize, theta: f64| self.turn(theta) * (c.position - self.problem.bodies[body].pole);
-        let jump = self.rigid(plus, c.position, motion) - self.rigid(minus, c.position, motion);
-        let turn = high - low;
-        let mut share = [c.sliding.share, 0.0, 0.0];
-        if self.finite && c.sliding.passing != 0.0 {
-            let middle = self.turn(low + 0.5 * turn) * c.tangent;
-            share = c.sliding.share_at(middle.dot(&jump));
+    /// Displacement of a point of a body by its rigid motion.
+    pub fn rigid(&self, body: usize, point: Vec2, motion: &[[f64; 3]]) -> Vec2 {
+        self.displaced(body, point, motion[body], &self.turned(motion[body][2]))
+    }
+
+    /// Frames of contact points where bodies have these motions.
+    pub fn frames<'m>(&'m self, motion: &'m [[f64; 3]]) -> Frames<'m> {
+        Frames {
+            geometry: self,
+            motion,
+            turns: motion.iter().map(|q| self.turned(q[2])).collect(),
+            last: [(0.0, Matrix2::identity()); 2],
         }
-        let axes = self.turn(low + share[0] * turn);
-        Frame { arms: [arm(plus, high), arm(minus, low)], jump, axes: [axes * c.normal, axes * c.tangent], share, turn }
+    }
+
+    /// Rotation by an angle, none where displacements are small.
+    pub fn turn(&self, angle: f64) -> Matrix2<f64> {
+        if self.finite { rotation(angle) } else { Matrix2::identity() }
     }
 
     /// [n t] r in the undeformed axes, and R(−s φ/2).

@@ -175,7 +175,7 @@ fn placed(system: &mut StepSystem, start: &State, guess: &State, shift: f64, see
     let points = guess.gap.len();
     let mut state = guess.clone();
     settle_in(system, &mut state);
-    let gap = system.gradient(&state).gap;
+    let gap = system.gradient(&state).gap.clone();
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let mean = system.units().displacement / system.units().force;
     let typical = largest.max(1e-3 * system.units().force) / (points as f64).sqrt();
@@ -194,7 +194,7 @@ fn placed(system: &mut StepSystem, start: &State, guess: &State, shift: f64, see
         step_gap[c] = [0, 1].map(|k| (r[k] - z[k]) / rho[k]);
         cells[c] = Some(cell);
     }
-    state.gap = system.gradient(&state).gap;
+    state.gap = system.gradient(&state).gap.clone();
     let offset = (0..points).map(|c| [0, 1].map(|k| state.gap[c][k] - start.slip[c][k] - step_gap[c][k])).collect();
     Place { state, step_gap, cells, offset }
 }
@@ -213,7 +213,7 @@ fn followed_from(
     let gradient = system.gradient(&place.state);
     let residual = residual_of(system, start, &place.state, &gradient);
     let (left, constraint) = control_value(system, start, &place.state, control);
-    let equations = system.equations(&place.state, &gradient);
+    let equations = system.equations(&place.state);
     let row = control_row(system, start, &place.state, control, &constraint, &equations);
     let mut right: Vec<f64> = residual.iter().map(|x| -x).collect();
     right[row.len() - 1] = -left;

@@ -3,9 +3,11 @@
 use super::control::Control;
 use super::control_row::{control_row, control_value};
 use super::derivatives::Gradient;
+use super::equations::Equations;
 use super::inelastic::{block_error, update_blocks};
 use super::line_search::{advanced, of_tractions, searched};
-use super::linearised::{residual_of, solve_linear};
+use super::linearised::residual_of;
+use super::nearby::solve_roughly;
 use super::response::{traction_error, traction_row, update_tractions};
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
@@ -13,6 +15,7 @@ use super::tangent::{ALLOWED, wanted_modes};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::optimise::line_search::LineSearch;
+use std::rc::Rc;
 
 /// Contact points that want to change above which, twice running where eight times fewer did before, an
 /// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
@@ -30,6 +33,11 @@ const UNSOLVED: u32 = 10;
 const LARGEST_ROTATION: f64 = 0.1;
 /// Relative residual of a step that has converged: some hundred times rounding.
 const SETTLED: f64 = 1e-13;
+/// Rotation of a step up to which the equations of its beginning serve, and the share of a residual that they may leave.
+const TURNED: f64 = 1e-3;
+const FALLS: f64 = 0.1;
+/// Share of the residual of a step that has converged that is asked for with them: those of a state itself leave that.
+const FINE: f64 = 1e-4;
 /// Relative residual that is taken where a whole iteration does not lower it.
 const STAYS: f64 = 1e-9;
 /// Greatest residual of equilibrium relative to the forces with finite displacements: a tenth of what certificates allow.
@@ -58,6 +66,8 @@ pub(super) fn iterate(
     let rounding = rounding(system);
     let mut changes = ModeChanges::new(patience);
     let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
+    let may_lag = system.finite() && system.solves_nearby() && search.is_none();
+    let mut linearised = LinearisedAt { place: start.clone(), may_lag, lags: false };
     // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
     let most = match (system.laws.responses.is_empty(), system.finite() && search.is_none()) {
         (false, _) => 25,
@@ -78,24 +88,17 @@ pub(super) fn iterate(
         // Rounding is what a whole step does not lower.
         let stays = whole && norm > 0.3 * last_norm;
         let settled = norm <= SETTLED + rounding || (norm <= STAYS + 30.0 * rounding && stays);
-        // Rounding of positions excuses gaps, not equilibrium.
-        let balanced = !system.finite() || (inner <= INNER && unbalanced_share(system, &residual, &state) <= BALANCED);
-        let held = !system.finite() || {
-            let (gap, force) = gap_error(system, &residual, &state);
-            gap <= STAYS + rounding / largest_unknown(system, &state)
-                && (stays || force <= STAYS)
-                && is_admissible(system, &state)
-        };
-        let converged = settled && balanced && held && traction_error(system, &state) <= LAW_HOLDS;
+        let fine = !linearised.lags || norm <= FINE * (SETTLED + rounding);
+        let converged = settled && fine && holds_at(system, &residual, &state, (inner, rounding, stays));
         if iteration > 0 && !changes.changed && converged {
             return Ok((state, iteration));
         }
+        let equations = linearised.equations(system, &state, !changes.changed && norm > FALLS * last_norm);
         last_norm = norm;
-        let equations = system.equations(&state, &gradient);
         let row = control_row(system, start, &state, control, &constraint, &equations);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
-        let solution = solve_linear(system, &state, &equations, &row, &right);
+        let solution = solve_roughly(system, &state, &equations, &row, &right);
         // Modes without a solution may be on the way to ones that have one: with small
         // displacements the shifted equations, a soft bedding, show which points close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
@@ -107,7 +110,7 @@ pub(super) fn iterate(
             Some(search) => searched(system, start, (&state, &gradient), control, (&step[..], share), search)?,
             None => {
                 let (state, gradient) = advanced(system, start, &state, &step, share)?;
-                (state, gradient, true)
+                (state, gradient, !linearised.lags)
             }
         };
         let (wanted, holds) = wanted_modes(system, start, &state);
@@ -120,13 +123,46 @@ pub(super) fn iterate(
     Err(changes.failure("the modes of contact points keep changing"))
 }
 
+/// Where the equations of an iteration are linearised: those of a place serve near it, as long as they take residuals down.
+struct LinearisedAt {
+    place: State,
+    may_lag: bool,
+    /// Whether they are not those of the state itself.
+    lags: bool,
+}
+
+impl LinearisedAt {
+    /// Equations for a state; `slow` where those of the last iteration have not done enough.
+    fn equations(&mut self, system: &mut StepSystem, state: &State, slow: bool) -> Rc<Equations> {
+        let slow = slow && self.lags;
+        self.lags = self.may_lag && !slow && turned_between(&self.place, state) <= TURNED;
+        if !self.lags {
+            self.place.clone_from(state);
+        }
+        system.equations(&self.place)
+    }
+}
+
+/// Whether a state whose residual has settled holds: equilibrium, gaps, strengths and laws of tractions.
+fn holds_at(system: &StepSystem, residual: &[f64], state: &State, (inner, rounding, stays): (f64, f64, bool)) -> bool {
+    // Rounding of positions excuses gaps, not equilibrium.
+    let balanced = !system.finite() || (inner <= INNER && unbalanced_share(system, residual, state) <= BALANCED);
+    let held = !system.finite() || {
+        let (gap, force) = gap_error(system, residual, state);
+        gap <= STAYS + rounding / largest_unknown(system, state)
+            && (stays || force <= STAYS)
+            && is_admissible(system, state)
+    };
+    balanced && held && traction_error(system, state) <= LAW_HOLDS
+}
+
 /// The guess as a state of the step, with what the loads, blocks and laws say there.
 fn first_state(
     system: &mut StepSystem,
     start: &State,
     guess: State,
     control: &Control,
-) -> Result<(State, Gradient), StepFailure> {
+) -> Result<(State, Rc<Gradient>), StepFailure> {
     let mut state = guess;
     state.factor = if let Control::Factor(target) = control { *target } else { state.factor };
     system.settle(&mut state.motion, state.factor);
@@ -145,6 +181,12 @@ fn rounding(system: &StepSystem) -> f64 {
         (false, true) => 0.0,
         (false, false) => 400.0 * f64::EPSILON,
     }
+}
+
+/// Greatest rotation of a body from one state to another.
+fn turned_between(start: &State, state: &State) -> f64 {
+    let turns = state.motion.iter().zip(&start.motion).map(|(q, before)| (q[2] - before[2]).abs());
+    turns.fold(0.0, f64::max)
 }
 
 /// Share of an iteration with finite displacements whose rotations stay where the linearisation means something.

@@ -19,7 +19,7 @@
 //! Computational Contact Mechanics; Crisfield 1997, Non-linear Finite Element Analysis 2, ch. 17).
 
 use super::deformation::{add_elastic_gradient, add_elastic_hessian};
-use super::derivatives::{Gradient, Hessian};
+use super::derivatives::{Gradient, Hessian, OfPair};
 use super::geometry::{Frame, Geometry, Place};
 use voussoir_core::model::geometry::{Vec2, turned};
 
@@ -33,8 +33,9 @@ pub(super) fn gradient(geometry: &Geometry, place: &Place) -> Gradient {
         deformation: vec![Vec::new(); problem.bodies.len()],
         stored: 0.0,
     };
+    let mut frames = geometry.frames(motion);
     for (index, c) in problem.contacts.iter().enumerate() {
-        let frame = geometry.frame(index, motion);
+        let frame = frames.of(index);
         let (r, e) = (force[index], frame.axes);
         let mut gap = [c.gap, 0.0];
         for i in 0..2 {
@@ -86,9 +87,9 @@ fn passing_force(frame: &Frame, push: Vec2) -> f64 {
 }
 
 /// An entry and its mirror image.
-fn both(entries: &mut Vec<(usize, usize, f64)>, i: usize, j: usize, value: f64) {
-    entries.push((i, j, value));
-    entries.push((j, i, value));
+fn both(add: &mut impl FnMut(usize, usize, f64), i: usize, j: usize, value: f64) {
+    add(i, j, value);
+    add(j, i, value);
 }
 
 /// Derivatives of e·(x⁺ − x⁻) by the motions of plus and minus, whose columns begin `at`; e turns with a share β.
@@ -104,20 +105,20 @@ fn by_motion(frame: &Frame, at: [usize; 2], e: Vec2, share: f64, finite: bool) -
 }
 
 /// Adds second derivatives of P·(x⁺ − x⁻) by the motions, P turning with a share β.
-fn add_turning(entries: &mut Vec<(usize, usize, f64)>, frame: &Frame, at: [usize; 2], push: Vec2, share: f64) {
+fn add_turning(add: &mut impl FnMut(usize, usize, f64), frame: &Frame, at: [usize; 2], push: Vec2, share: f64) {
     let (across, jump) = (turned(push), &frame.jump);
     let [high, low] = [share, 1.0 - share];
     let sides = [(at[0], 1.0, frame.arms[0], high), (at[1], -1.0, frame.arms[1], low)];
     for (at, sign, arm, share) in sides {
         for (theta, _, _, share) in sides {
-            both(entries, at, theta + 2, sign * share * across.x);
-            both(entries, at + 1, theta + 2, sign * share * across.y);
+            both(add, at, theta + 2, sign * share * across.x);
+            both(add, at + 1, theta + 2, sign * share * across.y);
         }
         let own = sign * (2.0 * share - 1.0) * push.dot(&arm) - share * share * push.dot(jump);
-        entries.push((at + 2, at + 2, own));
+        add(at + 2, at + 2, own);
     }
     let mixed = push.dot(&(frame.arms[0] * low - frame.arms[1] * high)) - high * low * push.dot(jump);
-    both(entries, at[0] + 2, at[1] + 2, mixed);
+    both(add, at[0] + 2, at[1] + 2, mixed);
 }
 
 /// Adds what the second derivatives of r·g have beside those at a fixed β, where β changes with the slip s. With a and s
@@ -128,7 +129,7 @@ fn add_turning(entries: &mut Vec<(usize, usize, f64)>, frame: &Frame, at: [usize
 /// ∂g/∂s    (e_t, −e_n)·(x⁺ − x⁻) φ_s          W_s    M φ_s
 /// W_as     −ρ_t φ_s         W_ss    2 ρ_n φ_s − W φ_s² + M φ_ss         W_sD    M φ_sD − W φ_s φ_D
 /// ```
-fn add_passing(entries: &mut Vec<(usize, usize, f64)>, frame: &Frame, (row, at): (usize, [usize; 2]), push: Vec2) {
+fn add_passing(add: &mut impl FnMut(usize, usize, f64), frame: &Frame, (row, at): (usize, [usize; 2]), push: Vec2) {
     let [beta, first, second] = frame.share;
     let [n, t] = frame.mean();
     let (work, moment) = (push.dot(&frame.jump), turned(push).dot(&frame.jump));
@@ -138,17 +139,17 @@ fn add_passing(entries: &mut Vec<(usize, usize, f64)>, frame: &Frame, (row, at):
     let [e_n, e_t] = frame.axes.map(|e| e.dot(&frame.jump));
     for (i, turned) in [e_t, -e_n].into_iter().enumerate() {
         for (column, ds) in of_s {
-            both(entries, row + i, column, turned * by_slip * ds);
+            both(add, row + i, column, turned * by_slip * ds);
         }
     }
-    add_turning(entries, frame, at, t * (moment * by_slip), 0.5);
+    add_turning(add, frame, at, t * (moment * by_slip), 0.5);
     let in_a = -push.dot(&t) * by_slip;
     let in_s = 2.0 * push.dot(&n) * by_slip - work * by_slip * by_slip + moment * second * frame.turn;
     let in_turn = moment * first - work * by_slip * by_turn;
     for k in 0..6 {
         let along = in_a * of_a[k].1 + 0.5 * in_s * of_s[k].1 + in_turn * rotates[k];
         for (column, ds) in of_s {
-            both(entries, of_a[k].0, column, along * ds);
+            both(add, of_a[k].0, column, along * ds);
         }
     }
 }
@@ -161,24 +162,32 @@ pub(super) fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -
     let size = base + 3 * problem.bodies.len();
     let by_rotations = 12 * geometry.sides.iter().map(Vec::len).sum::<usize>();
     let mut out = Hessian::zeros(geometry.pattern.clone(), size, 40 * problem.contacts.len() + by_rotations);
+    let mut frames = geometry.frames(motion);
+    let mut of_pair = OfPair::default();
     for (index, c) in problem.contacts.iter().enumerate() {
-        let frame = geometry.frame(index, motion);
+        let frame = frames.of(index);
         let at = [base + 3 * c.plus.body, base + 3 * c.minus.body];
         for (i, e) in frame.axes.iter().enumerate() {
             let row = 2 * index + i;
             for (column, value) in by_motion(&frame, at, *e, frame.share[0], geometry.finite) {
-                both(&mut out.entries, row, column, value);
+                both(&mut |i, j, value| out.entries.push((i, j, value)), row, column, value);
             }
         }
         out.forces.add(index, index, [[c.compliance[0], 0.0], [0.0, c.compliance[1]]]);
         if geometry.finite {
             let push = frame.axes[0] * force[index][0] + frame.axes[1] * force[index][1];
-            add_turning(&mut out.entries, &frame, at, push, frame.share[0]);
+            of_pair.begin(at, &mut out.entries);
+            let mut add = |i: usize, j: usize, value: f64| match i.min(j) < base {
+                true => out.entries.push((i, j, value)),
+                false => of_pair.add(i, j, value),
+            };
+            add_turning(&mut add, &frame, at, push, frame.share[0]);
             if frame.share[1] != 0.0 {
-                add_passing(&mut out.entries, &frame, (2 * index, at), push);
+                add_passing(&mut add, &frame, (2 * index, at), push);
             }
         }
     }
+    of_pair.end(&mut out.entries);
     let growing = loads.growing();
     for (body, b) in problem.bodies.iter().enumerate() {
         let at = base + 3 * body;

@@ -57,8 +57,7 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
     let active = active_set(system, state);
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
     system.count("factorisations", 1);
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let Some(responses) = responses_of(system, &active, &equations, direction) else {
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
@@ -83,8 +82,7 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
 pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(Tangent, Vec<ContactMode>)>> {
     let active = active_set(system, state);
     system.count("factorisations", 1);
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let responses = responses_of(system, &active, &equations, 1.0)?;
     let problem = rate_problem(system, &active, &responses);
     if problem.points.is_empty() || problem.combinations() > MOST_COMBINATIONS {
@@ -110,8 +108,7 @@ pub(super) fn falling_rate(
 ) -> Option<(Tangent, Vec<ContactMode>)> {
     let active = active_set(system, state);
     system.count("factorisations", 1);
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let responses = responses_of(system, &active, &equations, direction)?;
     let mut problem = rate_problem(system, &active, &responses);
     for (point, c) in problem.points.iter_mut().zip(&active.contacts) {

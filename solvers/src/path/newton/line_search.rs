@@ -32,6 +32,7 @@ use super::state::State;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::apply_step;
 use crate::optimise::line_search::LineSearch;
+use std::rc::Rc;
 
 /// Merits below which whole steps are taken: what they leave is the linear equations' own accuracy.
 pub(super) const NOTHING: f64 = 1e-9;
@@ -73,7 +74,7 @@ pub(super) fn advanced(
     state: &State,
     step: &[f64],
     share: f64,
-) -> Result<(State, Gradient), StepFailure> {
+) -> Result<(State, Rc<Gradient>), StepFailure> {
     let mut next = state.clone();
     apply_step(system, &mut next, step, share);
     update_blocks(system, &mut next)?;
@@ -92,7 +93,7 @@ pub(super) fn searched(
     control: &Control,
     (step, most): (&[f64], f64),
     search: &mut LineSearch,
-) -> Result<(State, Gradient, bool), StepFailure> {
+) -> Result<(State, Rc<Gradient>, bool), StepFailure> {
     if search.merits.is_empty() {
         search.merits.push(merit(system, start, state, gradient, control));
     }
@@ -188,7 +189,7 @@ mod tests {
                 let (left, constraint) = control_value(&system, &start, &state, &control);
                 let last = rows.len() - 1;
                 rows[last] = left;
-                let equations = system.equations(&state, &gradient);
+                let equations = system.equations(&state);
                 let row = control_row(&system, &start, &state, &control, &constraint, &equations);
                 let right: Vec<f64> = rows.iter().map(|x| -x).collect();
                 let Some((step, true)) = solve_linear(&mut system, &state, &equations, &row, &right) else { continue };

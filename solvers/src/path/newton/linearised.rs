@@ -24,9 +24,10 @@ use super::system::StepSystem;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::{BorderedFactors, BorderedSystem};
-use crate::linear::chain::{BodyRows, ChainFactors, PointRows};
+use crate::linear::chain::{BodyRows, ChainFactors, ChainRows, PointRows};
 use crate::linear::condensed::Condensed;
 use crate::linear::csr::CsrMatrix;
+use std::cell::RefCell;
 use std::rc::Rc;
 
 /// Backward error of every row that is rounding.
@@ -84,11 +85,22 @@ fn damping(system: &StepSystem) -> f64 {
     system.damping.as_ref().map_or(0.0, |damping| damping.rate)
 }
 
-/// The last factors, where they are of these equations in the state's modes and modes alone make the rows.
-pub(super) fn kept<'s>(system: &'s StepSystem, state: &State, equations: &Rc<Equations>) -> Option<&'s Kept> {
-    let kept = system.cache.factors.last.as_ref().filter(|_| system.laws.responses.is_empty())?;
-    let same = Rc::ptr_eq(&kept.equations, equations) && kept.modes == state.mode && kept.damping == damping(system);
-    (same && kept.directions == directions(system)).then_some(kept)
+/// Kept factors, where modes alone make the rows of points.
+pub(super) fn all_kept<'s>(system: &'s StepSystem<'_>) -> impl Iterator<Item = &'s Rc<Kept>> {
+    let (damping, directions) = (damping(system), directions(system));
+    let kept = system.cache.factors.held().filter(|_| system.laws.responses.is_empty());
+    kept.filter(move |kept| kept.damping == damping && kept.directions == directions)
+}
+
+/// Those of them that are of these equations in the state's modes and serve a control.
+pub(super) fn kept<'s>(
+    system: &'s StepSystem,
+    state: &State,
+    equations: &Rc<Equations>,
+    serves: impl Fn(&BorderedFactors<ModeEquations>) -> bool,
+) -> Option<&'s Rc<Kept>> {
+    let same = |kept: &&Rc<Kept>| Rc::ptr_eq(&kept.equations, equations) && kept.modes == state.mode;
+    all_kept(system).filter(same).find(|kept| serves(&kept.held))
 }
 
 /// The modes' linear equations, factorised, and whether that is done before: where modes alone make them, those of the
@@ -99,7 +111,7 @@ pub(super) fn factorised(
     equations: &Rc<Equations>,
     row: &[f64],
 ) -> Option<(Rc<BorderedFactors<ModeEquations>>, bool)> {
-    if let Some(kept) = kept(system, state, equations).filter(|kept| kept.held.serves(row)) {
+    if let Some(kept) = kept(system, state, equations, |held| held.serves(row)) {
         return Some((kept.held.clone(), true));
     }
     let (damping, directions) = (damping(system), directions(system));
@@ -107,22 +119,29 @@ pub(super) fn factorised(
     let chain = system.scaled.chain.clone().filter(|_| system.geometry.pattern.couples());
     let held = match chain {
         Some(chain) => BorderedFactors::new(state.mode.len(), row, |last| {
-            let points = (0..state.mode.len()).map(|c| rows_of_point(system, state, c)).collect();
-            let bodies = BodyRows { rows: equations.bodies.clone(), diagonal: -damping, shift: -REGULARISATION };
-            let factors = ChainFactors::new(equations.gaps.clone(), bodies, points, last, &chain);
-            factors.map(ModeEquations::Chain)
+            ChainFactors::new(chain_rows(system, state, equations), last, &chain).map(ModeEquations::Chain)
         }),
         None => by_rows(system, state, equations, row, damping),
     };
     let held = Rc::new(held?);
-    system.cache.factors.last = system.laws.responses.is_empty().then(|| Kept {
-        equations: equations.clone(),
-        modes: state.mode.clone(),
-        directions,
-        damping,
-        held: held.clone(),
-    });
+    if system.laws.responses.is_empty() {
+        system.cache.factors.hold(Kept {
+            equations: equations.clone(),
+            modes: state.mode.clone(),
+            directions,
+            damping,
+            held: held.clone(),
+            responses: RefCell::default(),
+        });
+    }
     Some((held, false))
+}
+
+/// The equations of a chain of elastic bodies in the modes of a state.
+pub(super) fn chain_rows(system: &StepSystem, state: &State, equations: &Equations) -> ChainRows {
+    let points = (0..state.mode.len()).map(|c| rows_of_point(system, state, c)).collect();
+    let bodies = BodyRows { rows: equations.bodies.clone(), diagonal: -damping(system), shift: -REGULARISATION };
+    ChainRows { gaps: equations.gaps.clone(), bodies, points }
 }
 
 /// The rows of a contact point, by its mode or by its tractions.
@@ -178,7 +197,7 @@ pub(super) fn solve_linear(
         return found;
     }
     // Another unknown held may serve this control better.
-    system.cache.factors.last = None;
+    system.cache.factors.forget();
     let (held, _) = factorised(system, state, equations, row)?;
     refined(&BorderedSystem::new(held, row)?, right)
 }

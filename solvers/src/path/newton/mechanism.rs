@@ -21,8 +21,7 @@ pub(super) fn find_mechanism(system: &mut StepSystem, state: &State) -> Option<T
     if system.finite() || !system.piecewise_linear() {
         return None;
     }
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let (points, bodies) = (state.gap.len(), 3 * system.scaled.bodies);
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let mut flows: Vec<(usize, [f64; 2])> = Vec::new();

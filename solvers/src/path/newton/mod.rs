@@ -31,6 +31,7 @@ mod loads;
 mod measure;
 mod mechanism;
 mod monitors;
+mod nearby;
 mod orientation;
 mod passed_over;
 mod peak;

@@ -22,7 +22,7 @@ use super::following::Following;
 use super::slip_history::predicted_event;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use super::tangent::tangent_at;
+use super::tangent::RoughRates;
 use super::tracer::{Tracer, moved};
 use super::trial::{StepPlan, Trial};
 use crate::path::continuation::arc_length::ArcLength;
@@ -77,7 +77,7 @@ pub(super) fn passes_over(
 /// Whether the load turns more often on the pieces of the path that may lie in a step than the rates at its ends say; not
 /// where it falls as fast at both. Which point changes first is not known.
 fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, trial: &Trial, gains: [f64; 2]) -> bool {
-    let Tracer { system, state, .. } = tracer;
+    let (system, state) = (&mut tracer.system, &tracer.state);
     let next = &trial.next;
     let rises = |slope: f64| slope * following.direction > 0.0;
     let [before, after] = gains.map(rises);
@@ -94,20 +94,27 @@ fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, tr
         swapped.into_iter().for_each(|(c, other)| piece.mode[c] = other.mode[c]);
         piece
     };
-    let begun = moved(state, &following.branch.tangent, BEGUN * plan.step);
     let control = along_the_path(following, &trial.control);
-    let mut pieces = vec![with(next, state, None), with(&begun, next, None)];
+    let mut pieces = vec![with(next, state, None)];
     if changed.len() > 1 {
         pieces.extend(changed.iter().map(|c| with(next, state, Some((*c, next)))));
     }
     if changed.len() > 2 {
         pieces.extend(changed.iter().map(|c| with(next, next, Some((*c, state)))));
     }
-    pieces.iter().any(|piece| {
+    let turns = |system: &mut StepSystem, rates: &RoughRates, piece: &State| {
         system.count("pieces", 1);
-        let rate = tangent_at(system, state, piece, &control);
-        rate.is_some_and(|rate| rises(rate.factor) != before)
-    })
+        rates.slope(system, piece).is_some_and(|slope| rises(slope) != before)
+    };
+    let at_end = RoughRates::new(system, state, (next, next), &control);
+    if pieces.iter().any(|piece| turns(system, &at_end, piece)) {
+        return true;
+    }
+    let begun = with(&moved(state, &following.branch.tangent, BEGUN * plan.step), next, None);
+    // The equations of the beginning itself are known.
+    let place = if system.solves_nearby() { state } else { &begun };
+    let at_beginning = RoughRates::new(system, state, (place, &begun), &control);
+    turns(system, &at_beginning, &begun)
 }
 
 /// The control by which the rates of pieces are oriented: lengths grow along a path, whatever another strategy measures may not.

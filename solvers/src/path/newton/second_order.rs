@@ -32,11 +32,10 @@ pub(super) fn second_order_work(system: &mut StepSystem, state: &State) -> Optio
 
 /// The equations with the factor held.
 fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<ModeEquations>> {
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let mut row = vec![0.0; system.size()];
     row[system.size() - 1] = 1.0;
-    let held = match kept(system, state, &equations).filter(|kept| kept.held.borders(&row)) {
+    let held = match kept(system, state, &equations, |held| held.borders(&row)) {
         Some(kept) => kept.held.clone(),
         None => factorised(system, state, &equations, &row)?.0,
     };

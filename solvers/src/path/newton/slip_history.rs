@@ -13,10 +13,11 @@
 //! it: by the speeds at both ends where slip comes to rest smoothly, and where another point's event stops it, by the
 //! predictor's share up to that event. Beyond it the steps are as long again as before.
 
+use super::control::Control;
 use super::following::{Arrest, Following};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use super::tangent::modes_ahead;
+use super::tangent::{modes_ahead, rough_tangent};
 use super::tracer::{Tracer, moved_along};
 use super::trial::{StepPlan, Trial};
 use crate::contact::facet::slack;
@@ -31,6 +32,8 @@ const ENDED: &str = "arrests_ended";
 /// Force that slip missed in a step may leave at a point, relative to the greatest force; and while blocks yield, whose
 /// stresses follow the path of strain to first order in the step anyhow.
 const MISSED: [f64; 2] = [1e-7, 1e-5];
+/// What counts as far beyond it.
+const PLAINLY: f64 = 10.0;
 /// Length, relative to the first step, from which on steps are shortened for this.
 const SHORTEST: f64 = 1e-7;
 /// Shares of a step that misses slip within which the next one lies, and the one where nothing is known of the place.
@@ -49,6 +52,53 @@ struct Missed {
     place: Option<f64>,
 }
 
+/// Length of the step that is to be tried instead of one that misses slip far beyond what it may, by a rate at its end that
+/// costs no factorisation.
+pub(super) fn plainly_missed_slip(
+    tracer: &mut Tracer,
+    following: &mut Following,
+    plan: &StepPlan,
+    trial: &Trial,
+) -> Option<f64> {
+    let short = following.length <= SHORTEST * following.limits.first;
+    if short || is_enough(tracer, following) || !matches!(trial.control, Control::Strategy { .. }) {
+        return None;
+    }
+    let Tracer { system, state, .. } = tracer;
+    if !matters(system) || !system.solves_nearby() {
+        return None;
+    }
+    let end = rough_tangent(system, state, (state, &trial.next), &trial.control)?;
+    let worst = all_missed(tracer, following, plan, trial, &end).iter().fold(0.0, |a: f64, missed| a.max(missed.force));
+    (worst > PLAINLY * MISSED[0]).then(|| missed_slip(tracer, following, plan, trial, &end)).flatten()
+}
+
+/// Whether the history of slip is of consequence.
+fn matters(system: &StepSystem) -> bool {
+    system.finite() && !system.joints_flow_associated()
+}
+
+fn goes_to_factor(following: &Following) -> bool {
+    matches!(following.load_step.end, LoadStepEnd::Factor(_))
+}
+
+/// Whether the history of slip has been followed far enough. After a peak friction may let the path cycle in small loops:
+/// history is followed on to other peaks within a budget, also where the load falls, for it shapes the peaks that follow. A
+/// stage that goes to a factor has ended at its peak, but for what it snaps to.
+fn is_enough(tracer: &Tracer, following: &Following) -> bool {
+    let arrests = tracer.system.counters.get("arrests").copied().unwrap_or(0);
+    tracer.limit.peak.is_some() && (goes_to_factor(following) || arrests >= MOST_ARRESTS)
+}
+
+/// What a step misses, by the rate at its end.
+fn all_missed(tracer: &Tracer, following: &Following, plan: &StepPlan, trial: &Trial, end: &Tangent) -> Vec<Missed> {
+    // The rate at the end is per unit of the factor where the step goes to one.
+    let by_end = if trial.reaches { (trial.next.factor - tracer.state.factor).abs() } else { following.length };
+    let rates = [(&following.branch.tangent, plan.step), (end, by_end)];
+    let missed = |c: usize| missed_at(&tracer.system, &tracer.state, rates, &trial.next, c);
+    (0..trial.next.gap.len()).filter_map(missed).collect()
+}
+
 /// Length of the step that is to be tried instead of one that misses slip; `end` is the rate at its end.
 pub(super) fn missed_slip(
     tracer: &mut Tracer,
@@ -57,33 +107,23 @@ pub(super) fn missed_slip(
     trial: &Trial,
     end: &Tangent,
 ) -> Option<f64> {
-    let matters = tracer.system.finite() && !tracer.system.joints_flow_associated();
-    // After a peak friction may let the path cycle in small loops: history is followed on to other peaks within a budget,
-    // also where the load falls, for it shapes the peaks that follow. A stage that goes to a factor has ended at its peak,
-    // but for what it snaps to.
-    let arrests = tracer.system.counters.get("arrests").copied().unwrap_or(0);
-    let goes_to_factor = matches!(following.load_step.end, LoadStepEnd::Factor(_));
-    let enough = goes_to_factor || arrests >= MOST_ARRESTS;
-    if !matters || (tracer.limit.peak.is_some() && enough) {
-        if matters && !goes_to_factor && !tracer.system.counters.contains_key(ENDED) {
+    let matters = matters(&tracer.system);
+    if !matters || is_enough(tracer, following) {
+        if matters && !goes_to_factor(following) && !tracer.system.counters.contains_key(ENDED) {
             note_end(tracer);
         }
         following.arrest = None;
         return None;
     }
     let length = following.length;
-    // The rate at the end is per unit of the factor where the step goes to one.
-    let by_end = if trial.reaches { (trial.next.factor - tracer.state.factor).abs() } else { length };
-    let rates = [(&following.branch.tangent, plan.step), (end, by_end)];
-    let missed = |c: usize| missed_at(&tracer.system, &tracer.state, rates, &trial.next, c);
-    let all: Vec<Missed> = (0..trial.next.gap.len()).filter_map(missed).collect();
+    let all = all_missed(tracer, following, plan, trial, end);
     let tolerance = MISSED[usize::from(trial.next.yields())];
     let worst = all.iter().map(|missed| missed.force).fold(0.0, f64::max);
     if worst <= tolerance || length <= SHORTEST * following.limits.first {
         if worst > 0.0
             && let Some(arrest) = following.arrest
         {
-            note_choice(tracer, following, rates[0], &trial.next);
+            note_choice(tracer, following, (&following.branch.tangent, plan.step), &trial.next);
             following.arrest = Some(Arrest { beyond: 0.0, ..arrest });
         }
         return None;
@@ -91,7 +131,8 @@ pub(super) fn missed_slip(
     tracer.system.count("arrests", 1);
     let counts = all.iter().filter(|missed| missed.force > tolerance);
     let smooth = counts.filter_map(|missed| missed.place).reduce(f64::min);
-    let kinked = first_event(&tracer.system, &tracer.state, rates[0], &trial.next).map(|share| share * (1.0 - BEFORE));
+    let event = first_event(&tracer.system, &tracer.state, (&following.branch.tangent, plan.step), &trial.next);
+    let kinked = event.map(|share| share * (1.0 - BEFORE));
     let share = smooth.into_iter().chain(kinked).reduce(f64::min).unwrap_or(UNKNOWN);
     // What was to lie before the place lies beyond it: what told it is not to be relied on.
     let again = following.arrest.is_some_and(|arrest| length < 0.999 * arrest.beyond);

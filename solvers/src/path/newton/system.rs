@@ -14,6 +14,8 @@ use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::linear::condensed::Elimination;
 use crate::path::system::{Load, System, Units};
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::rc::Rc;
 use voussoir_core::law::TractionPoint;
 use voussoir_core::limit::Counters;
@@ -29,13 +31,18 @@ pub(super) struct Laws {
     pub responses: Responses,
 }
 
+/// Places whose equations are held: the beginning and the end of a step, and what lies between.
+const PLACES: usize = 4;
+
 /// What is computed once for many iterations.
 #[derive(Default)]
 pub(super) struct Cache {
     /// Gaps and balance of linear blocks with small displacements, of the present load step.
     pub equations: Option<Rc<Equations>>,
-    /// The last ones of finite displacements or blocks that yield, with the state that they are of.
-    pub at: Option<(State, Rc<Equations>)>,
+    /// The last ones of finite displacements or blocks that yield, with the states that they are of; the latest first.
+    pub at: VecDeque<(State, Rc<Equations>)>,
+    /// The last gradient, with the state that it is of.
+    pub gradient: RefCell<Option<(State, Rc<Gradient>)>>,
     pub factors: LastFactors,
 }
 
@@ -148,7 +155,9 @@ impl<'a> StepSystem<'a> {
     pub fn load(&mut self, loads: StagedLoads<'a>) {
         self.scaled.units.factor = self.scaled.units.of_factor(self.problem, loads.growing);
         self.loads = loads;
-        (self.cache.equations, self.cache.at) = (None, None);
+        self.cache.equations = None;
+        self.cache.at.clear();
+        self.cache.gradient.take();
         self.cache.factors.forget();
     }
 
@@ -180,6 +189,11 @@ impl<'a> StepSystem<'a> {
     /// Whether with small displacements every law is one of facets.
     pub fn piecewise_linear(&self) -> bool {
         self.laws.responses.is_empty() && self.blocks.iter().all(Option::is_none)
+    }
+
+    /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.
+    pub fn solves_nearby(&self) -> bool {
+        self.piecewise_linear() && self.scaled.chain.is_some() && self.geometry.pattern.couples()
     }
 
     /// Forces and a factor that are rounding of the loads become nothing (small displacements).
@@ -238,21 +252,33 @@ impl<'a> StepSystem<'a> {
     }
 
     /// First derivatives of Π at a state.
-    pub fn gradient(&self, state: &State) -> Gradient {
+    pub fn gradient(&self, state: &State) -> Rc<Gradient> {
+        let mut last = self.cache.gradient.borrow_mut();
+        if let Some((_, found)) = last.as_ref().filter(|(at, _)| at.is_at_place_of(state)) {
+            return found.clone();
+        }
         let loads = self.loads.at(state.factor);
-        gradient(&self.geometry, &state.place(&loads))
+        let found = Rc::new(gradient(&self.geometry, &state.place(&loads)));
+        *last = Some((state.clone(), found.clone()));
+        found
     }
 
     /// Gaps and balance linearised at a state.
-    pub fn equations(&mut self, state: &State, gradient: &Gradient) -> Rc<Equations> {
+    pub fn equations(&mut self, state: &State) -> Rc<Equations> {
         if self.finite() || state.yields() {
-            if let Some((_, equations)) = self.cache.at.as_ref().filter(|(at, _)| at.is_at_place_of(state)) {
-                return equations.clone();
-            }
-            let loads = self.loads.at(state.factor);
-            let hessian = hessian(&self.geometry, &state.place(&loads), gradient);
-            let equations = Rc::new(Equations::new(&self.scaled, hessian));
-            self.cache.at = Some((state.clone(), equations.clone()));
+            let known = self.cache.at.iter().position(|(at, _)| at.is_at_place_of(state));
+            let own = match known.and_then(|known| self.cache.at.remove(known)) {
+                Some(own) => own,
+                None => {
+                    let (gradient, loads) = (self.gradient(state), self.loads.at(state.factor));
+                    let hessian = hessian(&self.geometry, &state.place(&loads), &gradient);
+                    self.count("assemblies", 1);
+                    (state.clone(), Rc::new(Equations::new(&self.scaled, hessian)))
+                }
+            };
+            let equations = own.1.clone();
+            self.cache.at.push_front(own);
+            self.cache.at.truncate(PLACES);
             return equations;
         }
         let linear = || {

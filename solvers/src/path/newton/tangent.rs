@@ -3,7 +3,7 @@
 use super::control::Control;
 use super::control_row::{add_weighted_gaps, control_row, control_value};
 use super::equations::Equations;
-use super::linearised::solve_linear;
+use super::nearby::{solve_roughly, solve_to_rounding};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
@@ -88,24 +88,63 @@ pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State
 /// Modes that a small share of a rate asks for, from a converged state.
 pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State) -> Vec<ContactMode> {
     let mut ahead = ahead.clone();
-    ahead.gap = system.gradient(&ahead).gap;
+    ahead.gap = system.gradient(&ahead).gap.clone();
     wanted_modes(system, state, &ahead).0
 }
 
 /// Tangent of a converged state with its modes held, per unit of the control's gradient.
 pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let (_, constraint) = control_value(system, start, state, control);
     let row = control_row(system, start, state, control, &constraint, &equations);
     tangent_of_modes(system, state, &equations, &row)
 }
 
+/// The same roughly, by factors that are near if there are any, with the equations of a place near the state's.
+pub(super) fn rough_tangent(
+    system: &mut StepSystem,
+    start: &State,
+    (place, state): (&State, &State),
+    control: &Control,
+) -> Option<Tangent> {
+    let rates = RoughRates::new(system, start, (place, state), control);
+    let x = rates.solve(system, state)?;
+    Some(tangent_from(system, &x, state, &rates.equations))
+}
+
+/// What rates solve near a place, whatever the modes are: under a control that does not depend on them.
+pub(super) struct RoughRates {
+    equations: Rc<Equations>,
+    control: Vec<f64>,
+}
+
+impl RoughRates {
+    /// With the equations of a place and the control at a state near it.
+    pub fn new(system: &mut StepSystem, start: &State, (place, state): (&State, &State), control: &Control) -> Self {
+        let equations = system.equations(place);
+        let (_, constraint) = control_value(system, start, state, control);
+        let control = control_row(system, start, state, control, &constraint, &equations);
+        RoughRates { equations, control }
+    }
+
+    /// A rate in the modes of a state, in units.
+    fn solve(&self, system: &mut StepSystem, state: &State) -> Option<Vec<f64>> {
+        let right = per_row(system);
+        let found = solve_roughly(system, state, &self.equations, &self.control, &right);
+        found.filter(|(_, solved)| *solved).map(|(x, _)| x)
+    }
+
+    /// That of the factor.
+    pub fn slope(&self, system: &mut StepSystem, state: &State) -> Option<f64> {
+        let x = self.solve(system, state)?;
+        Some(x[x.len() - 1] * system.units().factor)
+    }
+}
+
 /// Tangent with other modes than the state's, per unit of the sum of the multipliers of the points
 /// that change: the branch on which they yield. `None` where there is none.
 pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes: &[ContactMode]) -> Option<Tangent> {
-    let gradient = system.gradient(state);
-    let equations = system.equations(state, &gradient);
+    let equations = system.equations(state);
     let mut by_gap = vec![0.0; 2 * state.gap.len()];
     for c in (0..state.gap.len()).filter(|c| modes[*c] != state.mode[*c]) {
         let flow = match (modes[c], system.law(c)) {
@@ -121,11 +160,17 @@ pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes:
     tangent_of_modes(system, &other, &equations, &row)
 }
 
-/// Tangent of a state with its modes held, per unit of `row`.
-fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Rc<Equations>, row: &[f64]) -> Option<Tangent> {
+/// The right-hand side of a rate per unit of the last row.
+fn per_row(system: &StepSystem) -> Vec<f64> {
     let mut right = vec![0.0; system.size()];
     right[system.size() - 1] = 1.0;
-    let (x, _) = solve_linear(system, state, equations, row, &right).filter(|(_, solved)| *solved)?;
+    right
+}
+
+/// Tangent of a state with its modes held, per unit of `row`.
+fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Rc<Equations>, row: &[f64]) -> Option<Tangent> {
+    let right = per_row(system);
+    let (x, _) = solve_to_rounding(system, state, equations, row, &right).filter(|(_, solved)| *solved)?;
     Some(tangent_from(system, &x, state, equations))
 }
 
