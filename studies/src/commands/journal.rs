@@ -30,6 +30,11 @@ impl<W: Write> Journal<W> {
     ///
     /// Where they cannot be written.
     pub fn add(&mut self, lines: &[u8]) -> Result<()> {
+        if lines.len() >= MUCH {
+            // Without a copy: a case of a million blocks has half a gigabyte.
+            self.write()?;
+            return self.file.write_all(lines);
+        }
         self.waiting.extend_from_slice(lines);
         self.write_late()
     }
