@@ -50,7 +50,6 @@ pub fn solve_into_journal(
         }
     });
     progress.finish();
-    progress.keep_all();
     if let Some(error) = failed {
         return Err(no_access(&path, error));
     }

@@ -10,6 +10,11 @@ const WAITING: Duration = Duration::from_millis(50);
 /// Bytes of lines that do not wait.
 const MUCH: usize = 1 << 16;
 
+/// Says that the journal cannot be written.
+pub fn say_unwritten(error: &std::io::Error) {
+    eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
+}
+
 /// Finished cases, a line each.
 #[derive(Debug)]
 pub struct Journal<W = File> {

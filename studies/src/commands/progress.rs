@@ -2,7 +2,7 @@
 
 use super::codes::say;
 use super::interrupt;
-use super::journal::Journal;
+use super::journal::{Journal, say_unwritten};
 use crate::results::CaseResult;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -65,24 +65,20 @@ impl Progress {
         results["cases"].as_array().into_iter().flatten().filter(known).for_each(say);
     }
 
-    /// Takes the bar off the terminal.
+    /// Takes the bar off the terminal and writes what waits to be written to the journal.
     pub fn finish(&self) {
+        self.keep(Journal::write);
         self.bar.finish_and_clear();
     }
 }
 
 impl Progress {
-    /// Writes what waits to be written to the journal.
-    pub fn keep_all(&self) {
-        self.keep(Journal::write);
-    }
-
     /// Does something to the journal, which is given up where it fails.
     fn keep(&self, what: impl FnOnce(&mut Journal) -> std::io::Result<()>) {
         let Ok(mut journal) = self.journal.lock() else { return };
         if let Some(Err(error)) = journal.as_mut().map(what) {
             // It costs only the chance to go on after an interruption.
-            eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
+            say_unwritten(&error);
             *journal = None;
         }
     }
@@ -116,7 +112,7 @@ impl Observer for Progress {
         interrupt::finished();
         if self.shown_as == Shown::Lines {
             // Whoever reads what is said on standard output may take his time.
-            self.keep_all();
+            self.keep(Journal::write);
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);
             }
