@@ -151,7 +151,7 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         groups: assembly.rigid_groups().0,
         polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),
         facets,
-        centroids: (0..assembly.bodies.len()).map(|body| assembly.inertia(body).centroid).collect(),
+        centroids: assembly.centroids(),
         size: assembly.size(),
         sizes: [0.0; 2],
         assembly,

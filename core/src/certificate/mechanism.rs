@@ -121,8 +121,7 @@ pub fn velocity_at(centroid: Vec2, velocity: CentroidVelocity, point: Vec2) -> V
 
 /// The jumps at all joints in a motion of all bodies.
 pub fn jumps(assembly: &Assembly, motion: &[CentroidVelocity]) -> Vec<Jump> {
-    let centroids: Vec<Vec2> = (0..assembly.bodies.len()).map(|body| assembly.inertia(body).centroid).collect();
-    jumps_about(assembly, &centroids, motion)
+    jumps_about(assembly, &assembly.centroids(), motion)
 }
 
 /// The same, the centroids of all bodies being known.

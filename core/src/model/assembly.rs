@@ -101,6 +101,11 @@ impl Assembly {
         Inertia { mass: self.catalogue.materials[body.material].1.density() * area * self.width, centroid }
     }
 
+    /// Centroids of all bodies \[m\].
+    pub fn centroids(&self) -> Vec<Vec2> {
+        (0..self.bodies.len()).map(|body| self.inertia(body).centroid).collect()
+    }
+
     /// The law of a joint, unless it is bonded.
     pub fn law(&self, joint: &Joint) -> Option<&dyn InterfaceLaw> {
         match joint.bond {
