@@ -52,15 +52,13 @@ impl Frame {
 struct Turn {
     angle: f64,
     rotation: Matrix2<f64>,
-    /// Sines of the angle and of its half.
-    sine: f64,
+    /// Sine of half the angle.
     half: f64,
 }
 
 impl Turn {
     fn by(angle: f64) -> Self {
-        let (sine, cosine) = angle.sin_cos();
-        Turn { angle, rotation: Matrix2::new(cosine, -sine, sine, cosine), sine, half: (0.5 * angle).sin() }
+        Turn { angle, rotation: rotation(angle), half: (0.5 * angle).sin() }
     }
 }
 
@@ -162,7 +160,7 @@ impl<'a> Geometry<'a> {
         let arm = point - self.problem.bodies[body].pole;
         // R a − a without the difference of what is as large as the arm: gaps round by the motions, not by the scene.
         let swing = if self.finite {
-            turned(arm) * turn.sine - arm * (2.0 * turn.half * turn.half)
+            turned(arm) * turn.rotation[(1, 0)] - arm * (2.0 * turn.half * turn.half)
         } else {
             turned(arm) * turn.angle
         };

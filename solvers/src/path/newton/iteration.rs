@@ -7,7 +7,7 @@ use super::equations::Equations;
 use super::inelastic::{block_error, update_blocks};
 use super::line_search::{advanced, of_tractions, searched};
 use super::linearised::residual_of;
-use super::nearby::solve_roughly;
+use super::nearby::{Accuracy, solve};
 use super::response::{traction_error, traction_row, update_tractions};
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
@@ -67,7 +67,7 @@ pub(super) fn iterate(
     let mut changes = ModeChanges::new(patience);
     let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
     let may_lag = system.finite() && system.solves_nearby() && search.is_none();
-    let mut linearised = LinearisedAt { place: start.clone(), may_lag, lags: false };
+    let mut linearised = LinearisedAt { place: may_lag.then(|| start.clone()), lags: false };
     // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
     let most = match (system.laws.responses.is_empty(), system.finite() && search.is_none()) {
         (false, _) => 25,
@@ -98,7 +98,7 @@ pub(super) fn iterate(
         let row = control_row(system, start, &state, control, &constraint, &equations);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
-        let solution = solve_roughly(system, &state, &equations, &row, &right);
+        let solution = solve(system, &state, &equations, (&row, &right), Accuracy::Rough);
         // Modes without a solution may be on the way to ones that have one: with small
         // displacements the shifted equations, a soft bedding, show which points close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
@@ -125,8 +125,8 @@ pub(super) fn iterate(
 
 /// Where the equations of an iteration are linearised: those of a place serve near it, as long as they take residuals down.
 struct LinearisedAt {
-    place: State,
-    may_lag: bool,
+    /// The place; `None` where the equations are always those of the state itself.
+    place: Option<State>,
     /// Whether they are not those of the state itself.
     lags: bool,
 }
@@ -134,12 +134,12 @@ struct LinearisedAt {
 impl LinearisedAt {
     /// Equations for a state; `slow` where those of the last iteration have not done enough.
     fn equations(&mut self, system: &mut StepSystem, state: &State, slow: bool) -> Rc<Equations> {
-        let slow = slow && self.lags;
-        self.lags = self.may_lag && !slow && turned_between(&self.place, state) <= TURNED;
+        let Some(place) = &mut self.place else { return system.equations(state) };
+        self.lags = !(slow && self.lags) && turned_between(place, state) <= TURNED;
         if !self.lags {
-            self.place.clone_from(state);
+            place.clone_from(state);
         }
-        system.equations(&self.place)
+        system.equations(place)
     }
 }
 

@@ -46,31 +46,28 @@ struct Nearby<'k> {
     small: Option<LU<f64, Dyn, Dyn>>,
 }
 
-/// Solves the modes' linear equations to what Newton's method and signs of rates need, and whether they are solved: by
-/// factors that are near if there are any.
-pub(super) fn solve_roughly(
-    system: &mut StepSystem,
-    state: &State,
-    equations: &Rc<Equations>,
-    control: &[f64],
-    right: &[f64],
-) -> Option<(Vec<f64>, bool)> {
-    let found = solve_nearby(system, state, equations, (control, right), ROUGH);
-    found.map(|x| (x, true)).or_else(|| solve_linear(system, state, equations, control, right))
+/// How exactly equations are solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Accuracy {
+    /// To what Newton's method and signs of rates need.
+    Rough,
+    /// To rounding; by factors of the state itself where its second-order work will be asked of them.
+    Rounding,
 }
 
-/// The same to rounding; by factors of the state itself where its second-order work will be asked of them.
-pub(super) fn solve_to_rounding(
+/// Solves the modes' linear equations, and whether they are solved: by factors that are near if there are any.
+pub(super) fn solve(
     system: &mut StepSystem,
     state: &State,
     equations: &Rc<Equations>,
-    control: &[f64],
-    right: &[f64],
+    (control, right): (&[f64], &[f64]),
+    accuracy: Accuracy,
 ) -> Option<(Vec<f64>, bool)> {
-    if system.rules.oriented {
+    if accuracy == Accuracy::Rounding && system.rules.oriented {
         factorised(system, state, equations, control)?;
     }
-    let found = solve_nearby(system, state, equations, (control, right), ROUNDING);
+    let left = if accuracy == Accuracy::Rounding { ROUNDING } else { ROUGH };
+    let found = solve_nearby(system, state, equations, (control, right), left);
     found.map(|x| (x, true)).or_else(|| solve_linear(system, state, equations, control, right))
 }
 

@@ -22,7 +22,7 @@ use super::following::Following;
 use super::slip_history::predicted_event;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use super::tangent::RoughRates;
+use super::tangent::RateEquations;
 use super::tracer::{Tracer, moved};
 use super::trial::{StepPlan, Trial};
 use crate::path::continuation::arc_length::ArcLength;
@@ -102,18 +102,18 @@ fn turns_between(tracer: &mut Tracer, following: &Following, plan: &StepPlan, tr
     if changed.len() > 2 {
         pieces.extend(changed.iter().map(|c| with(next, next, Some((*c, state)))));
     }
-    let turns = |system: &mut StepSystem, rates: &RoughRates, piece: &State| {
+    let turns = |system: &mut StepSystem, rates: &RateEquations, piece: &State| {
         system.count("pieces", 1);
         rates.slope(system, piece).is_some_and(|slope| rises(slope) != before)
     };
-    let at_end = RoughRates::new(system, state, (next, next), &control);
+    let at_end = RateEquations::new(system, state, (next, next), &control);
     if pieces.iter().any(|piece| turns(system, &at_end, piece)) {
         return true;
     }
     let begun = with(&moved(state, &following.branch.tangent, BEGUN * plan.step), next, None);
     // The equations of the beginning itself are known.
     let place = if system.solves_nearby() { state } else { &begun };
-    let at_beginning = RoughRates::new(system, state, (place, &begun), &control);
+    let at_beginning = RateEquations::new(system, state, (place, &begun), &control);
     turns(system, &at_beginning, &begun)
 }
 

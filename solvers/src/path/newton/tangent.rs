@@ -3,7 +3,7 @@
 use super::control::Control;
 use super::control_row::{add_weighted_gaps, control_row, control_value};
 use super::equations::Equations;
-use super::nearby::{solve_roughly, solve_to_rounding};
+use super::nearby::{Accuracy, solve};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use crate::contact::mode::ContactMode;
@@ -94,10 +94,8 @@ pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State)
 
 /// Tangent of a converged state with its modes held, per unit of the control's gradient.
 pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
-    let equations = system.equations(state);
-    let (_, constraint) = control_value(system, start, state, control);
-    let row = control_row(system, start, state, control, &constraint, &equations);
-    tangent_of_modes(system, state, &equations, &row)
+    let RateEquations { equations, control } = RateEquations::new(system, start, (state, state), control);
+    tangent_of_modes(system, state, &equations, &control)
 }
 
 /// The same roughly, by factors that are near if there are any, with the equations of a place near the state's.
@@ -107,30 +105,30 @@ pub(super) fn rough_tangent(
     (place, state): (&State, &State),
     control: &Control,
 ) -> Option<Tangent> {
-    let rates = RoughRates::new(system, start, (place, state), control);
+    let rates = RateEquations::new(system, start, (place, state), control);
     let x = rates.solve(system, state)?;
     Some(tangent_from(system, &x, state, &rates.equations))
 }
 
 /// What rates solve near a place, whatever the modes are: under a control that does not depend on them.
-pub(super) struct RoughRates {
+pub(super) struct RateEquations {
     equations: Rc<Equations>,
     control: Vec<f64>,
 }
 
-impl RoughRates {
+impl RateEquations {
     /// With the equations of a place and the control at a state near it.
     pub fn new(system: &mut StepSystem, start: &State, (place, state): (&State, &State), control: &Control) -> Self {
         let equations = system.equations(place);
         let (_, constraint) = control_value(system, start, state, control);
         let control = control_row(system, start, state, control, &constraint, &equations);
-        RoughRates { equations, control }
+        RateEquations { equations, control }
     }
 
-    /// A rate in the modes of a state, in units.
+    /// A rate in the modes of a state, roughly, in units.
     fn solve(&self, system: &mut StepSystem, state: &State) -> Option<Vec<f64>> {
         let right = per_row(system);
-        let found = solve_roughly(system, state, &self.equations, &self.control, &right);
+        let found = solve(system, state, &self.equations, (&self.control, &right), Accuracy::Rough);
         found.filter(|(_, solved)| *solved).map(|(x, _)| x)
     }
 
@@ -170,7 +168,7 @@ fn per_row(system: &StepSystem) -> Vec<f64> {
 /// Tangent of a state with its modes held, per unit of `row`.
 fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Rc<Equations>, row: &[f64]) -> Option<Tangent> {
     let right = per_row(system);
-    let (x, _) = solve_to_rounding(system, state, equations, row, &right).filter(|(_, solved)| *solved)?;
+    let (x, _) = solve(system, state, equations, (row, &right), Accuracy::Rounding).filter(|(_, solved)| *solved)?;
     Some(tangent_from(system, &x, state, equations))
 }
 
