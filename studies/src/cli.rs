@@ -271,7 +271,10 @@ pub fn main() -> ExitCode {
     match main_from(std::env::args_os().skip(1)) {
         Ok(code) => ExitCode::from(code),
         // Asked for help or version, or not understood: said, and ended as clap does.
-        Err(said) => said.exit(),
+        Err(said) => {
+            let code = u8::try_from(said.exit_code()).unwrap_or(commands::WRONG_INPUT);
+            ExitCode::from(commands::printed(said.print(), code))
+        }
     }
 }
 
@@ -297,7 +300,7 @@ pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Res
     let arguments: Vec<std::ffi::OsString> = arguments.into_iter().collect();
     let wrong = voussoir_core::plugin::audit();
     if !wrong.is_empty() {
-        wrong.iter().for_each(|why| eprintln!("voussoir: registry: {why}"));
+        wrong.iter().for_each(|why| commands::complain(format_args!("voussoir: registry: {why}")));
         return Ok(commands::NO_ACCESS);
     }
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
@@ -305,9 +308,9 @@ pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Res
     #[cfg(feature = "external")]
     for path in &cli.allow_library {
         if let Err(error) = crate::external::allow(path) {
-            eprintln!("voussoir: --allow-library {}: {error}", path.display());
+            commands::complain(format_args!("voussoir: --allow-library {}: {error}", path.display()));
             return Ok(commands::NO_ACCESS);
         }
     }
-    Ok(cli.command.answer(&words))
+    Ok(commands::ended(cli.command.answer(&words)))
 }

@@ -1,7 +1,7 @@
 //! `voussoir bench`.
 
 use super::clock::processor_time;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
 use super::files;
 use super::folder::ResultFolder;
 use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
@@ -35,14 +35,14 @@ pub fn measure(path: &Path, arguments: &BenchArguments) -> u8 {
 fn measured(path: &Path, arguments: &BenchArguments) -> Result<u8, u8> {
     let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
     let Some(CasesOf::Held(study)) = loaded.cases() else {
-        eprintln!("{}: only studies with a scene and at most 5000 cases can be benched", path.display());
+        complain(format_args!("{}: only studies with a scene and at most 5000 cases can be benched", path.display()));
         return Err(WRONG_INPUT);
     };
     let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;
     let told = |own: &Measurement| {
         if !arguments.quiet {
             let status = status_word(own.result.status);
-            eprintln!("{}: {status}, {} s", own.contestant, format_short(own.seconds, 3));
+            complain(format_args!("{}: {status}, {} s", own.contestant, format_short(own.seconds, 3)));
         }
         true
     };
@@ -82,10 +82,10 @@ fn reference(study: &Study, word: &str) -> Result<Reference, u8> {
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let what = if study.outline.variants.is_empty() { "contestants" } else { "variants" };
-    eprintln!(
+    complain(format_args!(
         "--reference {word}: neither a load factor nor one of those that take part; {}",
         suggest(word, &names, what)
-    );
+    ));
     Err(WRONG_INPUT)
 }
 

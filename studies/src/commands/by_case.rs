@@ -1,7 +1,7 @@
 //! Solving the cases of a study into lines of a journal, so that nothing is held and nothing finished is lost.
 
 use super::case_lines::CaseLines;
-use super::codes::NO_ACCESS;
+use super::codes::{NO_ACCESS, complain};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, useful_jobs};
 use super::progress::Progress;
@@ -13,7 +13,7 @@ use voussoir_core::limit::Status;
 
 /// Says that a file cannot be read or written.
 pub fn no_access(path: &Path, why: impl std::fmt::Display) -> u8 {
-    eprintln!("voussoir: {}: {why}", path.display());
+    complain(format_args!("voussoir: {}: {why}", path.display()));
     NO_ACCESS
 }
 

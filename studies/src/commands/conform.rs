@@ -1,6 +1,6 @@
 //! `voussoir conform`.
 
-use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say};
 use crate::config::diagnostic::suggest;
 use crate::conformance::{Options, Report, conform, conform_all};
 use std::path::Path;
@@ -13,7 +13,7 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
     let names: Vec<&str> = cards.iter().map(|card| card.tag).collect();
     let mut unknown = FINE;
     for tag in tags.iter().filter(|tag| !names.contains(&tag.as_str())) {
-        eprintln!("no law of joints or materials is called \"{tag}\"; {}", suggest(tag, &names, "laws"));
+        complain(format_args!("no law of joints or materials is called \"{tag}\"; {}", suggest(tag, &names, "laws")));
         unknown = WRONG_INPUT;
     }
     if unknown != FINE {
@@ -53,7 +53,7 @@ fn write(report: &Report, dir: &Path) -> u8 {
         match std::fs::create_dir_all(dir).and_then(|()| std::fs::write(&place, study)) {
             Ok(()) => say(format!("  {check}: voussoir run {} shows it", place.display())),
             Err(error) => {
-                eprintln!("voussoir: cannot write {}: {error}", place.display());
+                complain(format_args!("voussoir: cannot write {}: {error}", place.display()));
                 code = NO_ACCESS;
             }
         }

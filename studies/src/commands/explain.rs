@@ -1,6 +1,6 @@
 //! `voussoir list`, `explain` and `schema`.
 
-use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, complain, say, say_data};
 use super::{files, topics};
 use crate::kinds::json_schema::json_schema;
 use std::path::Path;
@@ -14,7 +14,7 @@ pub fn list(kind: Option<&str>) -> u8 {
             Some(kind) => vec![*kind],
             None => {
                 let words = PluginKind::ALL.map(PluginKind::plural);
-                eprintln!("there are no \"{word}\" to list; list one of: {}", words.join(", "));
+                complain(format_args!("there are no \"{word}\" to list; list one of: {}", words.join(", ")));
                 return WRONG_INPUT;
             }
         },
@@ -41,11 +41,11 @@ pub const EXPORTS: [&str; 1] = ["blocks"];
 pub fn export(path: &Path) -> u8 {
     match files::study(path, &[]).map(|study| study.as_blocks()) {
         Ok(Ok(text)) => {
-            say(text);
+            say_data(&text);
             FINE
         }
         Ok(Err(why)) => {
-            eprintln!("{}: cannot be written as blocks: {why}", path.display());
+            complain(format_args!("{}: cannot be written as blocks: {why}", path.display()));
             WRONG_INPUT
         }
         Err(code) => code,
@@ -70,7 +70,7 @@ pub fn explain(what: &str) -> u8 {
         let words: Vec<String> = tags.chain(topics::words()).collect();
         let near = nearest(what, words.iter().map(String::as_str));
         let advice = near.map_or("see `voussoir list`".into(), |tag| format!("did you mean \"{tag}\"?"));
-        eprintln!("no plug-in, key or word is called \"{what}\"; {advice}");
+        complain(format_args!("no plug-in, key or word is called \"{what}\"; {advice}"));
         return if what.contains('/') { NO_ACCESS } else { WRONG_INPUT };
     }
     found.iter().for_each(|card| print_card(card));

@@ -1,35 +1,36 @@
 //! Reading files and studies, and saying what is wrong with them.
 
-use super::codes::{NO_ACCESS, WRONG_INPUT};
+use super::codes::{NO_ACCESS, WRONG_INPUT, complain};
 use crate::config::diagnostic::LocatedDiagnostic;
+use crate::config::limits::MAX_MISTAKES_PRINTED;
 use crate::kinds::{LoadedStudy, read_source_beside};
 use crate::serve::Session;
-use crate::study::{StudySource, beside};
+use crate::study::{StudySource, beside, read_bounded};
 use std::path::Path;
 
 /// Reads a file, or says why not.
 pub fn read(path: &Path) -> Result<String, u8> {
-    let bytes = std::fs::read(path).map_err(|error| {
-        eprintln!("voussoir: cannot read {}: {error}", path.display());
+    let bytes = read_bounded(path).map_err(|error| {
+        complain(format_args!("voussoir: cannot read {}: {error}", path.display()));
         NO_ACCESS
     })?;
     // UTF-16 without a mark at its beginning is UTF-8 to the letter, with a zero beside each.
     if bytes.contains(&0) {
-        eprintln!(
+        complain(format_args!(
             "{}:1:1: this file holds zero bytes; save it as UTF-8, as TOML asks for (it may be in UTF-16)",
             path.display()
-        );
+        ));
         return Err(WRONG_INPUT);
     }
     String::from_utf8(bytes).map_err(|error| {
         let (bytes, at) = (error.as_bytes(), error.utf8_error().valid_up_to());
         let (line, column) = (bytes[..at].iter().filter(|b| **b == b'\n').count() + 1, bytes[..at].iter().rev().take_while(|b| **b != b'\n').count() + 1);
-        eprintln!(
+        complain(format_args!(
             "{}:{line}:{column}: this byte is not UTF-8 (0x{:02x}); save the file as UTF-8, as TOML asks for (it may be in \
              Latin-1 or UTF-16)",
             path.display(),
             bytes[at]
-        );
+        ));
         WRONG_INPUT
     })
 }
@@ -40,7 +41,7 @@ pub fn overrides(sets: &[String]) -> Result<Vec<(String, String)>, u8> {
         .map(|set| match set.split_once('=') {
             Some((key, value)) => Ok((key.trim().to_string(), value.trim().to_string())),
             None => {
-                eprintln!("--set {set}: expected KEY=VALUE, such as --set joints.dry.friction=0.5");
+                complain(format_args!("--set {set}: expected KEY=VALUE, such as --set joints.dry.friction=0.5"));
                 Err(WRONG_INPUT)
             }
         })
@@ -63,8 +64,15 @@ pub fn session(path: &Path, sets: &[(String, String)]) -> Result<Session, u8> {
 }
 
 fn report(path: &Path, diagnostics: &[LocatedDiagnostic]) -> u8 {
-    diagnostics.iter().for_each(|diagnostic| eprintln!("{diagnostic}"));
+    diagnostics.iter().take(MAX_MISTAKES_PRINTED).for_each(complain);
     let count = diagnostics.len();
-    eprintln!("{}: {count} mistake{}; nothing was computed", path.display(), if count == 1 { "" } else { "s" });
+    if count > MAX_MISTAKES_PRINTED {
+        complain(format_args!("{}: {} more mistakes are not printed", path.display(), count - MAX_MISTAKES_PRINTED));
+    }
+    complain(format_args!(
+        "{}: {count} mistake{}; nothing was computed",
+        path.display(),
+        if count == 1 { "" } else { "s" }
+    ));
     WRONG_INPUT
 }

@@ -1,6 +1,6 @@
 //! A result folder: one run at a time, files whole or not at all, nothing through symbolic links.
 
-use super::codes::NO_ACCESS;
+use super::codes::{NO_ACCESS, complain};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub struct ResultFolder {
 }
 
 fn refused(path: &Path, why: impl std::fmt::Display) -> u8 {
-    eprintln!("voussoir: cannot write {}: {why}", path.display());
+    complain(format_args!("voussoir: cannot write {}: {why}", path.display()));
     NO_ACCESS
 }
 

@@ -1,5 +1,6 @@
 //! Ctrl-C: what is finished stays, and how to go on is said.
 
+use super::codes::complain;
 use super::journal::{Journal, say_unwritten};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, Weak};
@@ -28,9 +29,9 @@ pub fn catch(arguments: &[String]) {
         }
         let (finished, all) = (FINISHED.load(Ordering::Relaxed), ALL.load(Ordering::Relaxed));
         let command = COMMAND.lock().ok().and_then(|own| own.clone()).unwrap_or_default();
-        eprintln!(
+        complain(format_args!(
             "\nvoussoir: interrupted; {finished} of {all} cases are finished and kept. Go on with\n  voussoir {command}"
-        );
+        ));
         std::process::exit(INTERRUPTED);
     }));
 }

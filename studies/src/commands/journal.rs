@@ -1,5 +1,6 @@
 //! The journal of finished cases, with which `--resume` goes on.
 
+use super::codes::complain;
 use std::fs::File;
 use std::io::{Result, Write};
 use std::time::{Duration, Instant};
@@ -12,7 +13,7 @@ const MUCH: usize = 1 << 16;
 
 /// Says that the journal cannot be written.
 pub fn say_unwritten(error: &std::io::Error) {
-    eprintln!("voussoir: the journal of finished cases cannot be written: {error}");
+    complain(format_args!("voussoir: the journal of finished cases cannot be written: {error}"));
 }
 
 /// Finished cases, a line each.

@@ -30,4 +30,4 @@ mod today;
 mod topics;
 pub mod verify;
 
-pub use codes::NO_ACCESS;
+pub use codes::{NO_ACCESS, WRONG_INPUT, complain, ended, printed};

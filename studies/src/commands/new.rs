@@ -1,6 +1,6 @@
 //! `voussoir new`: commented studies that run as they stand.
 
-use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, complain, say};
 use std::io::{ErrorKind, Write};
 
 /// What a new study is about.
@@ -67,7 +67,7 @@ pub fn new(what: Template, name: Option<&str>) -> u8 {
     let word = what.word();
     let name = name.map_or(word, |name| name.strip_suffix(".toml").unwrap_or(name));
     if name.is_empty() || name.contains(['/', '\\', '"', ':', '*', '?', '<', '>', '|']) || name.starts_with('.') {
-        eprintln!("voussoir new: \"{name}\" is no name of a study: use letters, digits, blanks, - and _");
+        complain(format_args!("voussoir new: \"{name}\" is no name of a study: use letters, digits, blanks, - and _"));
         return WRONG_INPUT;
     }
     let text = what.text().replacen(&format!("name = \"{word}\""), &format!("name = \"{name}\""), 1);
@@ -79,11 +79,13 @@ pub fn new(what: Template, name: Option<&str>) -> u8 {
             FINE
         }
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            eprintln!("voussoir new: {file} is there and stays as it is; give another name: voussoir new {word} NAME");
+            complain(format_args!(
+                "voussoir new: {file} is there and stays as it is; give another name: voussoir new {word} NAME"
+            ));
             WRONG_INPUT
         }
         Err(error) => {
-            eprintln!("voussoir new: cannot write {file}: {error}");
+            complain(format_args!("voussoir new: cannot write {file}: {error}"));
             NO_ACCESS
         }
     }

@@ -1,6 +1,6 @@
 //! `voussoir new law`: the files of a law, from those of an example that is compiled and tested.
 
-use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, complain, say};
 use std::path::Path;
 use voussoir_core::plugin::{PluginKind, card};
 
@@ -29,20 +29,20 @@ fn type_name(tag: &str) -> String {
 /// Writes a law of joints, its page and its test into a crate; nothing that is there is overwritten.
 pub fn law(tag: &str, into: &Path) -> u8 {
     if let Some(why) = unfit(tag) {
-        eprintln!("voussoir new law {tag}: {why}");
+        complain(format_args!("voussoir new law {tag}: {why}"));
         return WRONG_INPUT;
     }
     let manifest = into.join("Cargo.toml");
     let text = match std::fs::read_to_string(&manifest) {
         Ok(text) => text,
         Err(error) => {
-            eprintln!("voussoir: {}: {error}; --out names the folder of a crate", manifest.display());
+            complain(format_args!("voussoir: {}: {error}; --out names the folder of a crate", manifest.display()));
             return NO_ACCESS;
         }
     };
     let table: Option<toml::Table> = text.parse().ok();
     let Some(name) = table.as_ref().and_then(|table| table.get("package")?.get("name")?.as_str()) else {
-        eprintln!("{}: names no package", manifest.display());
+        complain(format_args!("{}: names no package", manifest.display()));
         return WRONG_INPUT;
     };
     let own = |text: &str| {
@@ -54,7 +54,7 @@ pub fn law(tag: &str, into: &Path) -> u8 {
         files.push((format!("tests/{tag}.rs"), own(TEST)));
     }
     if let Some((there, _)) = files.iter().find(|(file, _)| into.join(file).exists()) {
-        eprintln!("voussoir: {} is there already; nothing was written", into.join(there).display());
+        complain(format_args!("voussoir: {} is there already; nothing was written", into.join(there).display()));
         return WRONG_INPUT;
     }
     for (file, text) in &files {
@@ -62,7 +62,7 @@ pub fn law(tag: &str, into: &Path) -> u8 {
         let written =
             std::fs::create_dir_all(place.parent().unwrap_or(into)).and_then(|()| std::fs::write(&place, text));
         if let Err(error) = written {
-            eprintln!("voussoir: cannot write {}: {error}", place.display());
+            complain(format_args!("voussoir: cannot write {}: {error}", place.display()));
             return NO_ACCESS;
         }
         say(format!("{}", place.display()));

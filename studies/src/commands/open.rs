@@ -1,5 +1,7 @@
 //! Opening a file or an address as the desktop does.
 
+use super::codes::complain;
+
 /// Opens it; that it cannot is no error of the command.
 pub fn open(what: impl AsRef<std::ffi::OsStr>) {
     let what = what.as_ref();
@@ -15,6 +17,6 @@ pub fn open(what: impl AsRef<std::ffi::OsStr>) {
         .stderr(std::process::Stdio::null())
         .spawn();
     if let Err(error) = started {
-        eprintln!("voussoir: {} cannot be opened with {program}: {error}", what.to_string_lossy());
+        complain(format_args!("voussoir: {} cannot be opened with {program}: {error}", what.to_string_lossy()));
     }
 }

@@ -1,13 +1,14 @@
 //! `voussoir completions` and `voussoir man`.
 
-use super::codes::{FINE, NO_ACCESS};
+use super::codes::{FINE, NO_ACCESS, print};
 use std::io::Write;
 
 /// Prints what a shell needs to complete the words of the command line.
 pub fn completions(shell: clap_complete::Shell, command: &mut clap::Command) -> u8 {
     let mut text = Vec::new();
     clap_complete::generate(shell, command, "voussoir", &mut text);
-    printed(&text)
+    print(&text);
+    FINE
 }
 
 /// Prints the manual page: the program, then each command.
@@ -23,11 +24,6 @@ pub fn man(command: clap::Command) -> u8 {
             page.render_options_section(&mut text)
         });
     }
-    if written.is_ok() { printed(&text) } else { NO_ACCESS }
-}
-
-/// Prints bytes; a reader that has gone away is no error.
-fn printed(text: &[u8]) -> u8 {
-    drop(std::io::stdout().write_all(text));
-    FINE
+    print(&text);
+    if written.is_ok() { FINE } else { NO_ACCESS }
 }

@@ -1,6 +1,6 @@
 //! Progress on a terminal, and the journal of finished cases for `--resume`.
 
-use super::codes::say;
+use super::codes::say_data;
 use super::interrupt;
 use super::journal::{Journal, say_unwritten};
 use crate::results::CaseResult;
@@ -62,7 +62,7 @@ impl Progress {
         let results: Json = serde_json::from_slice(results).unwrap_or_default();
         let said = self.said.lock().map(|said| said.clone()).unwrap_or_default();
         let known = |case: &&Json| case["id"].as_u64().is_none_or(|id| !said.contains(&(id as usize)));
-        results["cases"].as_array().into_iter().flatten().filter(known).for_each(say);
+        results["cases"].as_array().into_iter().flatten().filter(known).for_each(|case| say_data(&case.to_string()));
     }
 
     /// Takes the bar off the terminal and writes what waits to be written to the journal.
@@ -116,7 +116,7 @@ impl Observer for Progress {
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);
             }
-            say(String::from_utf8_lossy(line.trim_ascii()));
+            say_data(&String::from_utf8_lossy(line.trim_ascii()));
         }
     }
 

@@ -1,6 +1,6 @@
 //! `voussoir run`.
 
-use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say, say_data};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
 use super::open::open;
@@ -76,13 +76,13 @@ fn same_names(studies: &[(&PathBuf, Box<dyn LoadedStudy>)]) -> u8 {
         // File systems may not tell capitals apart.
         let same = |other: &str| other.to_lowercase() == study.name().to_lowercase();
         if let Some((first, _)) = studies[..index].iter().find(|(_, earlier)| same(earlier.name())) {
-            eprintln!(
+            complain(format_args!(
                 "{}: this study is called \"{}\", as that of {}: their results would overwrite each other; give one another \
                  name, or run them one by one with --out",
                 path.display(),
                 study.name(),
                 first.display()
-            );
+            ));
             return WRONG_INPUT;
         }
     }
@@ -101,12 +101,12 @@ fn results_of_another(path: &Path, dir: &Path) -> u8 {
     if earlier == own {
         return FINE;
     }
-    eprintln!(
+    complain(format_args!(
         "{}: {} holds the results of {source}, a study of the same name; give one of them another name, or say where \
          results go with --out",
         path.display(),
         dir.display()
-    );
+    ));
     WRONG_INPUT
 }
 
@@ -116,7 +116,7 @@ fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, u8
         Some(id) if id < study.count() => Ok(vec![id]),
         Some(id) => {
             let last = study.count().saturating_sub(1);
-            eprintln!("--case {id}: the study \"{}\" has cases 0 to {last}", study.name());
+            complain(format_args!("--case {id}: the study \"{}\" has cases 0 to {last}", study.name()));
             Err(WRONG_INPUT)
         }
         None => Ok((0..study.count()).collect()),
@@ -126,7 +126,7 @@ fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, u8
 /// Prints the label of each case as a line of JSON.
 fn list(study: &dyn LoadedStudy, options: &Options) -> u8 {
     let Some(cases) = study.cases() else {
-        (0..study.count()).for_each(|id| say(json!({ "study": study.name(), "id": id })));
+        (0..study.count()).for_each(|id| say_data(&json!({ "study": study.name(), "id": id }).to_string()));
         return FINE;
     };
     let ids = match (options.case, shard::ids_of(study, options.shard)) {
@@ -135,14 +135,14 @@ fn list(study: &dyn LoadedStudy, options: &Options) -> u8 {
         (None, Err(code)) => return code,
     };
     for case in ids.into_iter().filter_map(|id| cases.case(id)) {
-        say(serde_json::to_string(&label_of(&case)).unwrap_or_default());
+        say_data(&serde_json::to_string(&label_of(&case)).unwrap_or_default());
     }
     FINE
 }
 
 fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) -> Result<u8, u8> {
     let resolved = study.resolved_text().map_err(|error| {
-        eprintln!("voussoir: the study \"{}\" cannot be written back: {error}", study.name());
+        complain(format_args!("voussoir: the study \"{}\" cannot be written back: {error}", study.name()));
         NO_ACCESS
     })?;
     let resolved = format!("{SOURCE}{}\n{resolved}", path.display().to_string().replace(['\n', '\r'], " "));

@@ -4,7 +4,7 @@
 //! line for each case in order of id, and a line with their number, so that a copy that was cut short is found.
 
 use super::by_case::solve_into_journal;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, Shard};
 use crate::kinds::LoadedStudy;
@@ -46,10 +46,10 @@ pub fn study_hash(resolved: &toml::Value) -> String {
 pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize>, u8> {
     let Some(shard) = shard else { return Ok((0..study.count()).collect()) };
     let Some(cases) = study.cases() else {
-        eprintln!(
+        complain(format_args!(
             "--shard: the study \"{}\" is of a kind that cannot be solved in parts; it costs little",
             study.name()
-        );
+        ));
         return Err(WRONG_INPUT);
     };
     Ok((0..study.count()).filter(|id| cases.part(*id, shard.of) == Some(shard.number - 1)).collect())

@@ -2,7 +2,7 @@
 
 use super::by_case::solve_into_journal;
 use super::case_lines::CaseLines;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
 use super::folder::{Aside, JOURNAL, ResultFolder};
 use super::options::Options;
 use super::refill::refill;
@@ -59,10 +59,10 @@ impl Tally {
 /// Solves a study whose cases are streamed.
 pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Result<u8, u8> {
     if options.case.is_some() && dir.join("results.json").exists() {
-        eprintln!(
+        complain(format_args!(
             "voussoir: {}: of so many cases one cannot be replaced; write it into a folder of its own with --out",
             dir.display()
-        );
+        ));
         return Err(WRONG_INPUT);
     }
     let folder = ResultFolder::open(dir)?;

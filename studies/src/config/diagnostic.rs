@@ -1,5 +1,6 @@
 //! Diagnostics: what is wrong with an input, at which key and place, and what to do about it.
 
+use crate::config::characters::quoted;
 use crate::config::origin::Origin;
 use std::fmt;
 
@@ -33,17 +34,17 @@ impl LocatedDiagnostic {
 
 impl fmt::Display for LocatedDiagnostic {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{}: ", self.origin)?;
+        write!(out, "{}: ", quoted(&self.origin.to_string()))?;
         // "--set KEY" has named its key already.
         if !self.key.is_empty() && !matches!(&self.origin, Origin::Set(key) if **key == *self.key) {
-            write!(out, "{}: ", self.key)?;
+            write!(out, "{}: ", quoted(&self.key))?;
         }
-        write!(out, "{}", self.message)?;
+        out.write_str(&quoted(&self.message))?;
         if let Some(help) = &self.help {
-            write!(out, "\n  help: {help}")?;
+            write!(out, "\n  help: {}", quoted(help))?;
         }
         if let Some(case) = &self.case {
-            write!(out, "\n  first in the case {case}")?;
+            write!(out, "\n  first in the case {}", quoted(case))?;
         }
         Ok(())
     }

@@ -4,6 +4,8 @@
 
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::dotted_key::{join, segments};
+use crate::config::limits::MAX_DEPTH;
+use crate::config::nesting::too_deep;
 use crate::config::origin::Origin;
 use std::sync::Arc;
 use toml::Spanned;
@@ -206,6 +208,9 @@ impl Node {
 /// Reads a document. Errors are all syntax errors found.
 pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     let reader = Reader::new(text, file);
+    if let Some(byte) = too_deep(text) {
+        return Err(vec![nested_too_deep(&reader.origin(byte), "")]);
+    }
     let (root, errors) = DeTable::parse_recoverable(text);
     let mut mistakes: Vec<LocatedDiagnostic> = Vec::new();
     for error in &errors {
@@ -221,6 +226,12 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     }
     let node = reader.table(root.get_ref(), reader.origin(0), &mut mistakes);
     if mistakes.is_empty() { Ok(node) } else { Err(mistakes) }
+}
+
+fn nested_too_deep(origin: &Origin, key: &str) -> LocatedDiagnostic {
+    let message = format!("is nested more than {MAX_DEPTH} deep");
+    LocatedDiagnostic::new(origin, key, message)
+        .help("no key of a study needs that; look for a bracket that is not closed")
 }
 
 /// Reads one value, as it stands after an `=`; everything in it gets the origin `origin`.
@@ -262,13 +273,18 @@ fn plain_scalar(text: &str) -> Option<Value> {
 /// all values that no study can hold, by key.
 pub fn from_json(value: &serde_json::Value) -> Result<Node, Vec<LocatedDiagnostic>> {
     let mut mistakes = Vec::new();
-    let node = json_node(value, "", &mut mistakes);
+    let node = json_node(value, "", MAX_DEPTH, &mut mistakes);
     if mistakes.is_empty() { Ok(node) } else { Err(mistakes) }
 }
 
-fn json_node(value: &serde_json::Value, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
+/// `depth` is the number of levels that may still follow.
+fn json_node(value: &serde_json::Value, path: &str, depth: usize, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
     use serde_json::Value as Json;
     let value = match value {
+        Json::Array(_) | Json::Object(_) if depth == 0 => {
+            mistakes.push(nested_too_deep(&Origin::Value, path));
+            Value::Boolean(false)
+        }
         Json::Null => {
             let mistake = LocatedDiagnostic::new(&Origin::Value, path, "is null");
             mistakes.push(mistake.help("leave the key out, or give it a value"));
@@ -280,12 +296,12 @@ fn json_node(value: &serde_json::Value, path: &str, mistakes: &mut Vec<LocatedDi
         }
         Json::String(text) => Value::String(text.clone()),
         Json::Array(values) => {
-            let entry = |(index, value)| json_node(value, &join(path, &format!("{index}")), mistakes);
+            let entry = |(index, value)| json_node(value, &join(path, &format!("{index}")), depth - 1, mistakes);
             Value::Array(values.iter().enumerate().map(entry).collect())
         }
         Json::Object(entries) => {
             let entry = |(key, value): (&String, &Json)| {
-                let node = json_node(value, &join(path, key), mistakes);
+                let node = json_node(value, &join(path, key), depth - 1, mistakes);
                 Entry { key: key.clone(), origin: Origin::Value, node }
             };
             Value::Table(Table { entries: entries.iter().map(entry).collect() })

@@ -5,6 +5,7 @@
 //! and [`origin`] where, [`json_schema`] hands the same schema to editors. What the keys mean is not
 //! known here: that is [`crate::study`].
 
+pub mod characters;
 pub mod check;
 pub mod checked_keys;
 pub mod common_keys;
@@ -15,6 +16,9 @@ pub mod dotted_key;
 pub mod expand;
 pub mod gravity;
 pub mod json_schema;
+pub mod limits;
+pub mod names;
+pub mod nesting;
 pub mod origin;
 pub mod overlay;
 pub mod shape_words;

@@ -3,6 +3,7 @@
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Table, Value};
 use crate::config::dotted_key::{join, segments};
+use crate::config::limits::MAX_DEPTH;
 use crate::config::origin::Origin;
 
 /// Sets the key at a dotted path. List entries are found by index from 0 or, where they are tables
@@ -15,6 +16,10 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
     if segments.is_empty() || segments.iter().any(String::is_empty) {
         let help = "write it as in scene.profile.rise";
         return Err(wrong(format!("\"{path}\" is not a dotted key")).help(help).into());
+    }
+    if segments.len() > MAX_DEPTH {
+        let message = format!("has {} segments; a key has at most {MAX_DEPTH}", segments.len());
+        return Err(wrong(message).help("write it as in scene.profile.rise").into());
     }
     let mut node = root;
     let walked = |place: usize| segments[..place].iter().fold(String::new(), |path, segment| join(&path, segment));

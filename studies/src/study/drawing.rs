@@ -3,6 +3,7 @@
 //! What a drawing holds is separate from how its file is read, which needs the cargo feature `dxf`.
 
 use crate::config::diagnostic::suggest;
+use std::collections::BTreeMap;
 
 /// A corner of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,6 +144,7 @@ impl Drawing {
     /// fixed, or `0` for those of the scene's material. `unit` \[m\].
     pub fn blocks(&self, unit: f64, materials: &[&str]) -> Result<Vec<DrawnBlock>, Vec<String>> {
         let (mut blocks, mut wrong): (Vec<DrawnBlock>, Vec<String>) = (Vec::new(), Vec::new());
+        let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
         for line in &self.polylines {
             let (layer, named) = (line.layer.as_str(), line.named());
             let of_scene = layer == UNNAMED || layer.eq_ignore_ascii_case(GROUND);
@@ -167,7 +169,8 @@ impl Drawing {
                 continue;
             }
             let fixed = layer.eq_ignore_ascii_case(GROUND);
-            let number = blocks.iter().filter(|block| block.name.starts_with(&format!("{layer} "))).count() + 1;
+            let number = numbers.entry(layer).or_insert(0);
+            *number += 1;
             let (name, material) = (format!("{layer} {number}"), material.map(|name| name.to_string()));
             blocks.push(DrawnBlock { name, vertices, material, fixed });
         }

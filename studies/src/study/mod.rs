@@ -44,5 +44,6 @@ pub use partial_factors::design;
 pub use resolved::{CheckedValue, Resolved};
 pub(crate) use source::value_of;
 pub use source::{StudySource, kind_of};
+pub(crate) use survey::read_bounded;
 pub use survey::{ReadFile, beside, no_files};
 pub use sweep::Sweep;

@@ -5,6 +5,7 @@ use super::error::StudyError;
 use super::survey::{ReadFile, import, no_files};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, from_json, parse, parse_value};
+use crate::config::names::check_texts;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use serde_json::Value as Json;
@@ -57,6 +58,10 @@ impl StudySource {
         documented_vehicles::add(&mut self.root);
         let before = self.diagnostics.len();
         import(&mut self.root, read, &mut self.diagnostics);
+        if self.diagnostics.len() > before {
+            return Err(self.diagnostics.into());
+        }
+        check_texts(&self.root, &mut self.diagnostics);
         if self.diagnostics.len() > before {
             return Err(self.diagnostics.into());
         }

@@ -6,7 +6,10 @@ use super::drawing::{Drawing, DrawnBlock};
 use super::dxf::read_drawing;
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Table, Value};
+use crate::config::limits::MAX_FILE_BYTES;
 use crate::config::origin::Origin;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,11 +21,22 @@ pub fn no_files(_: &str) -> Result<String, String> {
     Err("files are read where a study is read from a file; give the points themselves".into())
 }
 
+/// Reads a whole file of at most [`MAX_FILE_BYTES`]. A longer one, such as a device that never ends, is an error.
+pub fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        let message = format!("it is larger than {} MiB", MAX_FILE_BYTES >> 20);
+        return Err(std::io::Error::new(ErrorKind::FileTooLarge, message));
+    }
+    Ok(bytes)
+}
+
 /// Reads files that stand beside a study file.
 pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
     let folder = study.parent().unwrap_or(Path::new("")).to_path_buf();
     move |file| {
-        let bytes = std::fs::read(folder.join(file)).map_err(|error| error.to_string())?;
+        let bytes = read_bounded(&folder.join(file)).map_err(|error| error.to_string())?;
         match String::from_utf8(bytes) {
             Ok(text) => Ok(text),
             // Older drawings have one byte a character.
