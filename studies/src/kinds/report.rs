@@ -11,6 +11,8 @@ mod page;
 mod parts;
 mod series;
 mod study;
+mod types;
+mod typing;
 mod value;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};

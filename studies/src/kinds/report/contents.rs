@@ -1,10 +1,12 @@
 //! What a report says of its studies, and the mistakes in it.
 
-use super::claims::Claim;
+use super::claims::{Claim, Test};
 use super::evaluate::FUNCTIONS;
 use super::expression::Expression;
 use super::figures::{Chart, Image, Table};
 use super::series::Selection;
+use super::types::Type;
+use super::typing::type_of;
 use crate::config::diagnostic::suggest;
 use crate::kinds::kind::Part;
 use crate::study::DiagnosticList;
@@ -57,7 +59,8 @@ impl Contents {
                 _ => diagnostics.wrong(&key, "needs either study or points", "name the study whose results are meant"),
             }
             for (own, text) in [("x", &series.x), ("y", &series.y)] {
-                check_expression(diagnostics, &format!("{key}.{own}"), text, &["x", "y"]);
+                let names = Names { known: &["x", "y"], type_of: &|_| Type::Unknown };
+                check_expression(diagnostics, &format!("{key}.{own}"), text, &names, Type::Number);
             }
         }
         for (index, claim) in self.claims.iter().enumerate() {
@@ -68,9 +71,7 @@ impl Contents {
             }
             for (place, test) in claim.tests.iter().enumerate() {
                 let key = format!("{key}.tests.{place}");
-                check_expression(diagnostics, &format!("{key}.value"), &test.value, &names);
-                let with_value: Vec<&str> = names.iter().copied().chain(["value"]).collect();
-                check_expression(diagnostics, &format!("{key}.holds"), &test.holds, &with_value);
+                self.check_test(diagnostics, &key, test, &names);
             }
         }
         let charts =
@@ -84,6 +85,17 @@ impl Contents {
             }
         }
         self.check_images(diagnostics, &studies, &names);
+    }
+
+    /// Mistakes in a test: `value` may be of any type, `holds` is true or false.
+    fn check_test(&self, diagnostics: &mut DiagnosticList<'_>, key: &str, test: &Test, names: &[&str]) {
+        let of_series = |name: &str| self.series.get(name).map_or(Type::Unknown, Selection::element_type);
+        let series = Names { known: names, type_of: &of_series };
+        let found = check_expression(diagnostics, &format!("{key}.value"), &test.value, &series, Type::Unknown);
+        let known: Vec<&str> = names.iter().copied().chain(["value"]).collect();
+        let with_value = |name: &str| if name == "value" { found } else { of_series(name) };
+        let names = Names { known: &known, type_of: &with_value };
+        check_expression(diagnostics, &format!("{key}.holds"), &test.holds, &names, Type::Truth);
     }
 
     fn check_images(&self, diagnostics: &mut DiagnosticList<'_>, studies: &[&str], series: &[&str]) {
@@ -117,12 +129,44 @@ impl Contents {
     }
 }
 
-/// Mistakes in an expression: its form, names that do not exist, functions with too few or many arguments.
-fn check_expression(diagnostics: &mut DiagnosticList<'_>, key: &str, text: &str, names: &[&str]) {
+/// The names that an expression may use.
+struct Names<'a> {
+    known: &'a [&'a str],
+    type_of: &'a dyn Fn(&str) -> Type,
+}
+
+/// The type of an expression. Mistakes are its form, names that do not exist, functions with too few or many arguments, and
+/// wrong types; the whole must be of the type `wanted`.
+fn check_expression(
+    diagnostics: &mut DiagnosticList<'_>,
+    key: &str,
+    text: &str,
+    names: &Names<'_>,
+    wanted: Type,
+) -> Type {
     let expression = match Expression::parse(text) {
         Ok(expression) => expression,
-        Err(why) => return diagnostics.wrong(key, why, "such as abs(argmax(series) - 0.59) < 0.1"),
+        Err(why) => {
+            diagnostics.wrong(key, why, "such as abs(argmax(series) - 0.59) < 0.1");
+            return Type::Unknown;
+        }
     };
+    let before = diagnostics.found.len();
+    check_names(diagnostics, key, &expression, names.known);
+    if diagnostics.found.len() > before {
+        return Type::Unknown;
+    }
+    let mut mistakes = Vec::new();
+    let found = type_of(&expression, names.type_of, &mut mistakes);
+    if mistakes.is_empty() && !found.may_be(wanted) {
+        mistakes.push(format!("must be {}, but is {}", wanted.describe(), found.describe()));
+    }
+    mistakes.into_iter().for_each(|why| diagnostics.wrong(key, why, "such as abs(argmax(series) - 0.59) < 0.1"));
+    found
+}
+
+/// Names and functions that do not exist.
+fn check_names(diagnostics: &mut DiagnosticList<'_>, key: &str, expression: &Expression, names: &[&str]) {
     let functions: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
     expression.names(&mut |name, arguments| match arguments {
         None if !names.contains(&name) => {
@@ -134,8 +178,8 @@ fn check_expression(diagnostics: &mut DiagnosticList<'_>, key: &str, text: &str,
                 format!("there is no function \"{name}\""),
                 suggest(name, &functions, "functions"),
             ),
-            Some(function) if function.arguments != count => {
-                let message = format!("{name} takes {} argument(s), not {count}", function.arguments);
+            Some(function) if function.takes.len() != count => {
+                let message = format!("{name} takes {} argument(s), not {count}", function.takes.len());
                 diagnostics.wrong(key, message, function.doc);
             }
             Some(_) => {}

@@ -1,21 +1,34 @@
 //! What expressions come to: operators element by element, and the functions of series.
 
 use super::expression::{Expression, Operator};
+use super::types::Type::{self, Number, Truth, Word};
 use super::value::Value;
 
 /// A function with what its page says of it.
 pub struct Function {
     /// Its name.
     pub name: &'static str,
-    /// Number of its arguments.
-    pub arguments: usize,
+    /// Types of its arguments.
+    pub takes: &'static [Type],
+    /// Type of its result; `None` if that is the type of the first argument.
+    pub gives: Option<Type>,
     /// What it gives.
     pub doc: &'static str,
     run: fn(&mut dyn Iterator<Item = Value>) -> Value,
 }
 
-const fn one(name: &'static str, doc: &'static str, run: fn(&mut dyn Iterator<Item = Value>) -> Value) -> Function {
-    Function { name, arguments: 1, doc, run }
+const NUMBER: &[Type] = &[Type::Number];
+const TRUTH: &[Type] = &[Type::Truth];
+const ANY: &[Type] = &[Type::Unknown];
+
+const fn one(
+    name: &'static str,
+    takes: &'static [Type],
+    gives: Option<Type>,
+    doc: &'static str,
+    run: fn(&mut dyn Iterator<Item = Value>) -> Value,
+) -> Function {
+    Function { name, takes, gives, doc, run }
 }
 
 /// The next argument; there are as many as the function asks for, since that is checked when the file is read.
@@ -25,38 +38,59 @@ fn next(arguments: &mut dyn Iterator<Item = Value>) -> Value {
 
 /// All functions.
 pub const FUNCTIONS: &[Function] = &[
-    one("abs", "absolute value", |a| next(a).map(&|v| number(v, f64::abs))),
-    one("argmax", "where a series is greatest", |a| extreme(next(a), 1.0, true)),
-    one("argmin", "where a series is least", |a| extreme(next(a), -1.0, true)),
-    one("max", "its greatest value", |a| extreme(next(a), 1.0, false)),
-    one("min", "its least value", |a| extreme(next(a), -1.0, false)),
-    one("all", "whether every element is true", |a| all(next(a), true)),
-    one("any", "whether some element is true", |a| all(next(a), false)),
-    one("highest_where", "the greatest abscissa at which a series is true", |a| where_true(next(a), true)),
-    one("lowest_where", "the least abscissa at which a series is true", |a| where_true(next(a), false)),
-    one("count", "how many elements are true", |a| count(next(a))),
-    one("rising", "whether values grow with the abscissa, none falls", |a| ordered(next(a), 1.0)),
-    one("falling", "whether values fall with the abscissa, none grows", |a| ordered(next(a), -1.0)),
-    one("rises_then_falls", "whether values grow up to one place inside and fall after it", |a| {
+    one("abs", NUMBER, Some(Number), "absolute value", |a| next(a).map(&|v| number(v, f64::abs))),
+    one("argmax", NUMBER, Some(Number), "where a series is greatest", |a| extreme(next(a), 1.0, true)),
+    one("argmin", NUMBER, Some(Number), "where a series is least", |a| extreme(next(a), -1.0, true)),
+    one("max", NUMBER, Some(Number), "its greatest value", |a| extreme(next(a), 1.0, false)),
+    one("min", NUMBER, Some(Number), "its least value", |a| extreme(next(a), -1.0, false)),
+    one("all", TRUTH, Some(Truth), "whether every element is true", |a| all(next(a), true)),
+    one("any", TRUTH, Some(Truth), "whether some element is true", |a| all(next(a), false)),
+    one("highest_where", TRUTH, Some(Number), "the greatest abscissa at which a series is true", |a| {
+        where_true(next(a), true)
+    }),
+    one("lowest_where", TRUTH, Some(Number), "the least abscissa at which a series is true", |a| {
+        where_true(next(a), false)
+    }),
+    one("count", TRUTH, Some(Number), "how many elements are true", |a| count(next(a))),
+    one("rising", NUMBER, Some(Truth), "whether values grow with the abscissa, none falls", |a| ordered(next(a), 1.0)),
+    one("falling", NUMBER, Some(Truth), "whether values fall with the abscissa, none grows", |a| {
+        ordered(next(a), -1.0)
+    }),
+    one("rises_then_falls", NUMBER, Some(Truth), "whether values grow up to one place inside and fall after it", |a| {
         rises_then_falls(next(a))
     }),
-    one("mean", "the mean of a list", |a| next(a).map(&mean)),
-    one("length", "the number of entries of a list", |a| next(a).map(&length)),
-    one("first", "the first entry of a list", |a| next(a).map(&|v| entry(v, true))),
-    one("last", "the last entry of a list", |a| next(a).map(&|v| entry(v, false))),
+    one("mean", NUMBER, Some(Number), "the mean of a list", |a| next(a).map(&mean)),
+    one("length", ANY, Some(Number), "the number of entries of a list", |a| next(a).map(&length)),
+    one("first", ANY, None, "the first entry of a list", |a| next(a).map(&|v| entry(v, true))),
+    one("last", ANY, None, "the last entry of a list", |a| next(a).map(&|v| entry(v, false))),
     one(
         "recoveries",
+        NUMBER,
+        Some(Number),
         "of a load-displacement curve: how often its slope falls below half of what it reaches later",
         |a| recoveries(next(a)),
     ),
-    Function { name: "at", arguments: 2, doc: "the value of a series at an abscissa", run: |a| at(next(a), next(a)) },
-    one("words", "the entries of a list as one text", |a| {
+    Function {
+        name: "at",
+        takes: &[Type::Unknown, Type::Number],
+        gives: None,
+        doc: "the value of a series at an abscissa",
+        run: |a| at(next(a), next(a)),
+    },
+    one("words", ANY, Some(Word), "the entries of a list as one text", |a| {
         next(a).map(&|list| Value::Word(list.describe().replace(',', "")))
     }),
-    Function { name: "has", arguments: 2, doc: "whether a list holds a value", run: |a| has(next(a), next(a)) },
+    Function {
+        name: "has",
+        takes: &[Type::Unknown, Type::Unknown],
+        gives: Some(Truth),
+        doc: "whether a list holds a value",
+        run: |a| has(next(a), next(a)),
+    },
     Function {
         name: "within",
-        arguments: 3,
+        takes: &[Type::Unknown, Type::Number, Type::Number],
+        gives: None,
         doc: "a series from one abscissa to another",
         run: |a| within(next(a), next(a), next(a)),
     },
@@ -242,7 +276,10 @@ fn rises_then_falls(value: Value) -> Value {
         Err(missing) => return missing,
     };
     let top = (0..numbers.len()).max_by(|a, b| numbers[*a].1.total_cmp(&numbers[*b].1)).unwrap_or(0);
-    let grows = numbers[..=top.min(numbers.len().saturating_sub(1))].windows(2).all(|pair| pair[1].1 >= pair[0].1);
+    if numbers.is_empty() {
+        return Value::none("no value");
+    }
+    let grows = numbers[..=top.min(numbers.len() - 1)].windows(2).all(|pair| pair[1].1 >= pair[0].1);
     let falls = numbers[top..].windows(2).all(|pair| pair[1].1 <= pair[0].1);
     Value::Truth(grows && falls && top > 0 && top + 1 < numbers.len())
 }
@@ -319,6 +356,9 @@ fn recoveries(curve: Value) -> Value {
         Err(missing) => return missing,
     };
     let top = (0..numbers.len()).max_by(|a, b| numbers[*a].1.total_cmp(&numbers[*b].1)).unwrap_or(0);
+    if numbers.is_empty() {
+        return Value::none("no value");
+    }
     let range = numbers[..=top.min(numbers.len() - 1)].iter().map(|(x, _)| x.abs()).fold(0.0, f64::max);
     let steps = numbers[..=top].windows(2).filter(|pair| (pair[1].0 - pair[0].0).abs() > 1e-6 * range);
     let slopes: Vec<f64> = steps.map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).collect();

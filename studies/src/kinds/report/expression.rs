@@ -48,6 +48,13 @@ pub enum Operator {
     AtLeast,
 }
 
+impl Operator {
+    /// As it is written.
+    pub fn sign(self) -> &'static str {
+        LEVELS.iter().copied().flatten().find(|(_, operator)| *operator == self).map_or("", |(sign, _)| *sign)
+    }
+}
+
 use Operator::*;
 
 /// Operators by how strongly they bind, weakest first; longer words before shorter ones.
@@ -61,16 +68,19 @@ const LEVELS: [&[(&str, Operator)]; 5] = [
 
 /// Deepest nesting that is read.
 const DEPTH: usize = 60;
+/// Greatest number of numbers, words, names and functions. A long sum is a deep tree, and every walk over it recurses.
+const MAX_TERMS: usize = 250;
 
 struct Parser<'a> {
     rest: &'a str,
     depth: usize,
+    terms: usize,
 }
 
 impl Expression {
     /// Reads an expression; an error says what was expected where.
     pub fn parse(text: &str) -> Result<Expression, String> {
-        let mut parser = Parser { rest: text, depth: 0 };
+        let mut parser = Parser { rest: text, depth: 0, terms: 0 };
         let expression = parser.level(0)?;
         match parser.rest.trim() {
             "" => Ok(expression),
@@ -139,6 +149,10 @@ impl Parser<'_> {
 
     fn primary(&mut self) -> Result<Expression, String> {
         self.rest = self.rest.trim_start();
+        self.terms += 1;
+        if self.terms > MAX_TERMS {
+            return Err(format!("it has more than {MAX_TERMS} terms"));
+        }
         if self.take("(") {
             let inner = self.level(0)?;
             return if self.take(")") { Ok(inner) } else { Err(self.expected("\")\"")) };
@@ -212,10 +226,14 @@ mod tests {
 
     #[test]
     fn mistakes_say_where() {
-        let wrong = |text| Expression::parse(text).expect_err("a mistake");
+        let wrong = |text: &str| Expression::parse(text).expect_err("a mistake");
         assert_eq!(wrong("1 +"), "a number, a name or \"(\" is missing at its end");
         assert_eq!(wrong("max(a b)"), "\",\" or \")\" is missing before \"b)\"");
         assert_eq!(wrong("1 2"), "\"2\" is left over");
-        assert!(wrong(&"(".repeat(200)).contains("nested"));
+        assert!(wrong(&"(".repeat(100_000)).contains("nested"));
+        assert!(wrong(&"not ".repeat(100_000)).contains("nested"));
+        assert!(wrong(&format!("1{}", "+1".repeat(100_000))).contains("more than 250 terms"));
+        assert!(wrong(&format!("max({})", "1,".repeat(100_000))).contains("more than 250 terms"));
+        assert!(Expression::parse(&format!("1{}", "+1".repeat(249))).is_ok());
     }
 }

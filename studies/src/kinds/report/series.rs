@@ -1,5 +1,6 @@
 //! Series: which results of which study they are made of.
 
+use super::types::Type;
 use super::value::Value;
 use crate::figures::hinges::{DrawnHinge, named_hinges};
 use serde::Deserialize;
@@ -105,6 +106,16 @@ impl Selection {
         let swept = entry["parameters"].as_object().into_iter().flatten();
         let mut numbers = swept.filter(|(key, _)| free(key)).filter_map(|(_, value)| value.as_f64());
         Some(numbers.next().unwrap_or(0.0))
+    }
+
+    /// The type of each element, if the path of the result determines it.
+    pub fn element_type(&self) -> Type {
+        match self.result.as_str() {
+            _ if self.points.is_some() => Type::Number,
+            "load_factor" | "first_limit_point" | "curve" | "mechanism.hinge_count" => Type::Number,
+            "status" | "variant" | "mechanism.kind" => Type::Word,
+            _ => Type::Unknown,
+        }
     }
 
     /// The series; `results` gives the results.json of a study by its name.

@@ -8,7 +8,7 @@ use super::page::results_page;
 use super::parts::Parts;
 use super::value::Value;
 use crate::config::check::Checker;
-use crate::config::diagnostic::sort;
+use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
 use crate::config::origin::Origin;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, StoredResults, Verification};
@@ -39,10 +39,10 @@ impl ReportStudy {
         let mut checker = Checker::new(&root);
         let checked = checker.check(&root, &Shape::Table(STUDY), "");
         let found: Vec<_> = diagnostics.into_iter().chain(checker.diagnostics).collect();
-        let contents = checked.as_ref().and_then(|table| Contents::deserialize(&table["report"]).ok());
-        let (Some(table), Some(mut contents), true) = (checked, contents, found.is_empty()) else {
-            return Err(found.into());
-        };
+        let (Some(table), true) = (checked, found.is_empty()) else { return Err(found.into()) };
+        let mut contents = Contents::deserialize(&table["report"]).map_err(|error| {
+            vec![LocatedDiagnostic::new(&root.place("report"), "report", format!("cannot be read: {error}"))]
+        })?;
         let mut diagnostics = DiagnosticList::new(&root, found);
         let parts = read_parts(&mut diagnostics, &contents, &root, read);
         contents.check(&mut diagnostics, &parts);
