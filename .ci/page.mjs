@@ -2,7 +2,7 @@
 // rise/, path/ and report/ with a report.html each; screenshots and PDFs are written beside them.
 import puppeteer from 'puppeteer-core';
 import path from 'node:path';
-import { statSync } from 'node:fs';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
 
 const out = path.resolve(process.argv[2]);
 const browser = await puppeteer.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-gpu'] });
@@ -107,6 +107,25 @@ for (const [name, width, dark] of [['rise', 1100, false], ['rise', 400, true], [
   expect(await page.$$eval('figure svg', drawn => drawn.length) === 3, 'the report draws what its text names');
   await page.pdf({ path: `${out}/report.pdf`, format: 'A4' });
   expect(seen.length === 0, `no error ${seen.join('; ')}`);
+  await page.close();
+}
+// Whatever finds its way into a page does not run.
+const injected = `<script>window.ran = 'element'</script><img src="x" onerror="window.ran = 'handler'">
+<svg onload="window.ran = 'onload'"></svg><a id="injected" href="javascript:window.ran='address'">x</a>
+<style>body { visibility: hidden }</style><p id="styled" style="display:none">x</p>
+<iframe srcdoc="<script>parent.ran = 'frame'</script>"></iframe><base href="https://example.org/">`;
+for (const name of ['rise', 'path', 'report']) {
+  const html = readFileSync(`${out}/${name}/report.html`, 'utf8');
+  writeFileSync(`${out}/${name}/injected.html`, html.replace('<h1>', () => injected + '<h1>'));
+  const page = await browser.newPage();
+  const requests = [];
+  page.on('request', request => /^(file|data|about):/.test(request.url()) || requests.push(request.url()));
+  await page.goto(`file://${out}/${name}/injected.html`);
+  await page.click('#injected');
+  await new Promise(done => setTimeout(done, 300));
+  const [ran, shown, styled, base, own] = await page.evaluate(() => [window.ran ?? null, getComputedStyle(document.body).visibility,
+    getComputedStyle(document.getElementById('styled')).display, document.baseURI, !!document.querySelector('.tip')]);
+  expect(ran === null && shown === 'visible' && styled !== 'none' && base.startsWith('file:') && requests.length === 0 && own, `${name}: injected scripts, styles and addresses do nothing (${ran}), the page's own script runs`);
   await page.close();
 }
 await browser.close();

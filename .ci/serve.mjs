@@ -103,6 +103,18 @@ const report = await (await opened).page();
 await report.waitForFunction(() => document.querySelector('.wide table'), { timeout: 10000 });
 const words = await report.evaluate(() => document.body.textContent);
 expect(words.includes('Certificates') && words.includes('698.0227'), 'its report opens beside it');
+expect(await report.evaluate(() => !!document.querySelector('.tip')), "the report's script runs");
 expect(seen.length === 0, `no error, no request elsewhere ${seen.join('; ')}`);
+// Foreign scripts do not run, in the page and in the report that it opens.
+for (const [where, one] of [['page', page], ['report', report]]) {
+  const ran = await one.evaluate(async () => {
+    document.body.append(Object.assign(document.createElement('script'), { textContent: "window.ran = 'element'" }));
+    document.body.insertAdjacentHTML('beforeend', '<img src="data:," onerror="window.ran = \'handler\'"><a id="injected" href="javascript:window.ran=\'address\'">x</a>');
+    document.getElementById('injected').click();
+    await new Promise(done => setTimeout(done, 300));
+    return window.ran ?? null;
+  });
+  expect(ran === null, `an injected script does not run in the ${where} (${ran})`);
+}
 await browser.close();
 process.exit(failures ? 1 : 0);

@@ -39,6 +39,9 @@ impl Served {
         stream.write_all(request.as_bytes()).expect("sent");
         let mut answer = String::new();
         stream.read_to_string(&mut answer).expect("an answer");
+        let policy = answer.lines().find_map(|line| line.strip_prefix("Content-Security-Policy: ")).expect("a policy");
+        assert!(policy.contains("script-src 'sha256-") && !policy.contains("unsafe"), "{policy}");
+        assert!(policy.ends_with("; frame-ancestors 'none'"), "{policy}");
         let code = answer.split(' ').nth(1).and_then(|code| code.parse().ok()).unwrap_or_else(|| panic!("{answer}"));
         (code, answer.split_once("\r\n\r\n").map_or(String::new(), |(_, body)| body.to_string()))
     }
@@ -72,6 +75,9 @@ fn only_the_page_itself_is_let_in() {
     let code = |method: &str, path: &str, host: &str, body: &str| served.ask(method, path, host, body).0;
     let (page, html) = served.ask("GET", &whole, &own, "");
     assert!(page == 200 && html.contains("data-key=\"scene.profile.rise\""), "{html}");
+    assert!(
+        html.contains("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-")
+    );
     assert_eq!(code("GET", &whole, &format!("localhost:{}", served.port), ""), 200);
     for host in ["example.org", "127.0.0.1", &format!("example.org:{}", served.port), ""] {
         assert_eq!(code("GET", &whole, host, ""), 403, "{host}");

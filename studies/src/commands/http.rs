@@ -13,6 +13,8 @@ pub struct Gate {
     pub port: u16,
     /// The token that it must bring.
     pub token: String,
+    /// The Content-Security-Policy of every answer.
+    pub policy: String,
 }
 
 /// What is sent back.
@@ -32,13 +34,8 @@ impl Answer {
     }
 }
 
-/// Headers of every answer: nothing is loaded from elsewhere, framed, stored, or told to other sites.
-const HEADERS: [(&str, &str); 5] = [
-    (
-        "Content-Security-Policy",
-        "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; img-src data:; \
-         base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-    ),
+/// Headers of every answer beside its policy: nothing is stored or told to other sites.
+const HEADERS: [(&str, &str); 4] = [
     ("Cache-Control", "no-store"),
     ("Referrer-Policy", "no-referrer"),
     ("X-Content-Type-Options", "nosniff"),
@@ -110,7 +107,8 @@ pub fn received(server: &Server, gate: &Gate, route: Route) -> bool {
             Err(refusal) => refusal,
         },
     };
-    let headers = HEADERS.iter().copied().chain([("Content-Type", answer.kind)]);
+    let own = [("Content-Type", answer.kind), ("Content-Security-Policy", gate.policy.as_str())];
+    let headers = HEADERS.iter().copied().chain(own);
     let mut response = Response::from_data(answer.body).with_status_code(answer.code);
     for header in headers.filter_map(|(name, value)| Header::from_bytes(name, value).ok()) {
         response.add_header(header);

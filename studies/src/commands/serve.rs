@@ -6,6 +6,7 @@ use super::http::{Answer, Gate, received};
 use super::open::open;
 use crate::serve::{Asked, Session};
 use crate::solve::Observer;
+use crate::writers::page::served_policy;
 use serde_json::Value as Json;
 use std::collections::hash_map::RandomState;
 use std::hash::{BuildHasher, Hasher};
@@ -59,7 +60,8 @@ pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> u8 {
     if in_browser {
         open(&place);
     }
-    let gate = Gate { port, token };
+    // Only a header can forbid frames.
+    let gate = Gate { port, token, policy: format!("{}; frame-ancestors 'none'", served_policy()) };
     std::thread::scope(|scope| {
         for _ in 0..SIDE_BY_SIDE {
             scope.spawn(|| {

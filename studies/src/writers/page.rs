@@ -1,5 +1,9 @@
 //! Pieces of the report's page: style, tables, standing texts.
 
+mod sha256;
+#[cfg(test)]
+mod tests;
+
 use crate::figures::format::escape;
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
@@ -19,23 +23,51 @@ const LIVE: &str = include_str!("page/live.js");
 
 /// A whole page: its title for the browser, its body as HTML, and the cases that the script draws.
 pub(crate) fn whole(title: &str, body: &str, cases: &[Json]) -> String {
-    page((title, ""), body, cases, SCRIPT)
+    page((title, ""), body, cases, SCRIPT, &policy(&[SCRIPT], &[]))
 }
 
 /// A page that asks its server for what it draws.
 pub(crate) fn served(title: &str, body: &str) -> String {
     // So that no browser asks the server for one.
-    page((title, "<link rel=\"icon\" href=\"data:,\">\n"), body, &[], LIVE)
+    page((title, "<link rel=\"icon\" href=\"data:,\">\n"), body, &[], LIVE, &served_policy())
 }
 
-fn page((title, icon): (&str, &str), body: &str, cases: &[Json], script: &str) -> String {
+/// The Content-Security-Policy of a served page. The report that it opens is a `blob:`, which inherits this policy, so
+/// the script of reports is allowed as well.
+pub(crate) fn served_policy() -> String {
+    policy(&[LIVE, SCRIPT], &["connect-src 'self'", "img-src data:"])
+}
+
+/// A policy that allows these scripts and the page's style sheet by their hashes, and nothing from elsewhere.
+fn policy(scripts: &[&str], more: &[&str]) -> String {
+    let hashes: Vec<String> = scripts.iter().map(|script| sha256::source(&element(script))).collect();
+    let own = [format!("script-src {}", hashes.join(" ")), format!("style-src {}", sha256::source(&unix(STYLE)))];
+    let fixed = ["base-uri 'none'", "form-action 'none'"];
+    let all = own.iter().map(String::as_str).chain(more.iter().copied()).chain(fixed);
+    ["default-src 'none'"].into_iter().chain(all).collect::<Vec<_>>().join("; ")
+}
+
+/// The text of a script's element.
+fn element(script: &str) -> String {
+    unix(&format!("'use strict';\n{{\n{DRAW}\n{script}}}"))
+}
+
+/// A text with the line ends that browsers hash.
+fn unix(text: &str) -> String {
+    text.replace("\r\n", "\n")
+}
+
+fn page((title, icon): (&str, &str), body: &str, cases: &[Json], script: &str, policy: &str) -> String {
     // Nothing in the data can end the script's element.
     let data = Json::from_iter(cases.iter().cloned()).to_string().replace('<', "\\u003c");
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n{icon}<style>{STYLE}</style>\n</head>\n<body>\n{body}\
-         <script type=\"application/json\" id=\"cases\">{data}</script>\n<script>'use strict';\n{{\n{DRAW}\n{script}}}</script>\n</body>\n</html>\n",
-        escape(title)
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" \
+         content=\"{policy}\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
+         {icon}<style>{}</style>\n</head>\n<body>\n{body}<script type=\"application/json\" id=\"cases\">{data}</script>\n\
+         <script>{}</script>\n</body>\n</html>\n",
+        escape(title),
+        unix(STYLE),
+        element(script)
     )
 }
 

@@ -58,7 +58,7 @@ for (const place of document.querySelectorAll('.moving')) {
   let factor;
   if (path) {
     magnify.append(' displacements × ');
-    factor = make('input', { type: 'number', min: 1, value: own.magnify || 1, style: 'width:5em' }, magnify);
+    factor = make('input', { type: 'number', min: 1, value: own.magnify || 1 }, magnify);
   }
   const chart = place.closest('details') && place.closest('details').querySelector('svg .plot');
   let cursor;

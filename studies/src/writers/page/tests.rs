@@ -1,0 +1,118 @@
+//! Every page allows its own scripts and its style sheet, and nothing else.
+
+use super::sha256::source;
+use crate::kinds::{RunRequest, read_source_beside};
+use crate::serve::{Asked, Session};
+use crate::solve::Unobserved;
+use crate::study::StudySource;
+
+const ARCH: &str = r#"
+name = "arch"
+[scene]
+scene = "arch"
+profile = { shape = "segmental", span = 4.0, rise = 1.0 }
+thickness = 0.3
+width = 1.0
+voussoirs = 7
+ends = "jointed"
+material = "<b onclick='alert(1)'>"
+joint = "dry"
+[materials."<b onclick='alert(1)'>"]
+law = "rigid"
+density = 2200.0
+[joints.dry]
+law = "coulomb_associated"
+friction = 0.6
+[[stages]]
+name = "</script><script>alert(1)</script>"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{ kind = "point", span_fraction = 0.3, force = [0.0, -1000.0] }]
+"#;
+
+const REPORT: &str = r#"
+name = "report"
+kind = "report"
+[report]
+title = "</title><script>alert(1)</script>"
+studies = ["arch.toml"]
+text = ["[a](javascript:alert(1)) <script>alert(1)</script> [b](https://example.org) ![c](mechanism:loads@0)\n\n| a |\n|--:|\n| b |"]
+[report.series]
+loads = { study = "arch" }
+"#;
+
+fn source_of(text: &str) -> StudySource {
+    StudySource::parse(text, "study.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"))
+}
+
+/// The pages that `run` writes for a study.
+fn written(text: &str) -> Vec<String> {
+    let read = |_: &str| Ok(ARCH.to_string());
+    let study = read_source_beside(source_of(text), &read).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let request = |count: usize| RunRequest { wanted: (0..count).collect(), jobs: 1, ..RunRequest::default() };
+    let of_part = |part: &crate::kinds::Part| {
+        let output = part.study.run(&request(part.study.count()), &Unobserved);
+        let (_, bytes) = output.files.into_iter().find(|(name, _)| name == "results.json").expect("results");
+        String::from_utf8(bytes).expect("text")
+    };
+    let parts = study.parts().iter().map(of_part).collect();
+    let output = study.run(&RunRequest { parts, ..request(study.count()) }, &Unobserved);
+    let pages = output.files.into_iter().filter(|(name, _)| name.ends_with(".html"));
+    pages.map(|(_, bytes)| String::from_utf8(bytes).expect("text")).collect()
+}
+
+/// The texts of all elements of a name whose start tag is just that name.
+fn elements<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
+    let end = format!("</{name}>");
+    page.split(&format!("<{name}>")).skip(1).map(|rest| rest.split(&end).next().unwrap_or_default()).collect()
+}
+
+/// One directive of a policy.
+fn directive<'a>(policy: &'a str, name: &str) -> &'a str {
+    policy.split("; ").find_map(|own| own.strip_prefix(name)).unwrap_or_else(|| panic!("no {name} in {policy}")).trim()
+}
+
+/// Checks a page and returns its policy.
+fn assert_safe(page: &str) -> String {
+    let (_, rest) = page.split_once("<meta http-equiv=\"Content-Security-Policy\" content=\"").expect("a policy");
+    let policy = rest.split('"').next().expect("an end").to_string();
+    let head = page.find("http-equiv").expect("a policy");
+    assert!(!page[..head].contains("<script") && !page[..head].contains("<style"), "the policy comes first");
+    assert!(!policy.contains("unsafe") && policy.starts_with("default-src 'none'"), "{policy}");
+    assert_eq!(directive(&policy, "base-uri"), "'none'");
+    let ([script], [style]) = (&elements(page, "script")[..], &elements(page, "style")[..]) else {
+        panic!("a page has one script and one style sheet")
+    };
+    assert!(directive(&policy, "script-src").split(' ').any(|own| own == source(script)), "{policy}");
+    assert_eq!(directive(&policy, "style-src"), source(style));
+    // The other script element holds data, which no browser runs.
+    assert_eq!(page.matches("<script").count(), 2);
+    assert_eq!(page.matches("<script type=\"application/json\" id=\"cases\">").count(), 1);
+    let body = page.replace(script, "").replace(style, "");
+    for tag in body.split('<').skip(1).map(|rest| rest.split('>').next().unwrap_or_default()) {
+        // Attributes without what is quoted.
+        let bare: String = tag.split('"').step_by(2).collect();
+        assert!(!bare.contains(" on") && !bare.contains(" style="), "{tag}");
+        let address = tag.split_once(" href=\"").map_or("", |(_, rest)| rest.split('"').next().unwrap_or_default());
+        assert!(!address.contains(':') || address == "data:," || address == "https://example.org", "{tag}");
+    }
+    policy
+}
+
+#[test]
+fn scripts_of_every_page_match_its_policy() {
+    let session = Session::read(source_of(ARCH)).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let opened = session.report(&Asked::default(), &Unobserved).expect("a report");
+    let served = session.page(0).expect("a page");
+    let pages = [written(ARCH), written(REPORT), vec![opened.clone(), served.clone()]].concat();
+    assert_eq!(pages.len(), 4);
+    pages.iter().for_each(|page| drop(assert_safe(page)));
+    // A report opened from a served page is under both policies.
+    let policy = assert_safe(&served);
+    assert_eq!(policy, super::served_policy());
+    for script in elements(&opened, "script") {
+        assert!(directive(&policy, "script-src").contains(&source(script)), "{policy}");
+    }
+}
