@@ -165,6 +165,14 @@ enum Command {
     Verify {
         /// Folder written by `run`
         dir: PathBuf,
+        /// Study file that the folder must answer
+        study: Option<PathBuf>,
+        /// Change one value of the study file, as in `run`; may be given several times
+        #[arg(long, value_name = "KEY=VALUE", requires = "study")]
+        set: Vec<String>,
+        /// Accept a folder that holds only some cases of its study
+        #[arg(long)]
+        partial: bool,
         /// Cases worked on side by side
         #[arg(long, default_value_t = 1)]
         jobs: usize,
@@ -206,7 +214,9 @@ impl Command {
             Command::Conform { tags, out } => commands::conform::conform_tags(&tags, out.as_deref()),
             Command::List { kind } => commands::explain::list(kind.as_deref()),
             Command::Schema => commands::explain::schema(),
-            Command::Verify { dir, jobs } => commands::verify::verify(&dir, jobs),
+            Command::Verify { dir, study, set, partial, jobs } => {
+                commands::verify::verify(&dir, &commands::verify::VerifyOptions { study, set, partial, jobs })
+            }
             Command::Completions { shell } => commands::pages::completions(shell, &mut Cli::command()),
             Command::Man => commands::pages::man(Cli::command()),
         }

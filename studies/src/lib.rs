@@ -38,6 +38,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bench;
+mod caught;
 pub mod cli;
 mod commands;
 pub mod config;
@@ -47,6 +48,7 @@ pub mod kinds;
 pub mod loads;
 pub mod postprocess;
 pub mod prelude;
+mod regular_file;
 pub mod results;
 pub mod scenes;
 pub mod serve;

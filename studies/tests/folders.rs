@@ -93,7 +93,9 @@ fn one_case_joins_the_others() {
     let out = at.join("out");
     let one = voussoir(&["run", "a.toml", "--out", "out", "--case", "3"], &at);
     assert_eq!((code(&one), ids(&out)), (0, vec![3]), "{}", said(&one));
-    let verified = voussoir(&["verify", "out"], &at);
+    let hidden = voussoir(&["verify", "out"], &at);
+    assert!(code(&hidden) == 1 && said(&hidden).contains("1 of the study's 8 cases"), "{}", said(&hidden));
+    let verified = voussoir(&["verify", "out", "a.toml", "--partial"], &at);
     assert!(
         code(&verified) == 0 && said(&verified).contains("1 case(s) of the study's 8 confirmed"),
         "{}",
@@ -102,12 +104,14 @@ fn one_case_joins_the_others() {
     let more = voussoir(&["run", "a.toml", "--out", "out", "--case", "1"], &at);
     assert_eq!((code(&more), ids(&out)), (0, vec![1, 3]));
     assert!(said(&more).contains("1 other(s) are kept"), "{}", said(&more));
-    assert_eq!(code(&voussoir(&["verify", "out"], &at)), 0);
+    assert_eq!(code(&voussoir(&["verify", "out", "--partial"], &at)), 0);
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "whole", "--quiet"], &at)), 0);
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "whole", "--case", "2", "--quiet"], &at)), 0);
     assert_eq!(ids(&at.join("whole")), (0..8).collect::<Vec<_>>());
     assert!(timeless(&at.join("whole")).get("only_cases").is_none());
-    assert_eq!(code(&voussoir(&["verify", "whole"], &at)), 0);
+    assert_eq!(code(&voussoir(&["verify", "whole", "a.toml"], &at)), 0);
+    let other = voussoir(&["verify", "whole", "a.toml", "--set", "joints.dry.friction=0.5"], &at);
+    assert!(code(&other) == 1 && said(&other).contains("joints.dry.friction is 0.6 in the folder"), "{}", said(&other));
     // Deleted cases are found, also if the list of those asked for is forged to nothing.
     let whole = text(&at.join("whole/results.json"));
     let mut results: Value = serde_json::from_str(&whole).expect("JSON");

@@ -145,6 +145,10 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         let failures = vec![format!("joint law \"{name}\" is not given by facets: its strength cannot be checked")];
         return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
     }
+    if !claim.in_range() {
+        let failures = vec!["a force or velocity is not finite, or too great to be checked".into()];
+        return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
+    }
     let facets: Vec<Vec<Facet>> =
         assembly.catalogue.laws.iter().map(|(_, law)| law.facets().unwrap_or_default()).collect();
     let mut check = Check {

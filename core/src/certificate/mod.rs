@@ -1,6 +1,7 @@
 //! Certificates: what proves an answer. They share nothing with solvers.
 
 mod limit;
+mod magnitude;
 mod mechanism;
 mod path;
 mod products;
@@ -10,6 +11,7 @@ mod settlement;
 pub use self::limit::{
     Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump, motion_size,
 };
+pub use self::magnitude::{GREATEST_NUMBER, in_range};
 pub use self::mechanism::{
     CRUSHES, CentroidVelocity, Crushing, Deforming, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps,
     mechanism, mechanism_of_deforming, velocity_at,

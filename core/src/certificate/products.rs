@@ -294,10 +294,12 @@ impl Rows {
                     (false, true) => COVERED * slack,
                     (false, false) => (t - a) / unit,
                 };
-                shortfall += (-multipliers[(i, j)]).max(0.0) * product * unit;
+                let missing = -multipliers[(i, j)];
+                // `max` would read NaN as 0.
+                shortfall += if missing.is_nan() { f64::NAN } else { missing.max(0.0) * product * unit };
             }
         }
-        if shortfall.is_nan() { Err("the multipliers overflow".into()) } else { Ok(shortfall) }
+        if shortfall.is_finite() { Ok(shortfall) } else { Err("the multipliers overflow".into()) }
     }
 }
 

@@ -1,40 +1,131 @@
 //! `voussoir verify`.
 
-use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say};
 use super::files;
 use super::folder::named_by_writers;
 use super::options::useful_jobs;
 use super::progress::{Progress, Shown};
-use crate::kinds::StoredResults;
-use std::io::Read;
-use std::path::Path;
+use crate::caught::{caught, silence_caught_panics};
+use crate::kinds::{CasesOf, LoadedStudy, StoredResults, Verification};
+use crate::regular_file::open_regular;
+use crate::verify::first_difference;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
 
-/// Checks a results folder, `jobs` cases side by side.
-pub fn verify(dir: &Path, jobs: usize) -> u8 {
-    match confirm(dir, jobs) {
-        Ok(code) | Err(code) => code,
+/// Greatest length of a results.json whose cases are held.
+const MAX_HELD_BYTES: u64 = 4 << 30;
+/// Greatest length of any other file of a results folder.
+const MAX_FILE_BYTES: u64 = 1 << 40;
+/// Greatest length of a resolved study.
+const MAX_STUDY_BYTES: u64 = 64 << 20;
+/// Findings that are listed.
+const LISTED: usize = 1000;
+
+/// Arguments of `voussoir verify`.
+pub struct VerifyOptions {
+    /// The study file that the folder must answer.
+    pub study: Option<PathBuf>,
+    /// KEY=VALUE overrides of that file.
+    pub set: Vec<String>,
+    /// Accept a folder that holds only some cases.
+    pub partial: bool,
+    /// Cases side by side.
+    pub jobs: usize,
+}
+
+/// Checks a results folder.
+pub fn verify(dir: &Path, options: &VerifyOptions) -> u8 {
+    silence_caught_panics();
+    let checked = caught(|| {
+        let sets = files::overrides(&options.set)?;
+        let wanted = options.study.as_ref().map(|path| files::study(path, &sets)).transpose()?;
+        confirm(dir, wanted.as_deref(), options).map(|checked| checked.code)
+    });
+    match checked {
+        Ok(Ok(code) | Err(code)) => code,
+        Err(why) => {
+            say(format!("{}: {why}", dir.display()));
+            NOT_PROVEN
+        }
     }
 }
 
-fn confirm(dir: &Path, jobs: usize) -> Result<u8, u8> {
-    let path = dir.join("results.json");
-    let readable = std::fs::File::open(&path);
-    readable.map_err(|error| {
-        eprintln!("voussoir: cannot read {}: {error}", path.display());
-        NO_ACCESS
-    })?;
-    let study = files::study(&dir.join("resolved.toml"), &[])?;
-    let mut code = FINE;
-    for part in study.parts() {
-        code = code.max(confirm(&dir.join(&part.folder), jobs)?);
+/// The outcome of the check of one folder.
+struct Checked {
+    code: u8,
+    /// True if nothing was found, in its parts neither.
+    holds: bool,
+}
+
+/// Opens a file that a results folder must have.
+fn opened(dir: &Path, name: &str, limit: u64) -> Result<File, u8> {
+    let path = dir.join(name);
+    open_regular(&path, limit).map_err(|error| {
+        complain(format_args!("voussoir: cannot read {}: {error}", path.display()));
+        let no_results = error.kind() == ErrorKind::NotFound && dir.is_dir();
+        match error.kind() {
+            ErrorKind::InvalidInput | ErrorKind::FileTooLarge => WRONG_INPUT,
+            _ if no_results => WRONG_INPUT,
+            _ => NO_ACCESS,
+        }
+    })
+}
+
+/// A file that cannot be read.
+struct Unreadable(ErrorKind);
+
+impl Read for Unreadable {
+    fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+        Err(self.0.into())
     }
+}
+
+fn confirm(dir: &Path, wanted: Option<&dyn LoadedStudy>, options: &VerifyOptions) -> Result<Checked, u8> {
+    opened(dir, "results.json", MAX_FILE_BYTES)?;
+    opened(dir, "resolved.toml", MAX_STUDY_BYTES)?;
+    let study = files::study(&dir.join("resolved.toml"), &[])?;
+    let mut whole = Checked { code: FINE, holds: true };
+    let mut findings = Vec::new();
+    if let Some(why) = wanted.and_then(|wanted| first_difference(study.resolved(), wanted.resolved())) {
+        findings.push(format!("the folder does not answer this study: {why}"));
+    }
+    for part in study.parts() {
+        let own = wanted.and_then(|wanted| wanted.parts().iter().find(|own| own.folder == part.folder));
+        let checked = confirm(&dir.join(&part.folder), own.map(|own| own.study.as_ref()), options)?;
+        whole = Checked { code: whole.code.max(checked.code), holds: whole.holds && checked.holds };
+    }
+    if !whole.holds {
+        say(format!("{}: not compared, because a study that it reports on does not hold", dir.display()));
+        return Ok(whole);
+    }
+    let found = compared(dir, study.as_ref(), options.jobs)?;
+    findings.extend(found.findings.iter().map(|(id, why)| format!("case {id}: {why}")));
+    findings.extend(found.files.iter().cloned());
+    if found.own < found.of && !options.partial {
+        findings.push(format!(
+            "the folder holds {} of the study's {} cases; `--partial` accepts that",
+            found.own, found.of
+        ));
+    }
+    Ok(told(&dir.join("results.json"), &findings, &found, whole.code))
+}
+
+/// Compares a folder with its study.
+fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verification, u8> {
+    let streamed = matches!(study.cases(), Some(CasesOf::Streamed(_)));
+    let limit = |name: &str| if name == "results.json" && !streamed { MAX_HELD_BYTES } else { MAX_FILE_BYTES };
+    drop(opened(dir, "results.json", limit("results.json"))?);
+    let file = |name: &str| match open_regular(&dir.join(name), limit(name)) {
+        Ok(file) => Some(Box::new(file) as Box<dyn Read>),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => Some(Box::new(Unreadable(error.kind())) as Box<dyn Read>),
+    };
     let progress = Progress::new(study.name(), Shown::Bar, None);
-    let file = |name: &str| std::fs::File::open(dir.join(name)).ok().map(|file| Box::new(file) as Box<dyn Read>);
-    let stored = StoredResults { jobs: useful_jobs(jobs), file: &file };
-    let found = study.verify_stored(&stored, &progress);
+    let found = study.verify_stored(&StoredResults { jobs: useful_jobs(jobs), file: &file }, &progress);
     progress.finish();
     let mut found = found.map_err(|error| {
-        eprintln!("{}: not a results file: {error}", path.display());
+        complain(format_args!("{}: not a results file: {error}", dir.join("results.json").display()));
         WRONG_INPUT
     })?;
     // Where cases are missing nothing is made, and what they wrote is not foreign for that.
@@ -42,16 +133,23 @@ fn confirm(dir: &Path, jobs: usize) -> Result<u8, u8> {
         let foreign = named_by_writers(dir).into_iter().filter(|name| !found.made.contains(name));
         found.files.extend(foreign.map(|name| format!("{name} is none of the files that results.json gives")));
     }
-    found.findings.iter().for_each(|(id, why)| say(format!("case {id}: {why}")));
-    found.files.iter().for_each(say);
-    let wrong = found.findings.len() + found.files.len();
-    if wrong == 0 {
+    Ok(found)
+}
+
+/// Prints the findings, or the number of confirmed cases.
+fn told(path: &Path, findings: &[String], found: &Verification, code: u8) -> Checked {
+    findings.iter().take(LISTED).for_each(say);
+    if findings.len() > LISTED {
+        say(format!("{} more findings are not listed", findings.len() - LISTED));
+    }
+    let holds = findings.is_empty();
+    if holds {
         let confirmed = found.cases - found.stalled;
-        let of = if found.cases < found.of { format!(" of the study's {}", found.of) } else { String::new() };
+        let of = if found.own < found.of { format!(" of the study's {}", found.of) } else { String::new() };
         say(format!("{}: {confirmed} case(s){of} confirmed, {} stalled", path.display(), found.stalled));
         say(found.how);
     } else {
-        say(format!("{}: {wrong} finding(s); the results do not hold", path.display()));
+        say(format!("{}: {} finding(s); the results do not hold", path.display(), findings.len()));
     }
-    Ok(if wrong == 0 && found.stalled == 0 { code } else { NOT_PROVEN })
+    Checked { code: if holds && found.stalled == 0 { code } else { NOT_PROVEN }, holds }
 }

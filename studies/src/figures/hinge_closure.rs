@@ -13,6 +13,9 @@ use voussoir_core::model::{Assembly, root};
 /// With more unknowns or more equations than this the gaps stay: they are a matter of looks.
 const GREATEST: usize = 150;
 
+/// Bounds the iterations of one decomposition.
+const MAX_SVD_ITERATIONS: usize = 10_000;
+
 /// Corrects placements so that hinges stay closed. Bodies at rest stay at rest. Hinges of joints that slide, or
 /// crush over more than a toe, are left alone: they do not stay where they are.
 pub fn close_hinges(assembly: &Assembly, mechanism: &Mechanism, mut placements: Vec<Placement>) -> Vec<Placement> {
@@ -60,7 +63,11 @@ pub fn close_hinges(assembly: &Assembly, mechanism: &Mechanism, mut placements: 
         if gaps.amax() < 1e-9 * assembly.size() {
             break;
         }
-        let Ok(step) = matrix.svd(true, true).solve(&-gaps, 1e-6) else { break };
+        if !gaps.iter().chain(&matrix).all(|x| x.is_finite()) {
+            break;
+        }
+        let factors = matrix.try_svd(true, true, f64::EPSILON, MAX_SVD_ITERATIONS);
+        let Some(Ok(step)) = factors.map(|svd| svd.solve(&-gaps, 1e-6)) else { break };
         for (placement, link) in placements.iter_mut().zip(&link_of) {
             if let Some(link) = *link {
                 let shift = Vec2::new(step[3 * link], step[3 * link + 1]);

@@ -3,6 +3,7 @@
 
 use super::kind::{CasesOf, LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
 use super::stored_cases::read_cases;
+use crate::caught::caught;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::format_number;
 use crate::figures::sweep::study_chart;
@@ -12,7 +13,7 @@ use crate::side_by_side::side_by_side;
 use crate::solve::Observer;
 use crate::solve::explain::explain;
 use crate::study::{Case, Study, as_blocks};
-use crate::verify::{StoredCheck, solve_again};
+use crate::verify::{StoredCheck, misfits, solve_again};
 use crate::writers::comparison::comparison_table;
 use crate::writers::record::record;
 use crate::writers::table::results_table;
@@ -48,6 +49,12 @@ impl Study {
         let certified = results.certified();
         let results = request.results_apart.then_some(results);
         RunOutput { files, results, table, remarks: Vec::new(), certified }
+    }
+
+    /// The files that results give, by name.
+    fn made(&self, results: &StudyResults, jobs: usize) -> Vec<(String, Vec<u8>)> {
+        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        side_by_side(jobs, || written(&StudyOutput::new(self, results, &cases), true))
     }
 
     /// Stored cases that are this study's own: of the same label, and of the same resolved case.
@@ -93,7 +100,8 @@ impl LoadedStudy for Study {
         }
         let results: StudyResults = serde_json::from_str(results).ok()?;
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
-        if cases.len() != results.cases.len() {
+        let fits = |(case, result): (&Cow<Case>, &CaseResult)| misfits(case, result).is_empty();
+        if cases.len() != results.cases.len() || !cases.iter().zip(&results.cases).all(fits) {
             return None;
         }
         let output = StudyOutput::new(self, &results, &cases);
@@ -155,23 +163,49 @@ impl LoadedStudy for Study {
         let mut check = StoredCheck::new(self, &results, &again);
         read_cases(stored.results()?, &mut |entry| check.entry(&entry))?;
         let findings = check.findings()?;
-        drop(again);
-        let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
-        let made = match cases.len() == results.cases.len() {
-            true => side_by_side(stored.jobs, || written(&StudyOutput::new(self, &results, &cases), true)),
-            false => Vec::new(),
+        let (count, stalled) = (results.cases.len(), stalled(&results));
+        let own = results.cases.iter().filter(|case| case.label.id < self.count()).count();
+        // Stored results are drawn only if they are confirmed: then each number was solved again.
+        let drawn = match findings.is_empty() {
+            true => results,
+            false => {
+                let again = with_costs(again, &results);
+                StudyResults { date: results.date, ..self.results(&results.version, again) }
+            }
         };
-        let files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
+        let (made, unmade) = match caught(|| self.made(&drawn, stored.jobs)) {
+            Ok(made) => (made, None),
+            Err(why) => (Vec::new(), Some(format!("tables and figures cannot be made: {why}"))),
+        };
+        let mut files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
+        files.extend(unmade);
         Ok(Verification {
-            cases: results.cases.len(),
-            stalled: results.cases.iter().filter(|case| case.status == Status::Stalled).count(),
+            cases: count,
+            stalled,
             findings,
             files,
             made: made.into_iter().map(|(name, _)| name).collect(),
+            own,
             of: self.count(),
             how: HOW,
         })
     }
+}
+
+/// Cases with the stored seconds and counters, which are not compared and appear in tables.
+fn with_costs(mut cases: Vec<CaseResult>, stored: &StudyResults) -> Vec<CaseResult> {
+    let costs: BTreeMap<usize, &CaseResult> = stored.cases.iter().map(|case| (case.label.id, case)).collect();
+    for case in &mut cases {
+        if let Some(stored) = costs.get(&case.label.id) {
+            (case.seconds, case.counters) = (stored.seconds, stored.counters.clone());
+        }
+    }
+    cases
+}
+
+/// Number of stalled cases.
+fn stalled(results: &StudyResults) -> usize {
+    results.cases.iter().filter(|case| case.status == Status::Stalled).count()
 }
 
 /// The table on the terminal, with what the study's kind adds to it.

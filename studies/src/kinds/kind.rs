@@ -258,6 +258,8 @@ pub struct Verification {
     pub files: Vec<String>,
     /// Names of all files that the results give.
     pub made: Vec<String>,
+    /// Number of the study's own cases that are in the results.
+    pub own: usize,
     /// Number of cases of the study.
     pub of: usize,
     /// What was checked how.

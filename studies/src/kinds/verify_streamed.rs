@@ -2,9 +2,10 @@
 //! than are checked at once.
 
 use super::case_study::HOW;
-use super::kind::{StoredResults, Verification, not_made};
+use super::kind::{CasesOf, StoredResults, Verification, not_made};
 use super::same_bytes::SameBytes;
 use super::stored_cases::read_cases;
+use crate::caught::caught;
 use crate::results::CaseResult;
 use crate::side_by_side::side_by_side;
 use crate::solve::{Observer, solve_followed};
@@ -80,7 +81,9 @@ impl Check<'_> {
         let results = entries.iter().map(read).collect::<Result<Vec<_>, _>>()?;
         let (sweep, observer) = (self.sweep, self.observer);
         let pairs = entries.par_iter().zip(&results);
-        let check = |(entry, result): (&Json, &CaseResult)| differs(sweep, observer, entry, result);
+        let check = |(entry, result): (&Json, &CaseResult)| {
+            caught(|| differs(sweep, observer, entry, result)).unwrap_or_else(|why| vec![why])
+        };
         let wrong: Vec<Vec<String>> = side_by_side(self.jobs, || pairs.map(check).collect());
         for (case, wrong) in results.iter().zip(wrong) {
             self.found.findings.extend(wrong.into_iter().map(|why| (case.label.id, why)));
@@ -96,10 +99,13 @@ impl Check<'_> {
     /// A case with this id stands next.
     fn place(&mut self, id: usize) {
         let next = self.ids.last().map_or(0, |last| last + 1);
+        if id >= self.sweep.count() {
+            return;
+        }
         if id < next {
             self.found.findings.push((id, "stands twice, or after a later case".into()));
         } else {
-            self.missing.extend(next..id.min(self.sweep.count()));
+            self.missing.extend(next..id);
             self.ids.push(id);
         }
     }
@@ -128,13 +134,16 @@ impl Check<'_> {
             (!same).then(|| not_made(name))
         });
         self.found.files.extend(others);
+        self.found.own = self.ids.len();
         self.found
     }
 }
 
 /// What is wrong with a stored case, by itself and against solving again.
 fn differs(sweep: &Sweep, observer: &dyn Observer, entry: &Json, result: &CaseResult) -> Vec<String> {
-    let Ok(case) = sweep.case(result.label.id) else { return vec!["the study has no such case".into()] };
+    let Some(case) = CasesOf::Streamed(sweep).case(result.label.id) else {
+        return vec!["the study has no such case".into()];
+    };
     let Some(again) = solve_followed(&case, observer) else { return vec!["the check was cancelled".into()] };
     match serde_json::to_value(again) {
         Ok(again) => verify_case(&case, result).into_iter().chain(differences(entry, &again)).collect(),

@@ -8,6 +8,7 @@ use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Table, Value};
 use crate::config::limits::MAX_FILE_BYTES;
 use crate::config::origin::Origin;
+use crate::regular_file::open_regular;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -36,7 +37,9 @@ pub fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
 pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
     let folder = study.parent().unwrap_or(Path::new("")).to_path_buf();
     move |file| {
-        let bytes = read_bounded(&folder.join(file)).map_err(|error| error.to_string())?;
+        let path = folder.join(file);
+        let bytes = open_regular(&path, MAX_FILE_BYTES).and_then(|_| read_bounded(&path));
+        let bytes = bytes.map_err(|error| error.to_string())?;
         match String::from_utf8(bytes) {
             Ok(text) => Ok(text),
             // Older drawings have one byte a character.

@@ -1,6 +1,7 @@
 //! One case: its label, its stages, and then what limit analysis or a path claims.
 
 use super::findings::Findings;
+use super::fit::misfits;
 use super::{limit, path};
 use crate::results::CaseResult;
 use crate::results::load_entries::load_entries;
@@ -11,6 +12,10 @@ use voussoir_core::plugin::{PluginKind, card};
 
 /// What is wrong with a result.
 pub fn verify_case(case: &Case, result: &CaseResult) -> Vec<String> {
+    let misfits = misfits(case, result);
+    if !misfits.is_empty() {
+        return misfits;
+    }
     let mut findings = Findings::default();
     match recompute(case, result, &mut findings) {
         Ok(()) => findings.0,

@@ -8,10 +8,14 @@
 pub mod case;
 pub mod fields;
 mod findings;
+mod fit;
 mod limit;
 mod mechanism;
 mod path;
 pub mod repeat;
+mod same_study;
 mod study;
 
+pub use fit::misfits;
+pub use same_study::first_difference;
 pub use study::{StoredCheck, solve_again, verify, verify_against};

@@ -2,13 +2,14 @@
 
 use super::case::verify_case;
 use super::repeat::differences;
+use crate::caught::caught;
 use crate::kinds::kind;
 use crate::results::{CaseResult, StudyResults};
 use crate::solve::{Observer, Unobserved};
 use crate::study::Study;
 use serde::Deserialize;
 use serde_json::Value as Json;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What is wrong with a set of results, by case; empty when everything is confirmed. Solves all its cases again.
 pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
@@ -22,9 +23,11 @@ pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
 /// The cases that a set of results must hold, solved again.
 pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
     let wanted = match &results.only_cases {
-        Some(ids) => ids.iter().copied().filter(|id| *id < study.cases.len()).collect(),
-        None => (0..study.cases.len()).collect::<Vec<_>>(),
+        // Each once, however long the list.
+        Some(ids) => ids.iter().copied().filter(|id| *id < study.cases.len()).collect::<BTreeSet<_>>(),
+        None => (0..study.cases.len()).collect(),
     };
+    let wanted: Vec<usize> = wanted.into_iter().collect();
     observer.begins(wanted.len());
     kind(&study.kind).map(|kind| kind.solve(study, &wanted, jobs, observer)).unwrap_or_default()
 }
@@ -62,17 +65,20 @@ impl<'a> StoredCheck<'a> {
     pub fn entry(&mut self, entry: &Json) {
         let Some(result) = self.results.cases.get(self.seen) else { return self.seen += 1 };
         self.seen += 1;
-        let id = result.label.id;
-        let Some(case) = self.study.case_of(&result.label) else {
-            return self.wrong.push((id, "the study has no such case".into()));
-        };
+        let found = caught(|| self.differs(entry, result)).unwrap_or_else(|why| vec![why]);
+        self.wrong.extend(found.into_iter().map(|why| (result.label.id, why)));
+    }
+
+    /// Findings of a case, by itself and against solving again.
+    fn differs(&self, entry: &Json, result: &CaseResult) -> Vec<String> {
+        let Some(case) = self.study.case_of(&result.label) else { return vec!["the study has no such case".into()] };
         let mut found = verify_case(&case, result);
-        match self.again.get(&id).map(serde_json::to_value) {
+        match self.again.get(&result.label.id).map(serde_json::to_value) {
             Some(Ok(again)) => found.extend(differences(entry, &again)),
             Some(Err(why)) => found.push(why.to_string()),
             None => {}
         }
-        self.wrong.extend(found.into_iter().map(|why| (id, why)));
+        found
     }
 
     /// What is wrong; an error where other entries were given than the results have.
@@ -90,7 +96,14 @@ fn study_findings(study: &Study, results: &StudyResults) -> Vec<(usize, String)>
     if results.study != study.name {
         wrong.push((0, format!("results of \"{}\", study \"{}\"", results.study, study.name)));
     }
-    let own = kind(&study.kind).map(|kind| kind.own_results(study, &results.cases)).unwrap_or_default();
+    let own = || kind(&study.kind).map(|kind| kind.own_results(study, &results.cases)).unwrap_or_default();
+    let own = match caught(own) {
+        Ok(own) => own,
+        Err(why) => {
+            wrong.push((0, why));
+            return wrong;
+        }
+    };
     if own.comparison != results.comparison {
         wrong.push((0, "the comparison is not that of the cases".into()));
     }
@@ -103,7 +116,7 @@ fn study_findings(study: &Study, results: &StudyResults) -> Vec<(usize, String)>
 /// Every case of the study once, in order, and no other; of a run of some cases only these.
 fn id_findings(study: &Study, results: &StudyResults, again: &[CaseResult]) -> Vec<(usize, String)> {
     let mut wrong = Vec::new();
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     let ids: Vec<usize> = results.cases.iter().map(|case| case.label.id).collect();
     for id in &ids {
         if !seen.insert(*id) {
@@ -115,11 +128,12 @@ fn id_findings(study: &Study, results: &StudyResults, again: &[CaseResult]) -> V
     }
     let missing = again.iter().map(|case| case.label.id).filter(|id| !seen.contains(id));
     wrong.extend(missing.map(|id| (id, "is missing".into())));
-    let expected: std::collections::BTreeSet<usize> = again.iter().map(|case| case.label.id).collect();
+    let expected: BTreeSet<usize> = again.iter().map(|case| case.label.id).collect();
     wrong.extend(seen.difference(&expected).map(|id| (*id, "is not among the cases that were asked for".into())));
     if let Some(only) = &results.only_cases {
-        let whole = only.is_empty() || (0..study.cases.len()).all(|id| only.contains(&id));
-        if whole || only.iter().any(|id| *id >= study.cases.len()) || !only.is_sorted() {
+        let ordered = only.windows(2).all(|pair| pair[0] < pair[1]);
+        let whole = only.is_empty() || only.len() >= study.cases.len();
+        if whole || !ordered || only.iter().any(|id| *id >= study.cases.len()) {
             wrong.push((0, "only_cases is no choice of the study's cases".into()));
         }
     }

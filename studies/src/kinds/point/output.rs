@@ -93,6 +93,7 @@ impl LoadedStudy for PointStudy {
             findings,
             files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes()))),
             made: made.into_iter().map(|(name, _)| name).collect(),
+            own: driven.len(),
             of: self.cases.len(),
             how: "checked: every number and word against driving the point again; tables and figures against those of the \
                   study. Not checked: counters, version",

@@ -7,6 +7,7 @@ use super::keys::STUDY;
 use super::page::results_page;
 use super::parts::Parts;
 use super::value::Value;
+use crate::caught::caught;
 use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
@@ -183,7 +184,11 @@ impl LoadedStudy for ReportStudy {
         let json: Json = serde_json::from_reader(stored.results()?).map_err(|error| error.to_string())?;
         let text = |part: &Part| stored.text(&format!("{}/results.json", part.folder)).unwrap_or_default();
         let results: Vec<String> = self.parts.iter().map(text).collect();
-        let made = self.output(&results, json["version"].as_str().unwrap_or_default(), json["date"].as_str());
+        let made = || self.output(&results, json["version"].as_str().unwrap_or_default(), json["date"].as_str());
+        let made = match caught(made) {
+            Ok(made) => made,
+            Err(why) => return Ok(Verification { findings: vec![(0, why)], ..Verification::default() }),
+        };
         let again = made.files.iter().find(|(name, _)| name == "results.json");
         let again: Json = again.and_then(|(_, bytes)| serde_json::from_slice(bytes).ok()).unwrap_or_default();
         let findings = differences(&json, &again).into_iter().map(|why| (0, why)).collect();
@@ -193,6 +198,7 @@ impl LoadedStudy for ReportStudy {
             findings,
             files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))),
             made: made.files.into_iter().map(|(name, _)| name).collect(),
+            own: self.contents.claims.len(),
             of: self.contents.claims.len(),
             how: "checked: verdicts, charts and page against the results of the parts, each of which is verified by itself",
         })

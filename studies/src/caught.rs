@@ -1,0 +1,41 @@
+//! The last resort against a panic in what stored data leads to.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+
+thread_local! {
+    /// True while a panic of this thread is caught and reported in words.
+    static CAUGHT: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Returns the result of the work, or the message of the panic that ended it.
+pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    let before = CAUGHT.replace(true);
+    let result = catch_unwind(AssertUnwindSafe(work));
+    CAUGHT.set(before);
+    result.map_err(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        format!("a panic ended the check: {}", said.unwrap_or("no message"))
+    })
+}
+
+/// Prints nothing for panics that [`caught`] reports. All other panics print as before.
+pub(crate) fn silence_caught_panics() {
+    let print = take_hook();
+    set_hook(Box::new(move |panic| {
+        if !CAUGHT.get() {
+            print(panic);
+        }
+    }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::caught;
+
+    #[test]
+    fn a_panic_becomes_words() {
+        assert_eq!(caught(|| 1), Ok(1));
+        assert_eq!(caught(|| panic!("no {}", 2)), Err::<(), _>("a panic ended the check: no 2".into()));
+    }
+}

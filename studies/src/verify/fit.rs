@@ -1,0 +1,203 @@
+//! A stored case against its scene, before anything is computed from it: every index, name and length must fit, and
+//! every number must be in range. Later code indexes the scene with these entries and relies on this check.
+
+use crate::results::{CaseResult, FieldEntry, StateEntry};
+use crate::study::Case;
+use std::collections::BTreeSet;
+use voussoir_core::certificate::{Hinge, Mechanism, in_range};
+
+/// Greatest number of steps of a lower bound by products. The check of a step costs a dense factorisation.
+const MAX_STEPS: usize = 1_000;
+/// Findings of one case that are listed.
+const LISTED: usize = 8;
+
+/// Entries of a stored case that do not fit its scene, in words. Only a case without any may be read further.
+pub fn misfits(case: &Case, result: &CaseResult) -> Vec<String> {
+    let mut fit = Fit { case, found: BTreeSet::new() };
+    fit.stages(result);
+    fit.proof(result);
+    fit.motions(result);
+    result.mechanism.iter().for_each(|mechanism| fit.mechanism(mechanism));
+    fit.path(result);
+    fit.numbers("load_factor, bounds or interval", summary(result));
+    let mut found: Vec<String> = fit.found.into_iter().collect();
+    found.truncate(LISTED);
+    found
+}
+
+/// Load factors and bounds.
+fn summary(result: &CaseResult) -> Vec<f64> {
+    let factors = [
+        result.load_factor,
+        result.proof.field_factor,
+        result.path.first_limit_point,
+        result.non_associated.associated_load_factor,
+    ];
+    let interval = result.feasible_interval.into_iter().flatten().flatten();
+    factors.into_iter().flatten().chain(result.bounds.into_iter().flatten()).chain(interval).collect()
+}
+
+/// Collects what does not fit.
+struct Fit<'a> {
+    case: &'a Case,
+    found: BTreeSet<String>,
+}
+
+impl Fit<'_> {
+    fn expect(&mut self, fits: bool, what: impl FnOnce() -> String) {
+        if !fits {
+            self.found.insert(what());
+        }
+    }
+
+    fn numbers(&mut self, what: &str, numbers: impl IntoIterator<Item = f64>) {
+        let fits = numbers.into_iter().all(in_range);
+        self.expect(fits, || format!("{what}: a number is not finite, or too great to be checked"));
+    }
+
+    fn joint(&mut self, what: &str, index: usize) {
+        let count = self.case.assembly.joints.len();
+        self.expect(index < count, || format!("{what}: there is no joint {index}, the scene has {count}"));
+    }
+
+    /// A joint with the names of its blocks.
+    fn between(&mut self, what: &str, index: usize, names: &[String; 2]) {
+        self.joint(what, index);
+        let assembly = &self.case.assembly;
+        let Some(joint) = assembly.joints.get(index) else { return };
+        let own = [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.as_str());
+        self.expect(own == names.each_ref().map(String::as_str), || {
+            format!("{what}: joint {index} lies between \"{}\" and \"{}\"", own[0], own[1])
+        });
+    }
+
+    fn stage(&mut self, what: &str, name: &str) {
+        let known = self.case.stages.iter().any(|stage| stage.name == name);
+        self.expect(known, || format!("{what}: there is no stage \"{name}\""));
+    }
+
+    fn length(&mut self, what: &str, length: usize, expected: usize) {
+        self.expect(length == expected, || format!("{what}: {length} entries instead of {expected}"));
+    }
+
+    fn hinges(&mut self, what: &str, hinges: &[Hinge]) {
+        for hinge in hinges {
+            self.between(what, hinge.joint, &hinge.between);
+            self.numbers(what, hinge.point.into_iter().chain([hinge.rotation]));
+        }
+    }
+
+    fn stages(&mut self, result: &CaseResult) {
+        let count = self.case.stages.len();
+        self.expect(result.stages.len() <= count, || format!("stages: the study has {count}"));
+        for stage in &result.stages {
+            self.hinges("hinges of a stage", &stage.hinges);
+            self.numbers("factor of a stage", stage.factor);
+        }
+    }
+
+    fn forces(&mut self, what: &str, entries: Option<&[FieldEntry]>) {
+        for entry in entries.into_iter().flatten() {
+            self.joint(what, entry.joint);
+            self.numbers(what, entry.point.into_iter().chain(entry.force));
+        }
+    }
+
+    /// Names of bodies, one for each body of the scene in its order, or none.
+    fn bodies<'a>(&mut self, what: &str, names: impl ExactSizeIterator<Item = &'a String>) {
+        let bodies = &self.case.assembly.bodies;
+        let fits = names.len() == bodies.len() && names.zip(bodies).all(|(name, body)| *name == body.name);
+        self.expect(fits, || format!("{what}: not one entry for each block of the scene, in its order"));
+    }
+
+    fn proof(&mut self, result: &CaseResult) {
+        let proof = &result.proof;
+        self.forces("field", proof.field.as_deref());
+        self.forces("ray", proof.ray.as_deref());
+        for entry in &proof.fill {
+            let numbers = entry.point.into_iter().chain(entry.direction).chain(entry.bounds).chain([entry.force]);
+            self.numbers("fill", numbers);
+        }
+        if let Some(line) = &proof.thrust_line {
+            self.length("thrust_line", line.len(), self.case.assembly.joints.len());
+            self.numbers("thrust_line", line.iter().flatten().flatten().copied());
+        }
+        if let Some(lower) = &result.non_associated.lower_proof {
+            let count = lower.steps.len();
+            self.expect(count <= MAX_STEPS, || format!("lower_proof: {count} steps, more than {MAX_STEPS}"));
+            for step in &lower.steps {
+                let multipliers = step.multipliers.iter().flat_map(|(_, row)| row.iter().map(|(_, value)| *value));
+                self.numbers("lower_proof", step.range.into_iter().chain([step.bound]).chain(multipliers));
+            }
+        }
+        for point in &result.non_associated.bracket {
+            self.numbers("bracket", [point.work, point.lower].into_iter().chain(point.found));
+        }
+    }
+
+    fn motions(&mut self, result: &CaseResult) {
+        let motions =
+            [("motion", &result.proof.motion), ("associated_motion", &result.non_associated.associated_motion)];
+        for (what, motion) in motions {
+            let Some(motion) = motion else { continue };
+            self.bodies(what, motion.iter().map(|entry| &entry.body));
+            self.numbers(what, motion.iter().flat_map(|entry| entry.velocity));
+        }
+        if let Some(displaced) = &result.path.displacements {
+            self.bodies("displacements", displaced.iter().map(|entry| &entry.body));
+            self.numbers("displacements", displaced.iter().flat_map(|entry| entry.displacement));
+        }
+    }
+
+    fn mechanism(&mut self, mechanism: &Mechanism) {
+        self.hinges("hinges", &mechanism.hinges);
+        for sliding in &mechanism.sliding {
+            self.between("sliding", sliding.joint, &sliding.between);
+            self.numbers("sliding", [sliding.slip]);
+        }
+        for crushing in &mechanism.crushing {
+            self.between("crushing", crushing.joint, &crushing.between);
+            let share = (0.0..=1.0).contains(&crushing.share);
+            self.expect(share, || format!("crushing: {} is no share of a joint", crushing.share));
+        }
+    }
+
+    fn path(&mut self, result: &CaseResult) {
+        let path = &result.path;
+        for event in &path.events {
+            self.joint("events", event.joint);
+            self.stage("events", &event.stage);
+            self.numbers("events", event.point.into_iter().chain([event.factor]));
+        }
+        let points = result.proof.field.as_ref().map(Vec::len);
+        path.states.iter().for_each(|state| self.state(state, points));
+        self.numbers("curve", path.curve.iter().flatten().flatten().copied());
+        self.numbers("joint_states", path.joint_states.iter().flatten().copied());
+        for peak in &path.limit_points {
+            self.stage("limit_points", &peak.stage);
+            self.numbers("limit_points", [peak.factor, peak.displacement, peak.fall]);
+        }
+        for branch in &path.branches {
+            self.stage("branches", &branch.stage);
+            self.numbers("branches", [branch.factor, branch.released_energy]);
+        }
+        for entry in &path.yielded {
+            let known = self.case.assembly.body(&entry.body).is_some();
+            self.expect(known, || format!("yielded: there is no block \"{}\"", entry.body));
+            self.numbers("yielded", entry.displacement.iter().chain(&entry.elements).copied());
+            let points = entry.points.iter().flat_map(|(_, a, b, state)| [*a, *b].into_iter().chain(state.clone()));
+            self.numbers("yielded", points);
+        }
+    }
+
+    fn state(&mut self, state: &StateEntry, points: Option<usize>) {
+        self.stage("states", &state.stage);
+        self.length("bodies of a state", state.bodies.len(), self.case.assembly.bodies.len());
+        if let Some(points) = points {
+            self.length("pressures of a state", state.pressures.len(), points);
+        }
+        let bodies = state.bodies.iter().flatten().copied();
+        let own = [state.factor, state.displacement];
+        self.numbers("states", own.into_iter().chain(bodies).chain(state.pressures.iter().copied()));
+    }
+}

@@ -1,0 +1,77 @@
+//! Two resolved studies, key by key.
+
+use toml::Value;
+
+/// Greatest number of characters of a value in a message.
+const SHOWN: usize = 60;
+
+/// The first key in which the study of a folder differs from another one, in words; `None` if they are the same. The order
+/// of keys has no meaning.
+pub fn first_difference(folder: &Value, study: &Value) -> Option<String> {
+    at("", Some(folder), Some(study))
+}
+
+fn at(path: &str, folder: Option<&Value>, study: Option<&Value>) -> Option<String> {
+    let inner = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+    match (folder, study) {
+        (Some(Value::Table(a)), Some(Value::Table(b))) => {
+            let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
+            keys.into_iter().find_map(|key| at(&inner(key), a.get(key), b.get(key)))
+        }
+        (Some(Value::Array(a)), Some(Value::Array(b))) => {
+            (0..a.len().max(b.len())).find_map(|index| at(&inner(&index.to_string()), a.get(index), b.get(index)))
+        }
+        _ if same(folder, study) => None,
+        _ => Some(format!("{path} is {} in the folder and {} in the study", shown(folder), shown(study))),
+    }
+}
+
+/// Returns true for equal values; 5 and 5.0 are equal.
+fn same(a: Option<&Value>, b: Option<&Value>) -> bool {
+    let number = |value: Option<&Value>| match value {
+        Some(Value::Integer(whole)) => Some(*whole as f64),
+        Some(Value::Float(number)) => Some(*number),
+        _ => None,
+    };
+    a == b || number(a).is_some_and(|a| Some(a) == number(b))
+}
+
+/// A value in a message.
+fn shown(value: Option<&Value>) -> String {
+    let Some(value) = value else { return "missing".into() };
+    let text = value.to_string().replace('\n', " ");
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_difference;
+
+    #[test]
+    fn the_first_key_that_differs_is_named() {
+        let read = |text: &str| toml::from_str::<toml::Value>(text).expect("TOML");
+        let study = read("name = \"a\"\n[scene]\nrise = 2.0\nlist = [1, 2]\n");
+        let first = |text: &str| first_difference(&read(text), &study);
+        assert_eq!(first("scene = { list = [1, 2.0], rise = 2 }\nname = \"a\"\n"), None);
+        let cases = [
+            (
+                "name = \"a\"\n[scene]\nrise = 2.5\nlist = [1, 2]\n",
+                "scene.rise is 2.5 in the folder and 2.0 in the study",
+            ),
+            (
+                "name = \"a\"\n[scene]\nrise = 2.0\nlist = [1]\n",
+                "scene.list.1 is missing in the folder and 2 in the study",
+            ),
+            (
+                "name = \"a\"\nx = 1\n[scene]\nrise = 2.0\nlist = [1, 2]\n",
+                "x is 1 in the folder and missing in the study",
+            ),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(first(text).as_deref(), Some(expected));
+        }
+    }
+}
