@@ -1,5 +1,5 @@
-// Opens pages of results in a headless browser and uses them as a reader would. Argument: the folder that holds
-// rise/, path/ and report/ with a report.html each; screenshots and PDFs are written beside them.
+// Opens pages of results in a headless browser and uses them as a reader would. Arguments: the folder that holds rise/,
+// hinges/, path/, finite/ and report/ with a report.html each, where screenshots and PDFs are written; the folder of the crate.
 import puppeteer from 'puppeteer-core';
 import path from 'node:path';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
@@ -107,6 +107,79 @@ for (const [name, width, dark] of [['rise', 1100, false], ['rise', 400, true], [
   expect(await page.$$eval('figure svg', drawn => drawn.length) === 3, 'the report draws what its text names');
   await page.pdf({ path: `${out}/report.pdf`, format: 'A4' });
   expect(seen.length === 0, `no error ${seen.join('; ')}`);
+  await page.close();
+}
+// The page's script moves blocks as displaced.rs does.
+const studies = process.argv[3];
+const script = readFileSync(`${studies}/src/writers/page/draw.js`, 'utf8');
+const { carried, twists } = new Function('document', `${script}; return { carried, twists };`)({ getElementById: () => null });
+{
+  const table = JSON.parse(readFileSync(`${studies}/src/figures/placements.json`, 'utf8'));
+  const off = table.map(([centre, twist, point, place]) => { const [x, y] = carried(centre, twist, point); return Math.hypot(x - place[0], y - place[1]); });
+  expect(table.length > 20 && Math.max(...off) < 1e-12, `draw.js places points as displaced.rs does, to ${Math.max(...off).toExponential(1)} m in ${table.length} cases`);
+}
+for (const name of ['rise', 'hinges']) {
+  const { page, seen } = await open(name, 1100, false);
+  const cases = JSON.parse(await page.$eval('#cases', store => store.textContent)).filter(own => own.motion);
+  // Joints whose blocks move with one velocity field stay closed. Without crushing every joint touches at one end; some
+  // cases of `rise` crush.
+  let torn = 0, apart = 0, kept = 0;
+  for (const own of cases) {
+    const xs = own.bodies.flat(), size = Math.max(...xs) - Math.min(...xs);
+    for (const share of [0.1, 0.3, 0.5, 0.7, 0.9, 1]) {
+      const moved = twists(own, share);
+      for (const [minus, plus, ax, ay, bx, by] of own.joints) {
+        const gap = point => { const [p, q] = [minus, plus].map(body => carried(own.centres[body], moved[body], point)); return Math.hypot(p[0] - q[0], p[1] - q[1]) / size; };
+        const first = own.motion[minus], second = own.motion[plus], [cx, cy] = own.centres[minus], [dx, dy] = own.centres[plus];
+        const other = [second[0] - second[2] * (cy - dy), second[1] + second[2] * (cx - dx), second[2]];
+        const one = Math.max(...other.map((u, i) => Math.abs(u - first[i]))) < 1e-6 * size;
+        if (one) { kept += 1; torn = Math.max(torn, gap([ax, ay]), gap([bx, by])); }
+        apart = Math.max(apart, Math.min(gap([ax, ay]), gap([bx, by])));
+      }
+    }
+  }
+  expect(cases.length > 0 && kept > 100 && torn < 1e-6 && (name === 'rise' || apart < 1e-3), `${name}: ${kept} joints that do not open stay closed to ${torn.toExponential(1)} of the scene, blocks touch to ${apart.toExponential(1)}`);
+  // At its end the moving drawing is the figure of the mechanism: scale and shift follow from the blocks at rest.
+  const differs = await page.evaluate(() => {
+    const numbers = text => text.match(/-?[\d.]+/g).map(Number);
+    let greatest = 0, figures = 0;
+    for (const place of document.querySelectorAll('details .moving[data-case]')) {
+      const slider = place.querySelector('input'), figure = place.nextElementSibling;
+      if (!slider || !figure || !figure.querySelector('svg [stroke-dasharray="4 3"]')) continue;
+      slider.value = 100;
+      slider.dispatchEvent(new Event('input'));
+      const outline = dashed => [...figure.querySelectorAll('svg path')].filter(path => dashed ? path.getAttribute('stroke-dasharray') === '4 3' : path.getAttribute('stroke-linejoin') && path.getAttribute('fill') !== 'none' && !path.getAttribute('fill').startsWith('url') && !path.getAttribute('stroke-dasharray'));
+      const drawn = cls => numbers([...place.querySelectorAll(cls)].map(one => one.getAttribute('points')).join(' '));
+      const [before, after] = [outline(true)[0], outline(false)[0]].map(path => numbers(path.getAttribute('d').replace(/[MLZ]/g, ' ')));
+      const [ghost, stone] = [drawn('.ghost'), drawn('.stone')];
+      if (before.length !== ghost.length || after.length !== stone.length) return `${before.length} ${ghost.length} ${after.length} ${stone.length}`;
+      const span = list => { const xs = list.filter((_, i) => i % 2 === 0); return [Math.min(...xs), Math.max(...xs)]; };
+      const [[a, b], [c, d]] = [span(ghost), span(before)], scale = (d - c) / (b - a);
+      const shift = [before[0] - scale * ghost[0], before[1] - scale * ghost[1]];
+      stone.forEach((x, i) => { greatest = Math.max(greatest, Math.abs(scale * x + shift[i % 2] - after[i]) / (d - c)); });
+      figures += 1;
+    }
+    return [figures, greatest];
+  });
+  expect(differs[0] > 0 && differs[1] < 1e-4, `${name}: ${differs[0]} moving drawings end as their figures, to ${differs[1]} of the width`);
+  expect(seen.length === 0, `no error ${seen.join('; ')}`);
+  await page.close();
+}
+// States of a path with finite displacements: unmagnified, each centre is where results.json has it, and each block has its turn.
+{
+  const { page } = await open('finite', 1100, false);
+  const results = JSON.parse(readFileSync(`${out}/finite/results.json`, 'utf8')).cases;
+  let count = 0, off = 0;
+  for (const own of JSON.parse(await page.$eval('#cases', store => store.textContent))) {
+    results.find(one => one.id === own.id).states.forEach((state, index) => state.bodies.forEach(([x, y, turn], body) => {
+      const centre = own.centres[body], twist = own.states[index].bodies[body], arm = [3, 4];
+      const place = carried(centre, twist, centre), end = carried(centre, twist, [centre[0] + arm[0], centre[1] + arm[1]]);
+      const c = Math.cos(turn), s = Math.sin(turn);
+      off = Math.max(off, Math.hypot(place[0] - centre[0] - x, place[1] - centre[1] - y), Math.hypot(end[0] - place[0] - c * arm[0] + s * arm[1], end[1] - place[1] - s * arm[0] - c * arm[1]));
+      count += 1;
+    }));
+  }
+  expect(count > 100 && off < 1e-8, `finite: ${count} placements are those of results.json, to ${off.toExponential(1)} m`);
   await page.close();
 }
 // Whatever finds its way into a page does not run.

@@ -4,7 +4,17 @@ use crate::results::MotionEntry;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
 
-/// A finite rigid motion: rotation by an angle about a centre, then a shift.
+/// Shift along and across a unit velocity whose direction turns by `angle` in unit time: a circular arc.
+fn arc(angle: f64) -> [f64; 2] {
+    if angle.abs() < 1e-6 {
+        return [1.0, angle / 2.0];
+    }
+    let half = (angle / 2.0).sin();
+    [angle.sin() / angle, 2.0 * half * half / angle]
+}
+
+/// A finite rigid motion: rotation by an angle about a centre, then a shift. `writers/page/draw.js` evaluates the same
+/// formula; `placements.json` holds values that both must give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     centre: Vec2,
@@ -22,10 +32,27 @@ impl Placement {
     /// that blocks keep their size and blocks that move as one stay one.
     pub fn of_velocity(centre: Vec2, [x, y, spin]: [f64; 3], scale: f64) -> Self {
         let angle = spin * scale;
-        let (a, b) =
-            if angle.abs() < 1e-6 { (1.0, angle / 2.0) } else { (angle.sin() / angle, (1.0 - angle.cos()) / angle) };
-        let shift = Vec2::new(a * x - b * y, b * x + a * y) * scale;
+        let [along, across] = arc(angle);
+        let shift = Vec2::new(along * x - across * y, across * x + along * y) * scale;
         Placement { centre, angle, shift }
+    }
+
+    /// The placement after a rotation about `centre` and a shift.
+    pub fn of_displacement(centre: Vec2, [x, y, angle]: [f64; 3]) -> Self {
+        Placement { centre, angle, shift: Vec2::new(x, y) }
+    }
+
+    /// The velocity (v at the centre, ω) that leads to this placement in unit time, for less than a full turn.
+    pub fn twist(&self) -> [f64; 3] {
+        let [along, across] = arc(self.angle);
+        let square = along * along + across * across;
+        let shift = self.shift / square;
+        [along * shift.x + across * shift.y, along * shift.y - across * shift.x, self.angle]
+    }
+
+    /// The placement after a share of the time.
+    pub fn at_share(&self, share: f64) -> Self {
+        if *self == Placement::rest() { *self } else { Placement::of_velocity(self.centre, self.twist(), share) }
     }
 
     /// The same, then a turn by `angle` about `pivot` and a shift.
@@ -75,4 +102,38 @@ pub fn displaced(assembly: &Assembly, motion: &[MotionEntry]) -> Option<(Vec<Pla
         }
     };
     Some(((0..assembly.bodies.len()).map(place).collect(), scale))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Centre, twist, point and its place: matrix exponentials of 40 digits. `.ci/page` evaluates the same table with
+    /// the page's script.
+    const TABLE: &str = include_str!("placements.json");
+
+    #[test]
+    fn placements_are_those_of_the_table() {
+        let table: Vec<[Vec<f64>; 4]> = serde_json::from_str(TABLE).expect("the table");
+        assert!(table.len() > 20);
+        for [centre, twist, point, place] in table {
+            let [centre, point, place] = [centre, point, place].map(|at| Vec2::new(at[0], at[1]));
+            let placement = Placement::of_velocity(centre, [twist[0], twist[1], twist[2]], 1.0);
+            assert!((placement.of(point) - place).norm() < 1e-12, "{twist:?}");
+            let again = placement.twist();
+            assert!(again.iter().zip(&twist).all(|(a, b)| (a - b).abs() < 1e-12), "{again:?} {twist:?}");
+        }
+    }
+
+    /// Blocks with the same velocity field keep their distance and form, however far they go.
+    #[test]
+    fn blocks_that_move_as_one_stay_one() {
+        let (pole, spin) = (Vec2::new(-3.0, 2.0), 0.7);
+        let field = |at: Vec2| [-spin * (at.y - pole.y), spin * (at.x - pole.x), spin];
+        let joint = Vec2::new(1.0, 5.0);
+        let [a, b] = [Vec2::new(0.5, 4.0), Vec2::new(2.0, 5.5)]
+            .map(|centre| Placement::of_velocity(centre, field(centre), 1.5).of(joint));
+        assert!((a - b).norm() < 1e-14);
+        assert!(((a - pole).norm() - (joint - pole).norm()).abs() < 1e-14);
+    }
 }

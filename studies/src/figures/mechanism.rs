@@ -1,6 +1,6 @@
 //! A mechanism: where its blocks go.
 
-use super::displaced::displaced;
+use super::displaced::{Placement, displaced};
 use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{case_title, format_short, kind_words};
 use super::hinge_closure::close_hinges;
@@ -76,6 +76,38 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
         ),
     }];
     Some(canvas.finish(&legend, &caption))
+}
+
+/// The motion of a block in a drawing of a mechanism: at a share s of the way it has followed the twist
+/// s `velocity` + s² `closing[0]` + s³ `closing[1]` about its centroid for unit time. Velocities leave hinges open by the
+/// square of the way; the other terms close them halfway and at the end, where [`mechanism_svg`] draws the block.
+pub(crate) struct MovingBlock {
+    /// (v at the centroid, ω) \[m, rad\].
+    pub velocity: [f64; 3],
+    /// The same of the corrections.
+    pub closing: [[f64; 3]; 2],
+}
+
+/// The motion of every block of a case's mechanism; `None` if it has none or stands.
+pub(crate) fn moving_blocks(assembly: &Assembly, result: &CaseResult) -> Option<Vec<MovingBlock>> {
+    let shown = Shown::of(assembly, result).filter(|shown| !shown.stands)?;
+    let (whole, _) = displaced(assembly, &shown.motion)?;
+    let mechanism = shown.held_together(assembly, result);
+    let half: Vec<Placement> = whole.iter().map(|placement| placement.at_share(0.5)).collect();
+    let corrections = [&half, &whole].map(|begun| {
+        let closed = close_hinges(assembly, &mechanism, begun.clone());
+        let correction = |(closed, begun): (&Placement, &Placement)| {
+            let (closed, begun) = (closed.twist(), begun.twist());
+            [0, 1, 2].map(|i| closed[i] - begun[i])
+        };
+        closed.iter().zip(begun).map(correction).collect::<Vec<_>>()
+    });
+    let block = |(body, whole): (usize, &Placement)| {
+        let [half, all] = [0, 1].map(|share| corrections[share][body]);
+        let square = [0, 1, 2].map(|i| 8.0 * half[i] - all[i]);
+        MovingBlock { velocity: whole.twist(), closing: [square, [0, 1, 2].map(|i| all[i] - square[i])] }
+    };
+    Some(whole.iter().enumerate().map(block).collect())
 }
 
 /// A joint crushed over less than this share of its height still touches at its end, in a drawing.

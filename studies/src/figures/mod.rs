@@ -35,5 +35,6 @@ pub use chart::chart_svg;
 pub use curve::{curve_charts, curve_svg};
 pub use drawing::scene_svg;
 pub use mechanism::mechanism_svg;
+pub(crate) use mechanism::moving_blocks;
 pub use series::{ChartStyle, Marker, Series, Spot};
 pub use sweep::{sweep_axis, sweep_chart};

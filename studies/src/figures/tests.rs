@@ -1,5 +1,7 @@
 //! Figures of hand-made scenes: well-formed, finite, escaped, labels apart.
 
+use super::displaced::Placement;
+use super::mechanism::MovingBlock;
 use super::sample::*;
 use super::sweep::{study_chart, sweep_chart};
 use super::text_layout::Area;
@@ -148,6 +150,46 @@ fn displaced_blocks_keep_their_size_and_meet_at_hinges() {
             assert!(gap < 1e-6 * size, "{}: hinge {} gapes by {gap}", scene.name, hinge.joint);
         }
     }
+}
+
+/// On the whole way of a drawing that moves, joints that do not open stay closed and hinges stay together; at its end
+/// blocks are where the figure has them.
+#[test]
+fn moving_blocks_tear_no_joint() {
+    let mut tested = 0;
+    for scene in scenes() {
+        let (assembly, size) = (&scene.assembly, scene.assembly.size());
+        let Some(blocks) = moving_blocks(assembly, &scene.answer) else { continue };
+        let mechanism = scene.answer.mechanism.as_ref().expect("a mechanism");
+        let velocity = |body: usize, point: Vec2| {
+            let ([x, y, spin], from) = (blocks[body].velocity, point - assembly.inertia(body).centroid);
+            Vec2::new(x - spin * from.y, y + spin * from.x)
+        };
+        for share in [0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0] {
+            let place = |body: usize, point: Vec2| {
+                let MovingBlock { velocity, closing: [second, third] } = blocks[body];
+                let twist = [0, 1, 2].map(|i| share * (velocity[i] + share * (second[i] + share * third[i])));
+                Placement::of_velocity(assembly.inertia(body).centroid, twist, 1.0).of(point)
+            };
+            for (index, joint) in assembly.joints.iter().enumerate() {
+                let (minus, plus) = (joint.minus, joint.plus);
+                let hinge = mechanism.hinges.iter().find(|hinge| hinge.joint == index);
+                let keeps = |point: &Vec2| (velocity(minus, *point) - velocity(plus, *point)).norm() < 1e-9 * size;
+                let (points, tolerance) = match hinge {
+                    Some(hinge) if share == 1.0 || share == 0.5 => (vec![Vec2::from(hinge.point)], 1e-6),
+                    Some(hinge) => (vec![Vec2::from(hinge.point)], 5e-4),
+                    None if joint.ends.iter().all(keeps) => (joint.ends.to_vec(), 1e-6),
+                    None => continue,
+                };
+                tested += points.len();
+                for point in points {
+                    let gap = (place(minus, point) - place(plus, point)).norm();
+                    assert!(gap < tolerance * size, "{}: joint {index} opens by {gap} at {share}", scene.name);
+                }
+            }
+        }
+    }
+    assert!(tested > 1000, "{tested}");
 }
 
 #[test]

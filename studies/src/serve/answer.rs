@@ -23,7 +23,7 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String
         format!("{}{hinges}{unique}", kind_words(mechanism.kind))
     });
     json!({
-        "drawing": case_data(&case.assembly, result),
+        "drawing": case_data(&case.assembly, result, case.solver.settings.finite),
         "headline": headline(result, &case.stages),
         "status": result.status,
         "load_factor": result.load_factor,

@@ -1,6 +1,7 @@
 //! What the page's script draws of a case: its blocks, how they move, and the states of its path.
 
-use crate::figures::displaced::displaced;
+use crate::figures::displaced::Placement;
+use crate::figures::moving_blocks;
 use crate::results::{CaseResult, StateEntry};
 use serde_json::{Value as Json, json};
 use voussoir_core::model::geometry::Vec2;
@@ -9,8 +10,8 @@ use voussoir_core::model::{Assembly, Bond};
 /// Scenes of more bodies are not drawn by the script.
 const BODIES: usize = 400;
 
-/// The data of a case; `None` where there is too much of it.
-pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult) -> Option<Json> {
+/// The data of a case with small or `finite` displacements; `None` if there is too much of it.
+pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult, finite: bool) -> Option<Json> {
     if assembly.bodies.len() > BODIES {
         return None;
     }
@@ -18,7 +19,10 @@ pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult) -> Option<Json
     let round = |x: f64| (x / unit).round() * unit;
     let tidy = |x: f64| json!(format!("{:.6}", round(x)).parse::<f64>().unwrap_or(x));
     let flat = |points: &[Vec2]| points.iter().flat_map(|p| [tidy(p.x), tidy(p.y)]).collect::<Json>();
-    let centre = |body: usize| flat(&[assembly.inertia(body).centroid]);
+    let centre = |body: usize| {
+        let at = assembly.inertia(body).centroid;
+        json!([fine(at.x), fine(at.y)])
+    };
     let joints = assembly.joints.iter().map(|joint| {
         let [a, b] = joint.ends;
         json!([joint.minus, joint.plus, tidy(a.x), tidy(a.y), tidy(b.x), tidy(b.y)])
@@ -34,19 +38,19 @@ pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult) -> Option<Json
         "joints": joints.collect::<Json>(),
         "thrust": thrust,
     });
-    if let Some(motion) = &result.proof.motion
-        && let Some((_, scale)) = displaced(assembly, motion)
-    {
-        // Per unit of the slider: the motion as it is drawn in the figure.
-        let of = |name: &str| motion.iter().find(|entry| entry.body == name).map_or([0.0; 3], |entry| entry.velocity);
-        let moved = assembly.bodies.iter().map(|body| of(&body.name).map(|v| json!(digits(v * scale))));
-        data["motion"] = moved.map(Json::from_iter).collect();
-        data["scale"] = json!(1);
+    if let Some(blocks) = moving_blocks(assembly, result) {
+        data["motion"] = blocks.iter().map(|own| json!(own.velocity.map(fine))).collect();
+        data["closing"] = blocks.iter().map(|own| json!(own.closing.map(|term| term.map(fine)))).collect();
     }
     if !result.path.states.is_empty() {
-        add_states(&mut data, assembly, result);
+        add_states(&mut data, assembly, result, finite);
     }
     Some(data)
+}
+
+/// Nine digits, so that blocks that move as one do so in the drawing.
+fn fine(x: f64) -> f64 {
+    format!("{x:.8e}").parse().unwrap_or(x)
 }
 
 /// Four digits.
@@ -54,13 +58,21 @@ fn digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
-fn add_states(data: &mut Json, assembly: &Assembly, result: &CaseResult) {
+/// The twist that leads a body to its displacement in unit time. Magnified it goes on in the same way, so that blocks that
+/// move as one stay one. Small displacements are velocities already.
+fn twist(centre: Vec2, displacement: [f64; 3], finite: bool) -> [f64; 3] {
+    if finite { Placement::of_displacement(centre, displacement).twist() } else { displacement }
+}
+
+fn add_states(data: &mut Json, assembly: &Assembly, result: &CaseResult, finite: bool) {
     let Some(field) = &result.proof.field else { return };
     let share = |joint: usize, point: [f64; 2]| {
         let ends = assembly.joints[joint].ends;
         let along = ends[1] - ends[0];
         (Vec2::from(point) - ends[0]).dot(&along) / along.norm_squared()
     };
+    let centres: Vec<Vec2> = (0..assembly.bodies.len()).map(|body| assembly.inertia(body).centroid).collect();
+    let moved = |body: usize, u: [f64; 3]| Json::from_iter(twist(centres[body], u, finite).map(fine));
     let last = result.stages.last().map(|stage| stage.name.as_str());
     let live = |state: &StateEntry| Some(state.stage.as_str()) == last && !state.gravity;
     let entry = |state: &StateEntry| {
@@ -87,7 +99,7 @@ fn add_states(data: &mut Json, assembly: &Assembly, result: &CaseResult) {
             "factor": state.factor,
             "displacement": state.displacement,
             "live": live(state),
-            "bodies": state.bodies.iter().map(|u| Json::from_iter(u.map(digits))).collect::<Json>(),
+            "bodies": state.bodies.iter().enumerate().map(|(body, u)| moved(body, *u)).collect::<Json>(),
             "thrust": thrust,
             "stress": stress.iter().map(points).collect::<Json>(),
         })

@@ -290,7 +290,7 @@ fn live(study: &StudyOutput, drawn: usize) -> Vec<Json> {
         return Vec::new();
     }
     let chosen = study.results.cases.iter().enumerate().filter(|(_, case)| study.drawn(case.label.id)).take(drawn);
-    chosen.filter_map(|(place, case)| case_data(study.scene(place)?.0, case)).collect()
+    chosen.filter_map(|(place, case)| case_data(study.scene(place)?.0, case, study.scenes[place].finite)).collect()
 }
 
 /// What a load-displacement curve shows.

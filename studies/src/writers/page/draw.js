@@ -11,13 +11,22 @@ const short = x => x === 0 ? '0' : Math.abs(x) >= 1e7 || 1e-4 > Math.abs(x) ? x.
 // Cases: blocks, how they move, and the states of a path.
 const store = document.getElementById('cases');
 const cases = new Map(store ? JSON.parse(store.textContent).map(own => [own.id, own]) : []);
-const placed = (own, body, [x, y, turn]) => {
-  const points = own.bodies[body], [cx, cy] = own.centres[body], c = Math.cos(turn), s = Math.sin(turn);
-  const out = [];
-  for (let i = 0; points.length > i; i += 2) {
-    const [dx, dy] = [points[i] - cx, points[i + 1] - cy];
-    out.push([cx + x + c * dx - s * dy, cy + y + s * dx + c * dy]);
-  }
+// Where a point of a body goes in unit time with a twist: velocity [m] of its centre and turn [rad]. This is the formula of
+// figures/displaced.rs, exact for any angle; figures/placements.json holds values that both must give.
+const carried = ([cx, cy], [u, v, turn], [x, y]) => {
+  const small = 1e-6 > Math.abs(turn), half = Math.sin(turn / 2);
+  const along = small ? 1 : Math.sin(turn) / turn, across = small ? turn / 2 : 2 * half * half / turn;
+  const c = Math.cos(turn), s = Math.sin(turn), dx = x - cx, dy = y - cy;
+  return [cx + along * u - across * v + c * dx - s * dy, cy + across * u + along * v + s * dx + c * dy];
+};
+// Twists of all bodies at a share of the mechanism's way; the second and third power close its hinges.
+const twists = (own, share) => own.motion.map((twist, body) => {
+  const [second, third] = own.closing[body];
+  return twist.map((u, i) => share * (u + share * (second[i] + share * third[i])));
+});
+const placed = (own, body, twist) => {
+  const points = own.bodies[body], out = [];
+  for (let i = 0; points.length > i; i += 2) out.push(carried(own.centres[body], twist, [points[i], points[i + 1]]));
   return out;
 };
 const text = points => points.map(([x, y]) => x.toFixed(4) + ',' + (-y).toFixed(4)).join(' ');
@@ -29,15 +38,15 @@ const frame = own => {
   const margin = 0.08 * Math.max(box[2] - box[0], box[3] - box[1]);
   return [box[0] - margin, box[1] - margin, box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin].map(x => x.toFixed(3)).join(' ');
 };
-// The picture of a case with each body displaced; `line` is a thrust line, `joints` what presses there.
-const draw = (svg, own, displaced, line, joints) => {
+// The picture of a case with each body moved by its twist; `line` is a thrust line, `joints` what presses there.
+const draw = (svg, own, moved, line, joints) => {
   svg.replaceChildren();
   svg.setAttribute('viewBox', frame(own));
   own.bodies.forEach((points, body) => {
-    if (displaced && own.free[body]) make('polygon', { class: 'ghost', points: text(placed(own, body, [0, 0, 0])) }, svg);
+    if (moved && own.free[body]) make('polygon', { class: 'ghost', points: text(placed(own, body, [0, 0, 0])) }, svg);
   });
   own.bodies.forEach((points, body) => {
-    if (own.free[body]) make('polygon', { class: 'stone', points: text(placed(own, body, displaced ? displaced[body] : [0, 0, 0])) }, svg);
+    if (own.free[body]) make('polygon', { class: 'stone', points: text(placed(own, body, moved ? moved[body] : [0, 0, 0])) }, svg);
   });
   for (const piece of joints || []) make(piece.open ? 'polyline' : 'polygon', { class: piece.open ? 'open' : 'stress', points: text(piece.points) }, svg);
   for (const piece of line || []) make('polyline', { class: 'thrust', points: text(piece) }, svg);
@@ -48,10 +57,9 @@ const pieces = line => {
   return out.filter(piece => piece.length > 1);
 };
 // Where a joint's points went with the block on its minus side.
-const follow = (own, joint, displaced, [x, y]) => {
-  const body = own.joints[joint][0], [cx, cy] = own.centres[body], [u, v, turn] = displaced[body];
-  const c = Math.cos(turn), s = Math.sin(turn);
-  return [cx + u + c * (x - cx) - s * (y - cy), cy + v + s * (x - cx) + c * (y - cy)];
+const follow = (own, joint, moved, point) => {
+  const body = own.joints[joint][0];
+  return carried(own.centres[body], moved[body], point);
 };
 // Diagrams of contact stress, and joints that are open at an end.
 const pressures = (own, state, moved) => {

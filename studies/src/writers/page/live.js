@@ -93,10 +93,7 @@ function picture() {
     const again = statics.querySelector(`[data-handle="${focused}"]`);
     if (again) again.focus({ preventScroll: true });
   }
-  if (own.motion) {
-    const share = by('motion').value / 100 * own.scale;
-    draw(mechanism, own, own.motion.map(motion => motion.map(u => u * share)), []);
-  }
+  if (own.motion) draw(mechanism, own, twists(own, by('motion').value / 100), []);
 }
 
 // Values: a slider and a field for each key. A field takes units; empty, the key is as the study file has it.

@@ -64,9 +64,7 @@ for (const place of document.querySelectorAll('.moving')) {
   let cursor;
   const show = () => {
     if (!path) {
-      const share = slider.value / 100 * own.scale;
-      const moved = own.motion.map(([x, y, turn]) => [x * share, y * share, turn * share]);
-      draw(svg, own, moved, slider.value > 0 ? [] : pieces(own.thrust));
+      draw(svg, own, twists(own, slider.value / 100), slider.value > 0 ? [] : pieces(own.thrust));
       said.textContent = slider.value > 0 ? ' moving' : ' at rest, with the thrust line';
       return;
     }
@@ -120,8 +118,7 @@ for (const plot of document.querySelectorAll('svg .plot')) {
       tip.append(`, case ${point.id}`);
       const own = cases.get(point.id);
       if (own) {
-        const share = 0.6 * (own.scale || 0);
-        draw(make('svg', { class: 'moving' }, make('div', { class: 'moving', 'data-drawn': '' }, tip)), own, own.motion && own.motion.map(m => m.map(u => u * share)), own.motion ? [] : pieces(own.thrust));
+        draw(make('svg', { class: 'moving' }, make('div', { class: 'moving', 'data-drawn': '' }, tip)), own, own.motion && twists(own, 0.6), own.motion ? [] : pieces(own.thrust));
       }
     }
     tip.hidden = false;
