@@ -60,7 +60,7 @@ fn run_verify_tamper_and_resume() {
     let whole = text(&one.join("results.json"));
     let results: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
     let journal: String =
-        results["cases"].as_array().expect("cases")[..5].iter().map(|case| format!("{case}\n")).collect();
+        results["cases"].as_array().expect("cases")[..5].iter().map(|case| sealed(&case.to_string())).collect();
     std::fs::remove_file(two.join("results.json")).expect("removed");
     std::fs::write(two.join("unfinished.jsonl"), journal + "{ \"id\": 5, \"var").expect("written");
     assert_eq!(code(&voussoir(&["run", study, "--out", out_two, "--resume", "--quiet"])), 0);
@@ -72,6 +72,13 @@ fn run_verify_tamper_and_resume() {
     let output = voussoir(&["verify", out_one]);
     assert_eq!(code(&output), 1);
     assert!(String::from_utf8_lossy(&output.stdout).contains("case 9"));
+}
+
+/// A line of a journal or a part: a case with its checksum, 64 bits of FNV-1a.
+fn sealed(case: &str) -> String {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    let sum = case.bytes().fold(0xcbf2_9ce4_8422_2325, step);
+    format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}\n")
 }
 
 /// Wrong input: code 2, the message on standard error, results of an earlier run untouched.

@@ -16,6 +16,13 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
 }
 
+/// A line of a journal: a case with its checksum, 64 bits of FNV-1a.
+fn sealed(case: &str) -> String {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    let sum = case.bytes().fold(0xcbf2_9ce4_8422_2325, step);
+    format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}\n")
+}
+
 /// A folder of a test's own with a study of eight cases in it.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("folders_{name}"));
@@ -62,7 +69,10 @@ fn resumed_cases_belong_to_the_study() {
     let (out, fresh) = (at.join("out"), at.join("fresh"));
     let first: Value = timeless(&out);
     let lines = |results: &Value| {
-        results["cases"].as_array().expect("cases")[..5].iter().map(|case| format!("{case}\n")).collect::<String>()
+        results["cases"].as_array().expect("cases")[..5]
+            .iter()
+            .map(|case| sealed(&case.to_string()))
+            .collect::<String>()
     };
     // Edited: other answers. A run of it that was killed at once has written its resolved study only.
     std::fs::write(at.join("a.toml"), study("ring", 0.35)).expect("written");
@@ -71,6 +81,28 @@ fn resumed_cases_belong_to_the_study() {
     std::fs::copy(fresh.join("resolved.toml"), out.join("resolved.toml")).expect("copied");
     std::fs::write(out.join("unfinished.jsonl"), lines(&first)).expect("written");
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--resume", "--quiet"], &at)), 0);
+    assert_eq!(timeless(&out), timeless(&fresh));
+    // A journal in which one case is forged under a checksum of its own, and one line is damaged.
+    let (cases, whole) = (timeless(&fresh), lines(&timeless(&fresh)));
+    let factor = cases["cases"][1]["load_factor"].to_string();
+    let forged = cases["cases"][1].to_string().replacen(&factor, "9.5", 1);
+    let damaged = whole.lines().nth(3).expect("a line").replacen("collapse", "stands", 1);
+    let journal: String = whole
+        .lines()
+        .enumerate()
+        .map(|(id, line)| match id {
+            1 => sealed(&forged),
+            3 => format!("{damaged}\n"),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::remove_dir_all(&out).expect("removed");
+    std::fs::create_dir(&out).expect("a folder");
+    std::fs::write(out.join("unfinished.jsonl"), journal).expect("written");
+    let resumed = voussoir(&["run", "a.toml", "--out", "out", "--resume"], &at);
+    let words =
+        ["3 finished cases are kept: 3 proved", "1 finished cases do not hold", "1 lines of the journal are damaged"];
+    assert!(words.iter().all(|word| said(&resumed).contains(word)), "{}", said(&resumed));
     assert_eq!(timeless(&out), timeless(&fresh));
     // A journal that was cut short anywhere, and went on after it.
     let journal = lines(&timeless(&fresh));

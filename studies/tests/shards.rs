@@ -34,6 +34,19 @@ fn study(rises: usize) -> String {
     )
 }
 
+/// A line of a journal or a part: a case with its checksum, 64 bits of FNV-1a.
+fn sealed(case: &str) -> String {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    let sum = case.bytes().fold(0xcbf2_9ce4_8422_2325, step);
+    format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}")
+}
+
+/// Ids of cases in lines of JSON, of labels and of a part.
+fn ids(text: &str) -> Vec<u64> {
+    let lines = text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    lines.filter_map(|line| line["id"].as_u64().or(line["case"]["id"].as_u64())).collect()
+}
+
 /// A folder of a test's own with a study of eight cases in it.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("shards_{name}"));
@@ -72,10 +85,6 @@ fn parts_make_the_whole() {
     assert_eq!(text(&at.join("parts/resolved.toml")), text(&at.join("whole/resolved.toml")));
     assert_eq!(code(&voussoir(&["verify", "parts"], &at)), 0);
     // The list of a part is what it holds, each case is in one part, and a part stays the same when others are added.
-    let ids = |text: &str| -> Vec<u64> {
-        let lines = text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-        lines.filter_map(|line| line["id"].as_u64()).collect()
-    };
     let mut all = Vec::new();
     for number in 1..=3 {
         let list = voussoir(&["run", "a.toml", "--list", "--shard", &format!("{number}/3")], &at);
@@ -127,18 +136,29 @@ fn parts_that_do_not_fit_are_refused() {
     let lines: Vec<&str> = whole.lines().collect();
     change(&format!("{}\n{}\n", lines[0], lines[lines.len() - 1]));
     refused(&["merge", "parts"], &["holds 0 cases and says"]);
-    let mut case: Value = serde_json::from_str(lines[1]).expect("a case");
+    // A changed case is damage, and with a checksum of its own it does not prove itself.
+    change(&whole.replacen("\"collapse\"", "\"stalled\"", 1));
+    refused(&["merge", "parts"], &["1 lines of", "are damaged"]);
+    let mut case = serde_json::from_str::<Value>(lines[1]).expect("a line")["case"].take();
     let factor = case["load_factor"].as_f64().expect("a factor");
     case["load_factor"] = (factor * 1.01).into();
-    change(&whole.replacen(lines[1], &case.to_string(), 1));
+    change(&whole.replacen(lines[1], &sealed(&case.to_string()), 1));
     refused(&["merge", "parts"], &["finding(s)"]);
     case["load_factor"] = factor.into();
     case["case_hash"] = "0".repeat(32).into();
-    change(&whole.replacen(lines[1], &case.to_string(), 1));
+    change(&whole.replacen(lines[1], &sealed(&case.to_string()), 1));
     refused(&["merge", "parts"], &["it is not this study's"]);
     change(&whole);
     std::fs::rename(&path, at.join(part(2)).join("unfinished.jsonl")).expect("renamed");
     refused(&["merge", "parts"], &["is not finished: run it again with --resume"]);
+    // A damaged part is finished by --resume; one line of it is solved again.
+    change(&whole.replacen("\"collapse\"", "\"stalled\"", 1));
+    std::fs::remove_file(at.join(part(2)).join("unfinished.jsonl")).expect("removed");
+    let again = voussoir(&["run", "a.toml", "--shard", "2/3", "--out", "parts", "--resume"], &at);
+    assert!(code(&again) == 0 && said(&again).contains("1 lines of the journal are damaged"), "{}", said(&again));
+    assert_eq!(ids(&text(&path)), ids(&whole));
+    let merged = voussoir(&["merge", "parts"], &at);
+    assert!(code(&merged) == 0 && said(&merged).contains("8 cases: 8 proved"), "{}", said(&merged));
     for shard in ["0/3", "4/3", "1", "a/b", "1/0"] {
         assert_eq!(code(&voussoir(&["run", "a.toml", "--shard", shard], &at)), 2, "{shard}");
     }

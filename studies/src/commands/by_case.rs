@@ -1,11 +1,14 @@
 //! Solving the cases of a study into lines of a journal, so that nothing is held and nothing finished is lost.
 
-use super::case_lines::CaseLines;
-use super::codes::{NO_ACCESS, complain};
+use super::case_lines::{CaseLines, LineHead};
+use super::codes::{NO_ACCESS, complain, say};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, useful_jobs};
 use super::progress::Progress;
-use crate::kinds::{CasesOf, kind};
+use super::sealed_line::sealed;
+use crate::kinds::{Backing, BackingCount, CasesOf, kind, resumed};
+use crate::results::CaseResult;
+use crate::side_by_side::{in_order, side_by_side, threads};
 use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
@@ -32,11 +35,13 @@ pub fn solve_into_journal(
     let mut lines = CaseLines::default();
     if options.resume {
         let wanted = |id: usize| ids.binary_search(&id).is_ok();
-        let same = |id: usize, hash: &str| cases.case(id).is_some_and(|case| case.hash() == hash);
-        let mut take = |head: &super::case_lines::LineHead| {
-            wanted(head.id) && head.status != Status::Stalled && !makes_cases(cases) && same(head.id, &head.case_hash)
-        };
-        lines.add(&path, 0, &mut take).map_err(|error| no_access(&path, error))?;
+        let mut take = |head: &LineHead| wanted(head.id) && head.status != Status::Stalled && !makes_cases(cases);
+        let damaged = lines.add(&path, 0, &mut take).map_err(|error| no_access(&path, error))?;
+        let told = keep_proved(cases, &mut lines, damaged, useful_jobs(options.jobs));
+        let told = told.map_err(|error| no_access(&path, error))?;
+        if !options.quiet && !options.json {
+            told.into_iter().for_each(say);
+        }
     }
     let finished: BTreeSet<usize> = lines.ids().collect();
     let rest: Vec<usize> = ids.iter().copied().filter(|id| !finished.contains(id)).collect();
@@ -45,8 +50,8 @@ pub fn solve_into_journal(
     cases.solve(&rest, useful_jobs(options.jobs), &progress, &mut |case| {
         // Those of the study are in the journal since they were answered.
         if case.label.id >= cases.count() {
-            let line = serde_json::to_string(&case).map_err(std::io::Error::from);
-            failed = line.and_then(|line| own.write_all(format!("{line}\n").as_bytes())).err().or(failed.take());
+            let line = sealed(&case).map_err(std::io::Error::from);
+            failed = line.and_then(|line| own.write_all(&line)).err().or(failed.take());
         }
     });
     progress.finish();
@@ -56,6 +61,54 @@ pub fn solve_into_journal(
     lines.add(&path, before, &mut |_| true).map_err(|error| no_access(&path, error))?;
     lines.sort();
     Ok(lines)
+}
+
+/// Stored cases that are checked at once, for each of those side by side.
+const AT_ONCE: usize = 64;
+
+/// Checks each stored case of lines by its own proof, `jobs` of them side by side.
+pub fn backings(
+    cases: &CasesOf<'_>,
+    lines: &CaseLines,
+    jobs: usize,
+) -> std::io::Result<Vec<Result<Backing, Vec<String>>>> {
+    let count = lines.ids().count();
+    side_by_side(jobs, || {
+        let mut found = Vec::with_capacity(count);
+        for from in (0..count).step_by(AT_ONCE * threads()) {
+            let texts = (from..count.min(from + AT_ONCE * threads())).map(|index| lines.line(index));
+            found.extend(in_order(&texts.collect::<std::io::Result<Vec<_>>>()?, |text| {
+                match serde_json::from_slice::<CaseResult>(text) {
+                    Ok(case) => cases.backing(&case),
+                    Err(error) => Err(vec![error.to_string()]),
+                }
+            }));
+        }
+        Ok(found)
+    })
+}
+
+/// A line about damaged lines of a journal.
+pub fn damaged_lines(count: usize) -> String {
+    format!("{count} lines of the journal are damaged; their cases are solved again")
+}
+
+/// Keeps the lines of cases that hold by their own proof; says how many, and how many are solved again.
+fn keep_proved(
+    cases: &CasesOf<'_>,
+    lines: &mut CaseLines,
+    damaged: usize,
+    jobs: usize,
+) -> std::io::Result<Vec<String>> {
+    lines.sort();
+    let found = backings(cases, lines, jobs)?;
+    lines.retain(&found.iter().map(Result::is_ok).collect::<Vec<_>>());
+    let mut count = BackingCount::default();
+    found.iter().flatten().for_each(|backing| count.add(*backing));
+    let refused = found.iter().filter(|backing| backing.is_err()).count();
+    let mut told = resumed(found.len() - refused, count, refused);
+    told.extend((damaged > 0).then(|| damaged_lines(damaged)));
+    Ok(told)
 }
 
 /// Whether the study's kind makes cases besides those of the file: then a finished case does not tell which of them are.

@@ -1,5 +1,7 @@
-//! Finished cases as lines of JSON in files: found by id, none of them held.
+//! Finished cases as lines of files: found by id, none of them held.
 
+use super::sealed_line::case_in;
+use crate::regular_file::open_regular;
 use crate::results::CaseResult;
 use serde::Deserialize;
 use std::fs::File;
@@ -7,13 +9,16 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 use voussoir_core::limit::Status;
 
+/// Greatest length of a line: a case of a million blocks has half a gigabyte.
+const MAX_LINE_BYTES: u64 = 2 << 30;
+/// Greatest length of a file with lines.
+const MAX_FILE_BYTES: u64 = 1 << 40;
+
 /// What tells one line from another.
 #[derive(Debug, Deserialize)]
 pub struct LineHead {
     /// Of the case.
     pub id: usize,
-    /// Which resolved case it answers.
-    pub case_hash: String,
     /// How the case ends.
     pub status: Status,
     /// Whether it is proven.
@@ -27,7 +32,7 @@ pub struct Certified {
     pub passed: bool,
 }
 
-/// Where the line of a case stands.
+/// Where the text of a case is.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     id: usize,
@@ -44,27 +49,42 @@ pub struct CaseLines {
 }
 
 impl CaseLines {
-    /// Adds the lines of a file, from a byte on, that are cases and that `take` wants. A line that was cut short is no
-    /// case.
-    pub fn add(&mut self, path: &Path, from: u64, take: &mut dyn FnMut(&LineHead) -> bool) -> io::Result<()> {
+    /// Adds the lines of a file, from a byte on, that are cases and that `take` wants. Returns the number of damaged lines:
+    /// those that were cut short, whose checksum is wrong or that are no case. Blank lines and the first and last line of
+    /// a part are not counted.
+    pub fn add(&mut self, path: &Path, from: u64, take: &mut dyn FnMut(&LineHead) -> bool) -> io::Result<usize> {
         let file = self.files.len() as u32;
-        self.files.push(File::open(path)?);
-        let mut reader = BufReader::with_capacity(1 << 16, File::open(path)?);
+        self.files.push(open_regular(path, MAX_FILE_BYTES)?);
+        let mut reader = BufReader::with_capacity(1 << 16, open_regular(path, MAX_FILE_BYTES)?);
         reader.seek(SeekFrom::Start(from))?;
-        let (mut from, mut line) = (from, Vec::new());
+        let (mut from, mut line, mut damaged) = (from, Vec::new(), 0);
         loop {
             line.clear();
-            let length = reader.read_until(b'\n', &mut line)?;
+            let length = reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line)?;
             if length == 0 {
-                return Ok(());
+                return Ok(damaged);
             }
-            if let Ok(head) = serde_json::from_slice::<LineHead>(&line)
-                && take(&head)
-            {
-                self.places.push(Place { id: head.id, file, length: length as u32, from });
+            if length as u64 == MAX_LINE_BYTES {
+                return Err(io::Error::new(io::ErrorKind::FileTooLarge, "a line is longer than 2 GiB"));
+            }
+            let case = case_in(&line);
+            let head = case.clone().and_then(|case| serde_json::from_slice::<LineHead>(&line[case]).ok());
+            match (case, head) {
+                (Some(case), Some(head)) if take(&head) => {
+                    let (length, from) = (case.len() as u32, from + case.start as u64);
+                    self.places.push(Place { id: head.id, file, length, from });
+                }
+                (Some(_), Some(_)) => {}
+                _ => damaged += usize::from(!line.trim_ascii().is_empty() && !frames_a_part(&line)),
             }
             from += length as u64;
         }
+    }
+
+    /// Keeps those lines, by their places in the order, for which `keep` is true.
+    pub fn retain(&mut self, keep: &[bool]) {
+        let mut keep = keep.iter();
+        self.places.retain(|_| keep.next().copied().unwrap_or(false));
     }
 
     /// Puts the lines in order of id; of several lines of a case the last counts. Ids that stood there more than once.
@@ -88,14 +108,13 @@ impl CaseLines {
         self.places.iter().map(|place| place.id)
     }
 
-    /// The text of a line, by its place in the order.
+    /// The text of a case, by its place in the order.
     pub fn line(&self, index: usize) -> io::Result<Vec<u8>> {
         let place = self.places.get(index).ok_or(io::ErrorKind::NotFound)?;
         let mut file = &self.files[place.file as usize];
         file.seek(SeekFrom::Start(place.from))?;
         let mut line = vec![0; place.length as usize];
         file.read_exact(&mut line)?;
-        line.truncate(line.trim_ascii_end().len());
         Ok(line)
     }
 
@@ -110,8 +129,14 @@ impl CaseLines {
     }
 }
 
+/// The first and the last line of a part.
+fn frames_a_part(line: &[u8]) -> bool {
+    line.starts_with(b"{\"study\":") || line.starts_with(b"{\"cases_in_part\":")
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::sealed_line::sealed_text;
     use super::*;
 
     #[test]
@@ -120,16 +145,18 @@ mod tests {
         std::fs::create_dir_all(&folder).expect("a folder");
         let path = folder.join("lines");
         let line = |id: usize, status: &str| {
-            format!("{{\"id\":{id},\"case_hash\":\"x\",\"status\":\"{status}\",\"certificate\":{{\"passed\":true}}}}\n")
+            format!("{{\"id\":{id},\"case_hash\":\"x\",\"status\":\"{status}\",\"certificate\":{{\"passed\":true}}}}")
         };
-        let text =
-            [line(3, "stalled"), line(1, "collapse"), "\n".into(), line(3, "collapse"), line(2, "collapse")].concat();
+        let seal = |line: String| String::from_utf8(sealed_text(line.as_bytes())).expect("text");
+        let text = [line(3, "stalled"), line(1, "collapse"), "".into(), line(3, "collapse"), line(2, "collapse")]
+            .map(|line| if line.is_empty() { "\n".into() } else { seal(line) })
+            .concat();
         std::fs::write(&path, &text[..text.len() - 4]).expect("written");
         let mut lines = CaseLines::default();
-        lines.add(&path, 0, &mut |_| true).expect("read");
+        assert_eq!(lines.add(&path, 0, &mut |_| true).expect("read"), 1);
         assert_eq!(lines.sort(), [3]);
         assert_eq!(lines.ids().collect::<Vec<_>>(), [1, 3]);
-        assert_eq!(lines.line(1).expect("a line"), line(3, "collapse").trim_end().as_bytes());
+        assert_eq!(lines.line(1).expect("a line"), line(3, "collapse").as_bytes());
         std::fs::remove_dir_all(&folder).expect("removed");
     }
 }

@@ -1,14 +1,17 @@
 //! A result folder: one run at a time, files whole or not at all, nothing through symbolic links.
 
 use super::codes::{NO_ACCESS, complain};
+use crate::regular_file::open_regular;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Cases that are finished, a line of JSON each, while a run is under way.
 pub const JOURNAL: &str = "unfinished.jsonl";
 /// Held by the run that writes; the operating system lets go of it however that run ends.
 const LOCK: &str = ".voussoir.lock";
+/// Greatest length of a file that is read as a whole.
+const MAX_HELD_BYTES: u64 = 4 << 30;
 /// Folders that writers fill.
 const FILLED: [&str; 2] = ["figures", "vtu"];
 
@@ -23,9 +26,12 @@ fn refused(path: &Path, why: impl std::fmt::Display) -> u8 {
     NO_ACCESS
 }
 
-/// Refuses a symbolic link; what does not exist is none.
+/// Refuses a symbolic link, a pipe and a device; what does not exist is none.
 fn no_link(path: &Path) -> Result<(), u8> {
     match fs::symlink_metadata(path) {
+        Ok(found) if !found.is_file() && !found.is_dir() && !found.file_type().is_symlink() => {
+            Err(refused(path, "it is neither a regular file nor a folder"))
+        }
         Ok(found) if found.file_type().is_symlink() => {
             Err(refused(path, "it is a symbolic link, and nothing is written through one; give the place it leads to"))
         }
@@ -96,9 +102,20 @@ impl ResultFolder {
         &self.path
     }
 
-    /// The text of a file in it, empty where there is none.
+    /// The text of a file in it, empty if there is none or it is no text.
     pub fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.path.join(name)).unwrap_or_default()
+        let mut text = String::new();
+        let read =
+            open_regular(&self.path.join(name), MAX_HELD_BYTES).and_then(|mut file| file.read_to_string(&mut text));
+        if read.is_ok() { text } else { String::new() }
+    }
+
+    /// Makes a part that is not whole the journal of its run, unless there is one.
+    pub fn part_becomes_journal(&self, part: &str) {
+        let journal = self.path.join(JOURNAL);
+        if !journal.exists() {
+            drop(fs::rename(self.path.join(part), journal));
+        }
     }
 
     /// Writes a file whole or not at all; folders on the way are made.

@@ -1,27 +1,27 @@
 //! `voussoir merge`: the parts of a study that were solved apart, put together into the results of a whole run.
 
-use super::by_case::no_access;
+use super::by_case::{backings, no_access};
 use super::case_lines::CaseLines;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, say};
+use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::useful_jobs;
 use super::shard::{PART, PartEnd, PartHead, study_hash};
 use super::stream;
 use super::today::today;
-use crate::kinds::{CasesOf, RunRequest};
-use crate::results::CaseResult;
-use crate::side_by_side::side_by_side;
-use crate::verify::case::verify_case;
-use rayon::prelude::*;
+use crate::caught::{caught, silence_caught_panics};
+use crate::kinds::{BackingCount, CasesOf, RunRequest};
+use crate::regular_file::open_regular;
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Ids that are named in a message.
 const NAMED: usize = 12;
-/// Lines that are checked at once.
-const AT_ONCE: usize = 256;
+/// Greatest length of a part.
+const MAX_PART_BYTES: u64 = 1 << 40;
+/// Greatest length of the first line of a part.
+const MAX_HEAD_BYTES: u64 = 1 << 16;
 
 /// What is asked of a merge.
 pub struct MergeOptions {
@@ -35,8 +35,10 @@ pub struct MergeOptions {
 
 /// Merges parts.
 pub fn merge(dirs: &[PathBuf], options: &MergeOptions) -> u8 {
-    match merged(dirs, options) {
-        Ok(code) | Err(code) => code,
+    silence_caught_panics();
+    match caught(|| merged(dirs, options)) {
+        Ok(Ok(code) | Err(code)) => code,
+        Err(why) => wrong(why),
     }
 }
 
@@ -53,19 +55,17 @@ struct Part {
 
 fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
     let parts = dirs.iter().map(|dir| found(dir)).collect::<Result<Vec<_>, _>>()?.concat();
-    let parts = parts.into_iter().map(|folder| read_part(&folder)).collect::<Result<Vec<_>, _>>()?;
+    let mut lines = CaseLines::default();
+    let parts = parts.into_iter().map(|folder| read_part(&folder, &mut lines)).collect::<Result<Vec<_>, _>>()?;
     let first = parts.first().ok_or_else(|| wrong("no part was found"))?;
     same_study(&parts)?;
-    let study = files::study(&first.folder.join("resolved.toml"), &[])?;
+    let resolved = first.folder.join("resolved.toml");
+    open_regular(&resolved, MAX_PART_BYTES).map_err(|error| no_access(&resolved, error))?;
+    let study = files::study(&resolved, &[])?;
     if study_hash(study.resolved()) != first.head.study_hash {
         return Err(wrong(format!("{}: resolved.toml is not that of its cases", first.folder.display())));
     }
     let cases = study.cases().ok_or_else(|| wrong("this kind of study is not solved in parts"))?;
-    let mut lines = CaseLines::default();
-    for part in &parts {
-        let path = part.folder.join(PART);
-        lines.add(&path, 0, &mut |_| true).map_err(|error| no_access(&path, error))?;
-    }
     let doubles = lines.sort();
     if !doubles.is_empty() {
         return Err(wrong(format!("{} stand in two parts", named(&doubles))));
@@ -81,7 +81,7 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
         )));
     }
     let jobs = useful_jobs(options.jobs);
-    side_by_side(jobs, || confirmed(&cases, &lines))?;
+    let count = confirmed(&cases, &lines, jobs)?;
     let out = match (&options.out, dirs) {
         (Some(out), _) => out.clone(),
         (None, [dir]) if !dir.join(PART).is_file() => dir.clone(),
@@ -90,6 +90,9 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
     let text = files::read(&first.folder.join("resolved.toml"))?;
     let folder = ResultFolder::open(&out)?;
     folder.write("resolved.toml", text.as_bytes())?;
+    if !options.quiet {
+        say(format!("{} cases: {count}", lines.ids().count()));
+    }
     let study = match cases {
         CasesOf::Streamed(sweep) => return stream::finish(sweep, &folder, &lines, None, options.quiet),
         CasesOf::Held(study) => study,
@@ -134,13 +137,14 @@ fn found(dir: &Path) -> Result<Vec<PathBuf>, u8> {
     }
 }
 
-/// The head of a part whose end is there.
-fn read_part(folder: &Path) -> Result<Part, u8> {
+/// The head of a part whose end is there; adds its lines.
+fn read_part(folder: &Path, lines: &mut CaseLines) -> Result<Part, u8> {
     let path = folder.join(PART);
-    let mut file = std::fs::File::open(&path).map_err(|error| no_access(&path, error))?;
-    let mut first = String::new();
-    BufReader::new(&file).read_line(&mut first).map_err(|error| no_access(&path, error))?;
-    let head: PartHead = serde_json::from_str(&first)
+    let mut file = open_regular(&path, MAX_PART_BYTES).map_err(|error| no_access(&path, error))?;
+    let mut first = Vec::new();
+    let read = BufReader::new(&file).take(MAX_HEAD_BYTES).read_until(b'\n', &mut first);
+    read.map_err(|error| no_access(&path, error))?;
+    let head: PartHead = serde_json::from_slice(&first)
         .map_err(|error| wrong(format!("{} is no part of a study: {error}", path.display())))?;
     let mut tail = Vec::new();
     let length = file.seek(SeekFrom::End(0)).unwrap_or(0);
@@ -149,9 +153,12 @@ fn read_part(folder: &Path) -> Result<Part, u8> {
     let last = tail.trim_ascii_end().rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
     let end: PartEnd =
         serde_json::from_slice(last).map_err(|_| wrong(format!("{} is cut short: copy it again", path.display())))?;
-    let mut lines = CaseLines::default();
-    lines.add(&path, 0, &mut |_| true).map_err(|error| no_access(&path, error))?;
-    let count = lines.ids().count();
+    let before = lines.ids().count();
+    let damaged = lines.add(&path, 0, &mut |_| true).map_err(|error| no_access(&path, error))?;
+    if damaged > 0 {
+        return Err(wrong(format!("{damaged} lines of {} are damaged: copy it again", path.display())));
+    }
+    let count = lines.ids().count() - before;
     if count != end.cases_in_part {
         let what = format!("{} holds {count} cases and says {}", path.display(), end.cases_in_part);
         return Err(wrong(what));
@@ -212,30 +219,19 @@ fn hint(parts: &[Part], missing: &[usize], cases: &CasesOf<'_>) -> String {
     text
 }
 
-/// Every case must be the study's own, and hold by what it proves itself.
-fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines) -> Result<(), u8> {
-    let check = |result: &CaseResult| -> Vec<String> {
-        let id = result.label.id;
-        let wrong: Vec<String> = match cases.case_of(&result.label) {
-            None => vec!["the study has no such case".into()],
-            Some(case) if case.hash() != result.label.case_hash => vec!["it is not this study's".into()],
-            Some(case) => verify_case(&case, result),
-        };
-        wrong.into_iter().map(|why| format!("case {id}: {why}")).collect()
-    };
-    let count = lines.ids().count();
-    let mut findings = Vec::new();
-    for from in (0..count).step_by(AT_ONCE) {
-        let read: std::io::Result<Vec<CaseResult>> =
-            (from..count.min(from + AT_ONCE)).map(|index| lines.case(index)).collect();
-        let chunk = read.map_err(|error| no_access(Path::new(PART), error))?;
-        findings.extend(chunk.par_iter().flat_map_iter(check).collect::<Vec<_>>());
-    }
-    match findings.as_slice() {
-        [] => Ok(()),
-        some => {
-            some.iter().take(NAMED).for_each(|line| eprintln!("{line}"));
-            Err(wrong(format!("{} finding(s): the parts do not hold", some.len())))
+/// Every case must be the study's own, and hold by its own proof.
+fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines, jobs: usize) -> Result<BackingCount, u8> {
+    let found = backings(cases, lines, jobs).map_err(|error| no_access(Path::new(PART), error))?;
+    let (mut count, mut findings) = (BackingCount::default(), Vec::new());
+    for (id, backing) in lines.ids().zip(found) {
+        match backing {
+            Ok(backing) => count.add(backing),
+            Err(wrong) => findings.extend(wrong.into_iter().map(|why| format!("case {id}: {why}"))),
         }
     }
+    if findings.is_empty() {
+        return Ok(count);
+    }
+    findings.iter().take(NAMED).for_each(complain);
+    Err(wrong(format!("{} finding(s): the parts do not hold", findings.len())))
 }

@@ -3,6 +3,7 @@
 use super::codes::say_data;
 use super::interrupt;
 use super::journal::{Journal, say_unwritten};
+use super::sealed_line::{case_in, sealed};
 use crate::results::CaseResult;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -101,13 +102,7 @@ impl Observer for Progress {
 
     fn answered(&self, case: &CaseResult) {
         self.bar.inc(1);
-        // A line of its own even after one that was cut short; an arch of a dozen voussoirs fits.
-        let mut line = Vec::with_capacity(1 << 13);
-        line.push(b'\n');
-        if serde_json::to_writer(&mut line, case).is_err() {
-            line.truncate(1);
-        }
-        line.push(b'\n');
+        let line = sealed(case).unwrap_or_default();
         self.keep(|journal| journal.add(&line));
         interrupt::finished();
         if self.shown_as == Shown::Lines {
@@ -116,7 +111,8 @@ impl Observer for Progress {
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);
             }
-            say_data(&String::from_utf8_lossy(line.trim_ascii()));
+            let line = line.trim_ascii();
+            say_data(&String::from_utf8_lossy(case_in(line).map_or(&[], |case| &line[case])));
         }
     }
 

@@ -2,8 +2,14 @@
 
 use super::by_case::no_access;
 use super::folder::{JOURNAL, ResultFolder};
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
+use super::sealed_line::sealed_text;
+use crate::regular_file::open_regular;
+use std::io::{self, BufRead, BufReader, Read, Write};
+
+/// Greatest length of a results.json.
+const MAX_RESULTS_BYTES: u64 = 1 << 40;
+/// Greatest length of the text of a case.
+const MAX_CASE_BYTES: u64 = 1 << 30;
 
 /// Writes the cases of results.json as lines of a journal, where there is no journal yet. Read as it is written: a case stands
 /// between two lines of four blanks and a brace. Of a file that somebody has laid out otherwise nothing is taken.
@@ -12,16 +18,18 @@ pub fn refill(folder: &ResultFolder) -> Result<(), u8> {
     if journal.exists() || !results.exists() {
         return Ok(());
     }
-    let file = File::open(&results).map_err(|error| no_access(&results, error))?;
+    let file = open_regular(&results, MAX_RESULTS_BYTES).map_err(|error| no_access(&results, error))?;
     let mut aside = folder.aside(JOURNAL)?;
     let copied = lines_of_cases(&mut BufReader::with_capacity(1 << 16, file), &mut aside);
     aside.done(copied)
 }
 
 fn lines_of_cases(from: &mut dyn BufRead, to: &mut dyn Write) -> io::Result<()> {
-    let (mut line, mut case) = (String::new(), String::new());
+    let (mut bytes, mut case) = (Vec::new(), String::new());
     let mut within = false;
-    while from.read_line(&mut line)? > 0 {
+    while Read::take(&mut *from, MAX_CASE_BYTES).read_until(b'\n', &mut bytes)? > 0 {
+        let line = std::str::from_utf8(&bytes).unwrap_or_default();
+        within &= case.len() as u64 <= MAX_CASE_BYTES && !line.is_empty();
         match line.trim_end() {
             "    {" => {
                 within = true;
@@ -33,13 +41,13 @@ fn lines_of_cases(from: &mut dyn BufRead, to: &mut dyn Write) -> io::Result<()> 
                 case.push('}');
                 // Texts hold no line ends, so that a case is one line without its indentation.
                 if serde_json::from_str::<serde::de::IgnoredAny>(&case).is_ok() {
-                    writeln!(to, "{case}")?;
+                    to.write_all(&sealed_text(case.as_bytes()))?;
                 }
             }
             own if within => case.push_str(own.trim_start()),
             _ => {}
         }
-        line.clear();
+        bytes.clear();
     }
     Ok(())
 }
@@ -64,7 +72,8 @@ mod tests {
         };
         let lines = journal(serde_json::to_string_pretty(&json!({ "study": "s", "cases": cases })).expect("JSON"));
         let back: Vec<serde_json::Value> =
-            lines.lines().map(|line| serde_json::from_str(line).expect("a case")).collect();
+            lines.lines().map(|line| serde_json::from_str(line).expect("a line")).collect();
+        let back: Vec<serde_json::Value> = back.into_iter().map(|mut line| line["case"].take()).collect();
         assert_eq!(back, cases);
         assert_eq!(journal(serde_json::to_string(&whole).expect("JSON")), "");
     }

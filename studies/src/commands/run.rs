@@ -1,5 +1,7 @@
 //! `voussoir run`.
 
+use super::by_case::damaged_lines;
+use super::case_lines::CaseLines;
 use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say, say_data};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
@@ -9,10 +11,12 @@ use super::progress::Progress;
 use super::today::today;
 use super::{interrupt, shard, stream};
 use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
+use crate::regular_file::open_regular;
 use crate::side_by_side::side_by_side;
 use crate::solve::label_of;
 use crate::writers::results_json::write_results;
 use serde_json::json;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// The arguments of a run with which it goes on where it was interrupted.
@@ -94,8 +98,12 @@ const SOURCE: &str = "# study: ";
 
 /// Refuses a default folder that holds the results of another study file that is still there.
 fn results_of_another(path: &Path, dir: &Path) -> u8 {
-    let resolved = std::fs::read_to_string(dir.join("resolved.toml")).unwrap_or_default();
-    let Some(source) = resolved.lines().next().and_then(|line| line.strip_prefix(SOURCE)) else { return FINE };
+    let mut first = Vec::new();
+    if let Ok(file) = open_regular(&dir.join("resolved.toml"), u64::MAX) {
+        drop(BufReader::new(file).take(1 << 16).read_until(b'\n', &mut first));
+    }
+    let first = String::from_utf8_lossy(&first);
+    let Some(source) = first.trim_end().strip_prefix(SOURCE) else { return FINE };
     let places = (Path::new(source).canonicalize(), path.canonicalize());
     let (Ok(earlier), Ok(own)) = places else { return FINE };
     if earlier == own {
@@ -156,6 +164,14 @@ fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) 
     run_held(study, wanted, dir, &resolved, options)
 }
 
+/// Finished cases of the journal, a line each, and the number of damaged lines.
+fn finished_cases(folder: &ResultFolder) -> (String, usize) {
+    let mut lines = CaseLines::default();
+    let damaged = lines.add(&folder.path().join(JOURNAL), 0, &mut |_| true).unwrap_or(0);
+    let texts = (0..lines.ids().count()).filter_map(|index| String::from_utf8(lines.line(index).ok()?).ok());
+    (texts.map(|text| text + "\n").collect(), damaged)
+}
+
 /// Runs a study whose cases are held, all at once.
 fn run_held(
     study: &dyn LoadedStudy,
@@ -172,7 +188,12 @@ fn run_held(
         parts.push(files::read(&own.join("results.json"))?);
     }
     let keep = options.case.is_some();
-    let stored = (options.resume || keep).then(|| [folder.read("results.json"), folder.read(JOURNAL)]);
+    let mut damaged = 0;
+    let stored = (options.resume || keep).then(|| {
+        let (lines, found) = finished_cases(&folder);
+        damaged = found;
+        [folder.read("results.json"), lines]
+    });
     let progress = Progress::new(study.name(), options.shown(), folder.journal(options.resume || keep));
     let request = RunRequest {
         wanted,
@@ -209,6 +230,7 @@ fn run_held(
             .for_each(|(_, bytes)| progress.say_others(bytes));
     } else if !options.quiet {
         say(output.table);
+        (damaged > 0).then(|| damaged_lines(damaged)).iter().for_each(say);
         output.remarks.iter().for_each(say);
         say(format!("results in {}", folder.path().display()));
     }

@@ -3,11 +3,13 @@
 //! A part is a folder `shard-2-of-8` with the resolved study and `cases.jsonl`: a line that says what it is a part of, a
 //! line for each case in order of id, and a line with their number, so that a copy that was cut short is found.
 
-use super::by_case::solve_into_journal;
+use super::by_case::{backings, solve_into_journal};
+use super::case_lines::CaseLines;
 use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
 use super::folder::{JOURNAL, ResultFolder};
-use super::options::{Options, Shard};
-use crate::kinds::LoadedStudy;
+use super::options::{Options, Shard, useful_jobs};
+use super::sealed_line::{checksum, sealed_text};
+use crate::kinds::{CasesOf, LoadedStudy};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
@@ -37,9 +39,7 @@ pub struct PartEnd {
 
 /// What tells one resolved study from another: 64 bits of FNV-1a over its text, without the name of its file.
 pub fn study_hash(resolved: &toml::Value) -> String {
-    let text = toml::to_string(resolved).unwrap_or_default();
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-    format!("{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, step))
+    checksum(toml::to_string(resolved).unwrap_or_default().as_bytes())
 }
 
 /// Ids of the cases of a part, in order; of the whole study where there is no part. A study of this kind may have none.
@@ -53,6 +53,16 @@ pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize
         return Err(WRONG_INPUT);
     };
     Ok((0..study.count()).filter(|id| cases.part(*id, shard.of) == Some(shard.number - 1)).collect())
+}
+
+/// Returns true if a part holds all its cases, no line is damaged and every case holds by its own proof.
+fn finished(path: &Path, cases: &CasesOf<'_>, count: usize, jobs: usize) -> bool {
+    let mut lines = CaseLines::default();
+    let whole = lines.add(path, 0, &mut |_| true).is_ok_and(|damaged| damaged == 0);
+    whole
+        && lines.sort().is_empty()
+        && lines.ids().filter(|id| *id < cases.count()).count() == count
+        && backings(cases, &lines, jobs).is_ok_and(|found| found.iter().all(Result::is_ok))
 }
 
 /// Solves a part of a study.
@@ -69,10 +79,14 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
     };
     let first = serde_json::to_string(&head).unwrap_or_default();
     if options.resume && folder.read(PART).lines().next() == Some(first.as_str()) {
-        if !options.quiet {
-            say(format!("{} is finished", path.display()));
+        if finished(&path, &cases, ids.len(), useful_jobs(options.jobs)) {
+            if !options.quiet {
+                say(format!("{} is finished", path.display()));
+            }
+            return Ok(FINE);
         }
-        return Ok(FINE);
+        // What holds of a damaged part is kept.
+        folder.part_becomes_journal(PART);
     }
     folder.remove(PART);
     folder.write("resolved.toml", resolved.as_bytes())?;
@@ -86,8 +100,7 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
             let head: super::case_lines::LineHead = serde_json::from_slice(&line)?;
             certified += usize::from(head.certificate.passed);
             count += 1;
-            part.write_all(&line)?;
-            part.write_all(b"\n")?;
+            part.write_all(&sealed_text(&line))?;
         }
         writeln!(part, "{}", serde_json::to_string(&PartEnd { cases_in_part: count })?)
     };

@@ -1,6 +1,7 @@
 //! Studies with a scene as commands see them: their cases are solved as their kind says, certified, and written by
 //! all writers.
 
+use super::backing::{BackingCount, resumed};
 use super::kind::{CasesOf, LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
 use super::stored_cases::read_cases;
 use crate::caught::caught;
@@ -9,7 +10,7 @@ use crate::figures::format::format_number;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_svg, mechanism_svg, scene_svg};
 use crate::results::{CaseLabel, CaseResult, StudyResults};
-use crate::side_by_side::side_by_side;
+use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::Observer;
 use crate::solve::explain::explain;
 use crate::study::{Case, Study, as_blocks};
@@ -57,13 +58,26 @@ impl Study {
         side_by_side(jobs, || written(&StudyOutput::new(self, results, &cases), true))
     }
 
-    /// Stored cases that are this study's own: of the same label, and of the same resolved case.
-    fn own_cases(&self, [results, journal]: &[String; 2]) -> BTreeMap<usize, CaseResult> {
+    /// Stored cases by id, the last of each, that `kept` wants and that hold by their own proof; and a remark about them.
+    fn own_cases(
+        &self,
+        [results, journal]: &[String; 2],
+        kept: impl Fn(&CaseResult) -> bool,
+        jobs: usize,
+    ) -> (BTreeMap<usize, CaseResult>, Vec<String>) {
         let whole = serde_json::from_str::<StudyResults>(results).map(|results| results.cases).unwrap_or_default();
         // The last line of a killed run may be cut short: it does not parse and is done again.
         let lines = journal.lines().filter_map(|line| serde_json::from_str::<CaseResult>(line).ok());
-        let own = |case: &CaseResult| self.case_of(&case.label).is_some_and(|own| own.hash() == case.label.case_hash);
-        whole.into_iter().chain(lines).filter(own).map(|case| (case.label.id, case)).collect()
+        let own: BTreeMap<usize, CaseResult> =
+            whole.into_iter().chain(lines).filter(kept).map(|case| (case.label.id, case)).collect();
+        let own: Vec<CaseResult> = own.into_values().collect();
+        let backings = side_by_side(jobs, || in_order(&own, |case| CasesOf::Held(self).backing(case)));
+        let mut count = BackingCount::default();
+        backings.iter().flatten().for_each(|backing| count.add(*backing));
+        let refused = backings.iter().filter(|backing| backing.is_err()).count();
+        let remarks = resumed(own.len() - refused, count, refused);
+        let holds = own.into_iter().zip(backings).filter(|(_, backing)| backing.is_ok());
+        (holds.map(|(case, _)| (case.label.id, case)).collect(), remarks)
     }
 }
 
@@ -130,7 +144,6 @@ impl LoadedStudy for Study {
     }
 
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
-        let stored = request.stored.as_ref().map(|stored| self.own_cases(stored)).unwrap_or_default();
         let is_wanted = |id: &usize| request.wanted.binary_search(id).is_ok();
         // A finished case does not tell which cases its kind has made from it.
         let resume = request.resume && !kind(&self.kind).is_some_and(|kind| kind.makes_cases());
@@ -138,7 +151,8 @@ impl LoadedStudy for Study {
             true => resume && case.status != Status::Stalled,
             false => request.keep,
         };
-        let mut done: BTreeMap<usize, CaseResult> = stored.into_iter().filter(|(_, case)| kept(case)).collect();
+        let stored = request.stored.as_ref().map(|stored| self.own_cases(stored, kept, request.jobs));
+        let (mut done, mut told) = stored.unwrap_or_default();
         let others = done.keys().filter(|id| !is_wanted(id)).count();
         let rest: Vec<usize> = request.wanted.iter().copied().filter(|id| !done.contains_key(id)).collect();
         observer.begins(rest.len());
@@ -149,7 +163,8 @@ impl LoadedStudy for Study {
         observer.phase("writing and drawing");
         let output = self.output_of(request, done.into_values().collect());
         let certified = output.certified && !observer.cancelled();
-        RunOutput { remarks: remarks(request, others, self.count()), certified, ..output }
+        told.extend(remarks(request, others, self.count()));
+        RunOutput { remarks: told, certified, ..output }
     }
 
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {

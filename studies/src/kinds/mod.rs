@@ -1,5 +1,6 @@
 //! Study kinds: what is done with the cases of a study. One file each; file = tag.
 
+mod backing;
 mod by_case;
 mod case_study;
 pub mod compare;
@@ -19,6 +20,7 @@ mod stored_cases;
 mod streamed;
 mod verify_streamed;
 
+pub use backing::{Backing, BackingCount, resumed};
 pub use kind::{
     CasesOf, KindEntry, LoadedStudy, OwnResults, Part, Piece, RunOutput, RunRequest, StoredResults, StudyKind,
     Verification, kind, kinds,

@@ -1,0 +1,100 @@
+//! What a stored case proves by itself before it is taken into other results.
+
+use super::kind::CasesOf;
+use crate::caught::caught;
+use crate::results::CaseResult;
+use crate::study::Case;
+use crate::verify::case::verify_case;
+use std::fmt;
+use voussoir_core::limit::{LowerProofKind, Status};
+use voussoir_core::plugin::{PluginKind, card};
+
+/// How far the stored fields of a case prove it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Backing {
+    /// Forces and motion, or a ray, prove every claim.
+    Proved,
+    /// The last state of a path, or one end of a bracket; the history of the path, or the search for the other end, is
+    /// taken on trust.
+    Partly,
+    /// Nothing is stored that could prove it.
+    OnTrust,
+    /// It claims nothing.
+    Stalled,
+}
+
+impl CasesOf<'_> {
+    /// Checks a stored case: it must be one of this study as it is now, and what it stores must prove it.
+    ///
+    /// # Errors
+    ///
+    /// The findings in words.
+    pub fn backing(&self, result: &CaseResult) -> Result<Backing, Vec<String>> {
+        let check = || match self.case_of(&result.label) {
+            None => Err(vec!["the study has no such case".into()]),
+            Some(case) if case.hash() != result.label.case_hash => Err(vec!["it is not this study's".into()]),
+            Some(case) => match verify_case(&case, result) {
+                findings if findings.is_empty() => Ok(backing_of(&case, result)),
+                findings => Err(findings),
+            },
+        };
+        caught(check).unwrap_or_else(|why| Err(vec![why]))
+    }
+}
+
+fn backing_of(case: &Case, result: &CaseResult) -> Backing {
+    let searched = result.non_associated.lower_proof.as_ref().is_some_and(|proof| proof.by == LowerProofKind::Search);
+    if result.status == Status::Stalled {
+        Backing::Stalled
+    } else if !case.output_fields && result.has_no_fields() {
+        Backing::OnTrust
+    } else if searched || card(PluginKind::PathSolver, &result.solver).is_some() {
+        Backing::Partly
+    } else {
+        Backing::Proved
+    }
+}
+
+/// How many stored cases were proved, and how far.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct BackingCount {
+    proved: usize,
+    partly: usize,
+    on_trust: usize,
+    stalled: usize,
+}
+
+impl BackingCount {
+    /// Counts a case.
+    pub fn add(&mut self, backing: Backing) {
+        *match backing {
+            Backing::Proved => &mut self.proved,
+            Backing::Partly => &mut self.partly,
+            Backing::OnTrust => &mut self.on_trust,
+            Backing::Stalled => &mut self.stalled,
+        } += 1;
+    }
+}
+
+impl fmt::Display for BackingCount {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} proved by their stored fields", self.proved)?;
+        if self.partly > 0 {
+            write!(f, ", {} in part (the history of a path or a search is taken on trust)", self.partly)?;
+        }
+        write!(f, ", {} taken on trust", self.on_trust)?;
+        if self.on_trust > 0 {
+            write!(f, " (no fields are stored)")?;
+        }
+        if self.stalled > 0 { write!(f, ", {} stalled", self.stalled) } else { Ok(()) }
+    }
+}
+
+/// Lines about cases that were taken from an earlier run, and about those that were not.
+pub fn resumed(kept: usize, count: BackingCount, refused: usize) -> Vec<String> {
+    let kept = (kept > 0).then(|| format!("{kept} finished cases are kept: {count}"));
+    let refused = (refused > 0).then(|| {
+        format!("{refused} finished cases do not hold, or answer another version of the study; they are not kept")
+    });
+    kept.into_iter().chain(refused).collect()
+}
