@@ -55,12 +55,21 @@ impl From<Mesh> for MeshDensity {
 
 const MAX_ELEMENTS: usize = 1000;
 const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
+/// Greatest number of entries of the dense matrix that condenses a block.
+const MAX_CONDENSED_NUMBERS: f64 = 1.25e8;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
 const GRADING_NUMBER: Shape = Shape::Number(Quantity::Ratio, GRADING);
 
 /// The density of a scene's mesh, where it gives none the default.
 pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
     mesh.unwrap_or_default().into()
+}
+
+/// Entries of the matrix that condenses a block: displacements of all nodes for a force at each node of its edges.
+fn condensed_numbers(mesh: &Mesh) -> f64 {
+    let [along, across] = mesh.elements.map(|count| (count * mesh.order + 1) as f64);
+    let edges = 2.0 * (along + across);
+    (2.0 * along * across) * (2.0 * edges)
 }
 
 /// Mistakes in a scene's mesh, with paths from the scene's table.
@@ -75,6 +84,18 @@ pub(super) fn mesh_diagnostics(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
     }
     if !(1..=MAX_ORDER).contains(&mesh.order) {
         diagnostics.push(Diagnostic::new("mesh.order", format!("{} must be from 1 to {MAX_ORDER}", mesh.order)));
+    }
+    let numbers = condensed_numbers(mesh);
+    if diagnostics.is_empty() && numbers > MAX_CONDENSED_NUMBERS {
+        let message = format!(
+            "a block of {} × {} elements of order {} needs {:.1} GB to be condensed; at most {:.1} GB are used",
+            mesh.elements[0],
+            mesh.elements[1],
+            mesh.order,
+            8e-9 * numbers,
+            8e-9 * MAX_CONDENSED_NUMBERS
+        );
+        diagnostics.push(Diagnostic::new("mesh.elements", message));
     }
     match mesh.grading {
         Grading::Both(grading) => diagnostics.extend(out_of_range("mesh.grading", grading, GRADING)),
