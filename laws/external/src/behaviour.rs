@@ -1,9 +1,9 @@
 //! A behaviour: what it says of itself, checked against what the study gives, and a step of it.
 
+use crate::buffers::{Buffer, Buffers};
 use crate::data::{API_VERSION, BehaviourData, CONSISTENT_TANGENT, Integrate, MESSAGE, State};
 use crate::library::{Symbols, open};
 use std::collections::BTreeMap;
-use std::ffi::{CStr, c_char};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use voussoir_core::law::{Effect, UpdateBranch, UpdateFailure};
 use voussoir_core::plugin::nearest;
@@ -58,6 +58,20 @@ pub(crate) struct Step<const N: usize> {
     pub branch: UpdateBranch,
     pub stored: f64,
     pub dissipated: f64,
+}
+
+/// Greatest number of gradients.
+const LARGEST: usize = 6;
+/// Greatest number of its own state: each point of a structure holds it.
+const MAX_STATE: usize = 10_000;
+
+/// The buffers that a library writes.
+struct End {
+    tangent: Buffer,
+    forces: Buffer,
+    internal: Buffer,
+    stored: Buffer,
+    dissipated: Buffer,
 }
 
 /// The state of the behaviour changed.
@@ -193,6 +207,9 @@ impl Behaviour {
             state.extend((0..size).map(|i| if size == 1 { format!("{name} [-]") } else { format!("{name}_{i} [-]") }));
         }
         let internal = state.len();
+        if internal > MAX_STATE {
+            return wrong("behaviour", format!("its state has {internal} numbers; at most {MAX_STATE} are read"));
+        }
         state.extend((0..N).map(|i| format!("gradient_{i} [-]")).chain((0..N).map(|i| format!("force_{i} [Pa]"))));
         state.extend(["stored [J]".to_string(), "dissipated [J]".into()]);
         let names = self::names(&state);
@@ -216,7 +233,6 @@ impl Behaviour {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<Step<N>, UpdateFailure> {
-        const LARGEST: usize = 6;
         check_step(&gradients, old, new, self.names.len())?;
         if N > LARGEST {
             return Err(UpdateFailure::WrongSize);
@@ -224,49 +240,19 @@ impl Behaviour {
         new.copy_from_slice(old);
         let (own, rest) = old.split_at(self.internal);
         let before: [f64; N] = std::array::from_fn(|i| rest[i]);
-        let mut from: [f64; N] = std::array::from_fn(|i| rest[N + i]);
-        let (mut stored_from, mut dissipated_from) = (rest[2 * N], rest[2 * N + 1]);
-        let (mut forces, mut stored, mut dissipated) = (from, stored_from, dissipated_from);
-        let mut entries = [0.0; LARGEST * LARGEST];
-        entries[0] = CONSISTENT_TANGENT;
-        let (mut factor, mut speed) = (1.0, 0.0);
-        let mut message: [c_char; MESSAGE] = [0; MESSAGE];
-        let (mass_density, material_properties) = (&raw const self.density, self.properties.as_ptr());
-        let external_variables = self.external.as_ptr();
-        let mut data = BehaviourData {
-            error_message: message.as_mut_ptr(),
-            time_step,
-            tangent: entries.as_mut_ptr(),
-            time_step_factor: &raw mut factor,
-            speed_of_sound: &raw mut speed,
-            start: State {
-                gradients: before.as_ptr(),
-                forces: from.as_mut_ptr(),
-                mass_density,
-                material_properties,
-                internal_variables: own.as_ptr().cast_mut(),
-                stored_energy: &raw mut stored_from,
-                dissipated_energy: &raw mut dissipated_from,
-                external_variables,
-            },
-            end: State {
-                gradients: gradients.as_ptr(),
-                forces: forces.as_mut_ptr(),
-                mass_density,
-                material_properties,
-                internal_variables: new.as_mut_ptr(),
-                stored_energy: &raw mut stored,
-                dissipated_energy: &raw mut dissipated,
-                external_variables,
-            },
-        };
-        // SAFETY: every pointer is to as many numbers as the library has said that it has (`load`), alive until after the call;
-        // the library reads the start and writes the end of the step, as its interface says.
-        let code = unsafe { (self.integrate)(&raw mut data) };
-        if code != 1 {
-            return Err(UpdateFailure::Law(refusal(code, &message)));
-        }
-        let tangent: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| entries[i * N + j]));
+        let (from, energies) = (&rest[N..2 * N], &rest[2 * N..]);
+        let mut buffers = Buffers::empty();
+        let called = self.call(&mut buffers, &gradients, time_step, &before, (own, from, energies));
+        let answer = called.map(|end| {
+            let answer = |buffer| buffers.numbers(buffer);
+            let forces: [f64; N] = std::array::from_fn(|i| answer(&end.forces)[i]);
+            let tangent: [[f64; N]; N] =
+                std::array::from_fn(|i| std::array::from_fn(|j| answer(&end.tangent)[i * N + j]));
+            new[..self.internal].copy_from_slice(answer(&end.internal));
+            (forces, tangent, answer(&end.stored)[0], answer(&end.dissipated)[0])
+        });
+        buffers.keep();
+        let (forces, tangent, mut stored, mut dissipated) = answer.map_err(UpdateFailure::Law)?;
         let work: f64 = (0..N).map(|i| 0.5 * (rest[N + i] + forces[i]) * (gradients[i] - before[i])).sum();
         if !self.energies {
             // Nothing is known of what is dissipated: all work counts as stored.
@@ -285,6 +271,68 @@ impl Behaviour {
         Ok(Step { forces, tangent, branch, stored, dissipated: lost })
     }
 
+    /// Calls the library; the buffers of the end of the step.
+    fn call(
+        &self,
+        buffers: &mut Buffers,
+        gradients: &[f64],
+        time_step: f64,
+        before: &[f64],
+        (own, from, energies): (&[f64], &[f64], &[f64]),
+    ) -> Result<End, &'static str> {
+        let mut request = [0.0; LARGEST * LARGEST];
+        request[0] = CONSISTENT_TANGENT;
+        let message = buffers.write(&[0.0; MESSAGE / size_of::<f64>()]);
+        let [factor, speed] = [1.0, 0.0].map(|number| buffers.write(&[number]));
+        let [density, properties] = [&[self.density][..], &self.properties].map(|numbers| buffers.read(numbers));
+        let external = buffers.read(&self.external);
+        let [from_gradients, from_forces, from_internal] = [before, from, own].map(|numbers| buffers.read(numbers));
+        let [from_stored, from_dissipated] = [0, 1].map(|i| buffers.read(&energies[i..=i]));
+        let to_gradients = buffers.read(gradients);
+        let end = End {
+            tangent: buffers.write(&request),
+            forces: buffers.write(from),
+            internal: buffers.write(own),
+            stored: buffers.write(&energies[..1]),
+            dissipated: buffers.write(&energies[1..2]),
+        };
+        let mut at = |buffer: &Buffer| buffers.pointer(buffer);
+        let mut data = BehaviourData {
+            error_message: at(&message).cast(),
+            time_step,
+            tangent: at(&end.tangent),
+            time_step_factor: at(&factor),
+            speed_of_sound: at(&speed),
+            start: State {
+                gradients: at(&from_gradients),
+                forces: at(&from_forces),
+                mass_density: at(&density),
+                material_properties: at(&properties),
+                internal_variables: at(&from_internal),
+                stored_energy: at(&from_stored),
+                dissipated_energy: at(&from_dissipated),
+                external_variables: at(&external),
+            },
+            end: State {
+                gradients: at(&to_gradients),
+                forces: at(&end.forces),
+                mass_density: at(&density),
+                material_properties: at(&properties),
+                internal_variables: at(&end.internal),
+                stored_energy: at(&end.stored),
+                dissipated_energy: at(&end.dissipated),
+                external_variables: at(&external),
+            },
+        };
+        // SAFETY: every pointer is to as many numbers as the library has said that it has (`load`), alive until after the call,
+        // in memory of this call only; the library reads the start and writes the end of the step, as its interface says.
+        let code = unsafe { (self.integrate)(&raw mut data) };
+        if let Some(why) = buffers.misused() {
+            return Err(why);
+        }
+        if code == 1 { Ok(end) } else { Err(refusal(code, buffers.numbers(&message))) }
+    }
+
     /// Whether the behaviour's own state says that something irreversible happened: any number of it changed, but that
     /// the elastic strain may follow the strain, to rounding.
     fn inelastic(&self, before: &[f64], gradients: &[f64], old: &[f64], new: &[f64]) -> bool {
@@ -299,12 +347,11 @@ impl Behaviour {
     }
 }
 
-/// Why a step was refused.
-fn refusal(code: i32, said: &[c_char; MESSAGE]) -> &'static str {
-    let mut own = *said;
-    own[MESSAGE - 1] = 0;
-    // SAFETY: the last character is zero, so the text ends within the buffer.
-    let said = unsafe { CStr::from_ptr(own.as_ptr()) }.to_string_lossy().into_owned();
+/// Why a step was refused; `message` holds the characters that the library wrote, up to the first zero.
+fn refusal(code: i32, message_numbers: &[f64]) -> &'static str {
+    let bytes: Vec<u8> =
+        message_numbers.iter().flat_map(|eight| eight.to_ne_bytes()).take_while(|byte| *byte != 0).collect();
+    let said = String::from_utf8_lossy(&bytes).replace(|c: char| c.is_control(), " ");
     match (code, said.is_empty()) {
         (0, true) => "the external behaviour calls its result unreliable",
         (_, true) => "the external behaviour could not integrate the step",

@@ -14,6 +14,7 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 use voussoir_core::law::{UpdateBranch, UpdateFailure};
 
 /// The program that behaviours run in, and its arguments.
@@ -74,6 +75,11 @@ pub(crate) struct Isolated {
     pub names: &'static [&'static str],
 }
 
+/// A process that gives no answer in this time is ended.
+const LONGEST_STEP: Duration = Duration::from_secs(10);
+/// Longest line and longest message of a process \[bytes\].
+const MAX_LINE: u64 = 1 << 20;
+
 #[cfg(unix)]
 fn started() -> io::Result<Process> {
     use std::os::fd::OwnedFd;
@@ -83,6 +89,8 @@ fn started() -> io::Result<Process> {
     let (program, arguments) = WORKER.get().ok_or_else(|| io::Error::other(none))?;
     let (own, other) = UnixStream::pair()?;
     let child = Command::new(program).args(arguments).stdin(OwnedFd::from(other)).stdout(Stdio::null()).spawn()?;
+    own.set_read_timeout(Some(LONGEST_STEP))?;
+    own.set_write_timeout(Some(LONGEST_STEP))?;
     let from = BufReader::new(Box::new(own.try_clone()?) as Box<dyn Channel>);
     Ok(Process { child, to: Box::new(own), from })
 }
@@ -108,7 +116,7 @@ impl Process {
         line.push('\n');
         self.to.write_all(line.as_bytes())?;
         line.clear();
-        self.from.read_line(&mut line)?;
+        self.from.by_ref().take(MAX_LINE).read_line(&mut line)?;
         Ok(serde_json::from_str(&line)?)
     }
 
@@ -120,11 +128,21 @@ impl Process {
         if first[0] == REFUSED {
             let mut length = [0; 4];
             self.from.read_exact(&mut length)?;
-            let mut words = vec![0; u32::from_le_bytes(length) as usize];
+            let length = u64::from(u32::from_le_bytes(length));
+            if length > MAX_LINE {
+                return Err(io::Error::other("a message that is too long"));
+            }
+            let mut words = vec![0; length as usize];
             self.from.read_exact(&mut words)?;
             return Ok(Err(String::from_utf8_lossy(&words).into_owned()));
         }
+        if first[0] > CHANGED {
+            return Err(io::Error::other("an answer of no kind"));
+        }
         let read = numbers(&mut self.from, N + N * N + 2 + new.len())?;
+        if !read.iter().all(|number| number.is_finite()) {
+            return Ok(Err("the external behaviour gives a number that is not finite".into()));
+        }
         let (forces, rest) = read.split_at(N);
         let (tangent, rest) = rest.split_at(N * N);
         new.copy_from_slice(&rest[2..]);
@@ -178,9 +196,13 @@ impl Isolated {
         let row = bytes_of(gradients.iter().chain([&time_step]).chain(old));
         match running.step(&row, new) {
             Ok(step) => step.map_err(|words| UpdateFailure::Law(message(&words))),
-            Err(_) => {
+            Err(error) => {
+                let late = [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut].contains(&error.kind());
                 let how = process.take().map_or_else(String::new, ending);
-                Err(UpdateFailure::Law(message(&format!("the process of the external behaviour has ended: {how}"))))
+                Err(UpdateFailure::Law(message(&match late {
+                    true => format!("the external behaviour does not answer within {LONGEST_STEP:?}"),
+                    false => format!("the process of the external behaviour has ended: {how}"),
+                })))
             }
         }
     }

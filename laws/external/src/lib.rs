@@ -6,6 +6,7 @@
 #![doc = include_str!("external.md")]
 
 mod behaviour;
+mod buffers;
 mod data;
 mod isolated;
 mod joint;

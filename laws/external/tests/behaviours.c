@@ -122,3 +122,53 @@ int Yielding_Tridimensional(Data *d) {
   }
   return 1;
 }
+
+/* Behaviours that break the interface. Each is the bilinear bond at rest, and another thing once it opens. */
+#define HOSTILE(NAME, DOES)                                                                                                \
+  JOINT(NAME, "Generic", 1)                                                                                                \
+  int NAME##_PlaneStrain(Data *d) {                                                                                        \
+    int code = BilinearBond_PlaneStrain(d);                                                                                \
+    if (d->s1.gradients[0] > 5e-5) { DOES; }                                                                               \
+    return code;                                                                                                           \
+  }
+HOSTILE(NanForce, d->s1.forces[0] = __builtin_nan(""))
+HOSTILE(InfTangent, d->K[3] = __builtin_inf())
+HOSTILE(NanState, d->s1.internal_variables[0] = __builtin_nan(""))
+HOSTILE(InfEnergy, *d->s1.stored_energy = __builtin_inf())
+HOSTILE(LongForces, d->s1.forces[2] = 1)
+HOSTILE(EarlyForces, d->s1.forces[-1] = 1)
+HOSTILE(LongState, d->s1.internal_variables[1] = 1)
+HOSTILE(LongTangent, for (int i = 36; i < 40; ++i) d->K[i] = 1)
+HOSTILE(LongMessage, for (int i = 0; i < 540; ++i) d->error_message[i] = 'x'; return -1)
+HOSTILE(FullMessage, for (int i = 0; i < 512; ++i) d->error_message[i] = 'x'; return -1)
+HOSTILE(RawMessage, d->error_message[0] = 27; d->error_message[1] = '['; d->error_message[2] = (char)0xff; return -1)
+HOSTILE(WritesStart, d->s0.internal_variables[0] = 1)
+HOSTILE(WritesProperties, *(double *)d->s0.material_properties = 1)
+HOSTILE(WritesGradients, *(double *)d->s1.gradients = 1)
+HOSTILE(WritesPointers, d->s1.forces = d->K = d->s0.stored_energy = 0; d->error_message = 0)
+HOSTILE(StrangeCode, return 42)
+HOSTILE(LeastCode, return -2147483647 - 1)
+HOSTILE(Endless, for (volatile int i = 0;; ++i) if (i > 1000) i = 0)
+HOSTILE(Closes, ((int (*)(int))0)(0))
+
+/* Behaviours that say wrong things of themselves. */
+#define SAYS(NAME, N_STATE, STATE, TYPE)                                                                                   \
+  DESCRIBE(NAME, "Generic", 1, 3, 2, "PlaneStrain", "OpeningDisplacement", "CohesiveForce", 1)                            \
+  unsigned short NAME##_nMaterialProperties = 0, NAME##_nInternalStateVariables = N_STATE;                                \
+  Text NAME##_InternalStateVariables[65535] = STATE;                                                                       \
+  int NAME##_InternalStateVariablesTypes[65535] = {TYPE};                                                                  \
+  int NAME##_PlaneStrain(Data *d) { (void)d; return 1; }
+#define ONE {"a"}
+SAYS(NullName, 2, ONE, 0)
+SAYS(OddType, 1, ONE, -1)
+SAYS(HugeType, 1, ONE, 2147483647)
+SAYS(NoState, 0, ONE, 0)
+#define MANY {[0 ... 65534] = "a"}
+SAYS(HugeState, 65535, MANY, 3)
+
+DESCRIBE(NoFunction, "Generic", 1, 3, 2, "PlaneStrain", "OpeningDisplacement", "CohesiveForce", 1)
+unsigned short NoFunction_nMaterialProperties = 0, NoFunction_nInternalStateVariables = 0;
+DESCRIBE(NoCounts, "Generic", 1, 3, 2, "PlaneStrain", "OpeningDisplacement", "CohesiveForce", 1)
+int NoCounts_PlaneStrain(Data *d) { (void)d; return 1; }
+JOINT(NewerBond, "Generic", 65535)
+int NewerBond_PlaneStrain(Data *d) { return BilinearBond_PlaneStrain(d); }

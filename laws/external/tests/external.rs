@@ -237,3 +237,98 @@ fn whatever_does_not_fit_is_refused_by_name() {
     let law: Box<dyn InterfaceLaw> = serde_json::from_value(with("library", json!(other))).expect("a table");
     assert!(law.response().is_none() && law.stiffness().is_none());
 }
+
+/// A library that breaks the interface is found out and refused: numbers that are not finite, codes that do not exist, writes
+/// beyond its buffers and into what it may only read.
+#[test]
+fn a_hostile_library_is_found_out() {
+    let Some(table) = bond("BilinearBond") else { return };
+    for (behaviour, words) in [
+        ("NanForce", "not finite"),
+        ("InfTangent", "not finite"),
+        ("NanState", "not finite"),
+        ("InfEnergy", "not finite"),
+        ("LongForces", "writes outside of its buffers"),
+        ("EarlyForces", "writes outside of its buffers"),
+        ("LongState", "writes outside of its buffers"),
+        ("LongTangent", "writes outside of its buffers"),
+        ("LongMessage", "writes outside of its buffers"),
+        ("FullMessage", "could not integrate the step: xxx"),
+        ("RawMessage", "could not integrate the step:  [\u{fffd}"),
+        ("WritesStart", "changes numbers that it may only read"),
+        ("WritesProperties", "changes numbers that it may only read"),
+        ("WritesGradients", "changes numbers that it may only read"),
+        ("StrangeCode", "could not integrate the step"),
+        ("LeastCode", "could not integrate the step"),
+    ] {
+        let mut own = table.clone();
+        own["behaviour"] = behaviour.into();
+        assert_eq!(complaints(PluginKind::InterfaceLaw, &own), "", "{behaviour}");
+        let law: Box<dyn InterfaceLaw> = serde_json::from_value(own).expect("a law");
+        let response = law.response().expect("it answers");
+        let old = vec![0.0; response.state_size()];
+        let step = |gap: f64| response.respond_point([gap, 0.0], &old, &mut vec![0.0; old.len()]);
+        let before = step(1e-6);
+        assert!(before.is_ok(), "{behaviour}: {before:?}");
+        match step(9e-5) {
+            Err(UpdateFailure::Law(why)) => assert!(why.contains(words), "{behaviour}: {why}"),
+            other => panic!("{behaviour}: {other:?}"),
+        }
+        assert_eq!(old, vec![0.0; old.len()], "{behaviour}");
+        // Nothing of it is left behind.
+        assert_eq!(step(1e-6), before, "{behaviour}");
+    }
+    let mut own = table.clone();
+    own["behaviour"] = "WritesPointers".into();
+    let law: Box<dyn InterfaceLaw> = serde_json::from_value(own).expect("a law");
+    let response = law.response().expect("it answers");
+    assert!(
+        response
+            .respond_point([9e-5, 0.0], &vec![0.0; response.state_size()], &mut vec![0.0; response.state_size()])
+            .is_ok()
+    );
+}
+
+/// What a library says of itself is checked before it is called.
+#[test]
+fn wrong_words_of_a_library_are_refused() {
+    let Some(library) = LIBRARY.as_ref() else { return };
+    for (behaviour, words) in [
+        ("NullName", "InternalStateVariables"),
+        ("OddType", "of a type that is not known, -1"),
+        ("HugeType", "of a type that is not known, 2147483647"),
+        ("HugeState", "at most 10000 are read"),
+        ("NoState", "its tangent at rest is not stiff"),
+        ("NoFunction", "has no function NoFunction_PlaneStrain"),
+        ("NoCounts", "MaterialProperties"),
+        ("NewerBond", "has version 65535 of the generic interface"),
+        ("bad\0name", "behaviour"),
+    ] {
+        let table = json!({ "law": "external", "library": library, "behaviour": behaviour });
+        let said = complaints(PluginKind::InterfaceLaw, &table);
+        assert!(said.contains(words), "{behaviour}: {said}");
+    }
+}
+
+/// A loop without an end and a jump to nowhere end the other process only.
+#[test]
+#[cfg(unix)]
+fn an_isolated_behaviour_has_limited_time() {
+    let Some(table) = bond("BilinearBond") else { return };
+    voussoir_external::isolate_with(env!("CARGO_BIN_EXE_external_worker").into(), Vec::new());
+    for (behaviour, words) in [
+        ("Endless", "does not answer within 10s"),
+        ("Closes", "has ended: signal"),
+        ("LongState", "outside of its buffers"),
+    ] {
+        let mut own = table.clone();
+        (own["behaviour"], own["isolate"]) = (behaviour.into(), true.into());
+        let law: Box<dyn InterfaceLaw> = serde_json::from_value(own).expect("a law");
+        let response = law.response().expect("it answers");
+        let old = vec![0.0; response.state_size()];
+        let Err(UpdateFailure::Law(why)) = response.respond_point([9e-5, 0.0], &old, &mut old.clone()) else {
+            panic!("{behaviour}")
+        };
+        assert!(why.contains(words), "{behaviour}: {why}");
+    }
+}
