@@ -14,10 +14,15 @@ static LIBRARY: LazyLock<Option<PathBuf>> = LazyLock::new(|| {
     Some(library)
 });
 
+/// With `VOUSSOIR_TEST_CFLAGS=-fsanitize=address,undefined` and `LD_PRELOAD="$(gcc -print-file-name=libasan.so)
+/// $(gcc -print-file-name=libubsan.so)"` the library is watched by GCC's sanitizers.
 fn compiled(name: &str) -> Option<PathBuf> {
     let library = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("lib{name}.so"));
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/behaviours.c");
-    let status = Command::new("cc").args(["-O1", "-shared", "-fPIC", "-o"]).arg(&library).arg(source).status();
+    let flags = std::env::var("VOUSSOIR_TEST_CFLAGS").unwrap_or_default();
+    let mut command = Command::new("cc");
+    command.args(flags.split_whitespace()).args(["-O1", "-shared", "-fPIC", "-o"]).arg(&library).arg(source);
+    let status = command.status();
     match status {
         Ok(status) => {
             assert!(status.success(), "the C compiler refuses the behaviours of the tests");
