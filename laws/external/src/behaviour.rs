@@ -62,7 +62,7 @@ pub(crate) struct Step<const N: usize> {
 
 /// Greatest number of gradients.
 const LARGEST: usize = 6;
-/// Greatest number of its own state: each point of a structure holds it.
+/// Greatest number of internal variables: each point of a structure stores them.
 const MAX_STATE: usize = 10_000;
 
 /// The buffers that a library writes.

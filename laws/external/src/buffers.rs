@@ -20,7 +20,7 @@ pub(crate) struct Buffer {
 pub(crate) struct Buffers {
     numbers: Vec<f64>,
     all: Vec<Buffer>,
-    /// What the library may only read.
+    /// The numbers of the buffers that the library may only read.
     given: Vec<f64>,
 }
 
@@ -68,7 +68,7 @@ impl Buffers {
         buffer
     }
 
-    /// Where the numbers of a buffer are; valid until the next buffer is added.
+    /// The address of a buffer; valid until the next buffer is added.
     pub fn pointer(&mut self, buffer: &Buffer) -> *mut f64 {
         // From the whole vector, so that a pointer may move over all guards.
         self.numbers.as_mut_ptr().wrapping_add(buffer.place.start)
@@ -79,7 +79,7 @@ impl Buffers {
         &self.numbers[buffer.place.clone()]
     }
 
-    /// What the library did that it must not do.
+    /// Returns the rule that the library has broken.
     pub fn misused(&self) -> Option<&'static str> {
         let mut end = 0;
         let mut given = self.given.iter();

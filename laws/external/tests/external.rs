@@ -244,7 +244,7 @@ fn whatever_does_not_fit_is_refused_by_name() {
 }
 
 /// A library that breaks the interface is found out and refused: numbers that are not finite, codes that do not exist, writes
-/// beyond its buffers and into what it may only read.
+/// beyond its buffers and into its input.
 #[test]
 fn a_hostile_library_is_found_out() {
     let Some(table) = bond("BilinearBond") else { return };
@@ -280,7 +280,7 @@ fn a_hostile_library_is_found_out() {
             other => panic!("{behaviour}: {other:?}"),
         }
         assert_eq!(old, vec![0.0; old.len()], "{behaviour}");
-        // Nothing of it is left behind.
+        // The failed step leaves no trace.
         assert_eq!(step(1e-6), before, "{behaviour}");
     }
     let mut own = table.clone();
@@ -294,7 +294,7 @@ fn a_hostile_library_is_found_out() {
     );
 }
 
-/// What a library says of itself is checked before it is called.
+/// The description that a library gives of itself is checked before it is called.
 #[test]
 fn wrong_words_of_a_library_are_refused() {
     let Some(library) = LIBRARY.as_ref() else { return };

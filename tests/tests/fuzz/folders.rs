@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use voussoir_tests::sequence::Sequence;
 
-/// An arch under a load, with what is changed for each folder.
+/// An arch under a load.
 const ARCH: &str = r#"
 name = "arch"
 [scene]
@@ -38,7 +38,7 @@ until = "collapse"
 loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
 "#;
 
-/// What is added to the study of each folder.
+/// The lines that each folder adds to the study.
 const FOLDERS: [&str; 3] = [
     "[solver]\nsolver = \"limit_chain\"\n",
     "[solver]\nsolver = \"event_path\"\n[output]\ncurve = true\nfigures = false\n",
@@ -105,7 +105,7 @@ fn damaged(path: PathBuf, random: &mut Sequence) -> Input {
     Input { text, beside: path }
 }
 
-/// Mutated by what the text holds: TOML, JSON, or a line of JSON.
+/// Mutates a text by its form: TOML, JSON, or lines of JSON.
 fn structured(text: &str, random: &mut Sequence) -> Option<String> {
     if let Ok(mut table) = text.parse::<toml::Table>() {
         mutate(&mut table, &toml::Table::new(), random);

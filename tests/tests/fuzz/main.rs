@@ -1,4 +1,4 @@
-//! Inputs that nobody would write: mutations of real studies, surveys, drawings, results and parts, by the schema.
+//! Unusual inputs: mutations of real studies, surveys, drawings, results and parts, by the schema.
 //!
 //! One rule for all: an exit code from 0 to 3 or a message, no panic, bounded time and memory. Inputs follow from a seed, so
 //! that a failure can be repeated. Each target works in a child process: one that ends or hangs is started again behind the

@@ -1,4 +1,4 @@
-//! The parent process: starts children, ends those that hang, and gathers what they found.
+//! The parent process: starts children, ends those that hang, and gathers their findings.
 
 use super::worker::{ASKED, MARK, TARGETS};
 use std::io::{BufRead, BufReader};
@@ -34,7 +34,7 @@ pub fn hold(name: &str, short: u64) {
     assert!(findings.is_empty(), "{name}: {} of {count} inputs\n{}", findings.len(), lines.join("\n"));
 }
 
-/// What was found so far.
+/// The findings so far.
 #[derive(Default)]
 struct Tally {
     findings: Vec<(u64, String)>,

@@ -1,4 +1,4 @@
-//! The child process: tries inputs one after the other and says on standard output what it is about to do.
+//! The child process: tries inputs one after the other and reports each phase on standard output.
 
 use super::{folders, studies, surveys};
 use std::path::{Path, PathBuf};
@@ -6,13 +6,13 @@ use std::sync::Mutex;
 
 /// One input.
 pub struct Input {
-    /// What is read.
+    /// Its text.
     pub text: String,
-    /// The file that it stands for, beside which others may be.
+    /// The file that it replaces; other files may be beside it.
     pub beside: PathBuf,
 }
 
-/// A kind of input: how it is made from a seed, and what is done with it.
+/// A kind of input, with its generator and its attempt.
 pub struct Target {
     pub name: &'static str,
     pub input: fn(u64) -> Input,
@@ -28,15 +28,15 @@ pub const TARGETS: [Target; 6] = [
     Target { name: "claims", input: surveys::claim, attempt: surveys::attempt_claim },
 ];
 
-/// What the child is asked: target, first seed, seed after the last.
+/// The variable with the task of the child: target, first seed, seed after the last.
 pub const ASKED: &str = "VOUSSOIR_FUZZ_WORKER";
-/// The beginning of a line for the parent; others are those of the commands.
+/// The beginning of a line for the parent. Commands print other lines.
 pub const MARK: &str = "@@ ";
 
-/// Where and why a thread panicked last.
+/// Place and message of the last panic.
 static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
-/// Tells the parent what is done from now on.
+/// Reports the next phase to the parent.
 pub fn phase(what: &str) {
     println!("\n{MARK}phase {what}");
 }
@@ -51,7 +51,7 @@ pub fn own_folder() -> &'static Path {
     &FOLDER
 }
 
-/// Does what the parent asks; nothing if there is no parent.
+/// Works on the task of the parent; returns at once if there is no parent.
 pub fn work() {
     let Ok(asked) = std::env::var(ASKED) else { return };
     let words: Vec<&str> = asked.split(' ').collect();
@@ -59,7 +59,9 @@ pub fn work() {
     let [from, to] = [words[1], words[2]].map(|word| word.parse::<u64>().expect("a seed"));
     std::panic::set_hook(Box::new(|info| {
         let place = info.location().map_or(String::new(), |place| format!("{}:{}", place.file(), place.line()));
-        let why = info.payload_as_str().unwrap_or("a panic");
+        let payload = info.payload();
+        let text = payload.downcast_ref::<String>().map(String::as_str);
+        let why = text.or(payload.downcast_ref::<&str>().copied()).unwrap_or("a panic");
         *PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(format!("panic at {place}: {why}"));
     }));
     for seed in from..to {
