@@ -1,71 +1,9 @@
 //! `voussoir serve`: who is let in, and that it answers as `run` does. The page is used by `.ci/page`.
 
+mod served;
+
 use serde_json::{Value, json};
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
-
-struct Served {
-    program: Child,
-    port: u16,
-    token: String,
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        drop(self.program.kill());
-        drop(self.program.wait());
-    }
-}
-
-impl Served {
-    fn start(study: &str) -> Served {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_voussoir"))
-            .args(["serve", study])
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        let mut line = String::new();
-        BufReader::new(program.stdout.as_mut().expect("its output")).read_line(&mut line).expect("its address");
-        let (_, place) = line.trim().split_once("http://127.0.0.1:").unwrap_or_else(|| panic!("{line}"));
-        let (port, token) = place.split_once("/?token=").expect("a token");
-        assert_eq!(token.len(), 32);
-        Served { port: port.parse().expect("a port"), token: token.into(), program }
-    }
-
-    /// Status and body of the answer to a request as it is written here.
-    fn raw(&self, request: &str) -> (u16, String) {
-        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
-        stream.write_all(request.as_bytes()).expect("sent");
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).expect("an answer");
-        let policy = answer.lines().find_map(|line| line.strip_prefix("Content-Security-Policy: ")).expect("a policy");
-        assert!(policy.contains("script-src 'sha256-") && !policy.contains("unsafe"), "{policy}");
-        assert!(policy.ends_with("; frame-ancestors 'none'"), "{policy}");
-        let code = answer.split(' ').nth(1).and_then(|code| code.parse().ok()).unwrap_or_else(|| panic!("{answer}"));
-        (code, answer.split_once("\r\n\r\n").map_or(String::new(), |(_, body)| body.to_string()))
-    }
-
-    fn ask(&self, method: &str, path: &str, host: &str, body: &str) -> (u16, String) {
-        let length = body.len();
-        self.raw(&format!(
-            "{method} {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n{body}"
-        ))
-    }
-
-    fn own(&self) -> String {
-        format!("127.0.0.1:{}", self.port)
-    }
-
-    fn answer(&self, asked: &Value) -> Value {
-        let path = format!("/answer?token={}", self.token);
-        let (code, body) = self.ask("POST", &path, &self.own(), &asked.to_string());
-        assert_eq!(code, 200, "{body}");
-        serde_json::from_str(&body).unwrap_or_else(|error| panic!("{error}: {body}"))
-    }
-}
-
-const STUDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/strathmashie_rise.toml");
+use served::{STUDY, Served};
 
 /// Nothing passes without its own host, the token, a known path and method, and a body of bounded size.
 #[test]
@@ -100,12 +38,19 @@ fn only_the_page_itself_is_let_in() {
     assert_eq!(code("POST", &answer, &own, "{\"case\": 0, \"run\": 1}"), 400);
 }
 
+fn answered(served: &Served, asked: &Value) -> Value {
+    let path = format!("/answer?token={}", served.token);
+    let (code, body) = served.ask("POST", &path, &served.own(), &asked.to_string());
+    assert_eq!(code, 200, "{body}");
+    serde_json::from_str(&body).unwrap_or_else(|error| panic!("{error}: {body}"))
+}
+
 /// The answer to sliders is that of `run --set`, and its study file gives the same; a mistake has the same words.
 #[test]
 fn a_served_answer_is_that_of_run() {
     let served = Served::start(STUDY);
     let asked = json!({ "case": 28, "set": [["scene.profile.span", 9.0], ["scene.thickness", "70 cm"], ["scene.voussoirs", 13]] });
-    let answer = served.answer(&asked);
+    let answer = answered(&served, &asked);
     let study = voussoir::study::load(answer["toml"].as_str().expect("a study file"), "seen.toml", &[]);
     let study = study.unwrap_or_else(|wrong| panic!("{wrong}"));
     assert_eq!(study.cases.len(), 1);
@@ -120,12 +65,12 @@ fn a_served_answer_is_that_of_run() {
     }
     assert_eq!((answer["certified"].as_bool(), run.certificate.passed), (Some(true), true));
 
-    let mistake = served.answer(&json!({ "case": 0, "set": [["joints.dry.frction", 0.5]] }));
+    let mistake = answered(&served, &json!({ "case": 0, "set": [["joints.dry.frction", 0.5]] }));
     let told = voussoir::study::load(&text, STUDY, &[("joints.dry.frction".into(), "0.5".into())]);
     let words = told.expect_err("a mistake").to_string();
     assert!(words.starts_with(mistake["mistakes"].as_str().expect("a text")), "{mistake} {words}");
     // Nothing is read from files, whatever is set.
     let profile = json!({ "shape": "points", "file": "/etc/hostname" });
-    let file = served.answer(&json!({ "case": 0, "set": [["scene.profile", profile]] }));
+    let file = answered(&served, &json!({ "case": 0, "set": [["scene.profile", profile]] }));
     assert!(file["mistakes"].as_str().is_some_and(|text| text.contains("file")), "{file}");
 }

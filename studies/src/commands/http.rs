@@ -1,13 +1,40 @@
-//! Requests to `voussoir serve`: who is let in, how much is read, and what is said besides an answer. Only a page that
-//! was opened with the token gets through; a foreign site cannot, also not by a name that it lets point here.
+//! The server of `voussoir serve`: its gate, its limits, and the headers of its answers.
+//!
+//! It is written over `std::net` because `tiny_http`, which it replaces, is unmaintained and reserves memory for a body of any
+//! announced length. `hyper` would need an asynchronous runtime (about thirty crates) for a page with one reader on this machine.
+//! One connection carries one request, bodies have a length, and everything has a limit:
+//!
+//! | part | limit |
+//! |---|---|
+//! | head of a request | 16 KiB, 5 s in total |
+//! | body | 64 KiB, 5 s in total |
+//! | sending the answer | 5 s in total |
+//! | connections | 32; a new one closes the oldest that has not passed the gate |
+//!
+//! A page that was opened with the token passes the gate. A foreign site does not, even if its name leads to this machine.
 
-use std::io::Read;
-use tiny_http::{Header, Request, Response, Server};
+mod answer;
+mod connections;
+mod request;
+mod wire;
 
-/// Longest body that is read \[bytes\].
-const LONGEST: u64 = 64 * 1024;
+pub use answer::Answer;
+use connections::{Connection, Connections};
+use request::Request;
+use std::net::{TcpListener, TcpStream};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::Duration;
+use wire::{Limits, Wire};
 
-/// What lets a request in.
+/// Limits of a request.
+const LIMITS: Limits = Limits { head: 16 * 1024, body: 64 * 1024, time: Duration::from_secs(5) };
+/// Connections at a time.
+const MAX_CONNECTIONS: usize = 32;
+/// Pause after a connection could not be accepted, for example because too many files are open.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(20);
+
+/// The conditions under which a request is let in.
 pub struct Gate {
     /// The port that it must name.
     pub port: u16,
@@ -17,59 +44,25 @@ pub struct Gate {
     pub policy: String,
 }
 
-/// What is sent back.
-pub struct Answer {
-    /// Status code of HTTP.
-    pub code: u16,
-    /// Content type.
-    pub kind: &'static str,
-    /// The bytes.
-    pub body: Vec<u8>,
-}
-
-impl Answer {
-    /// Plain text.
-    pub fn text(code: u16, words: impl Into<String>) -> Self {
-        Answer { code, kind: "text/plain; charset=utf-8", body: words.into().into_bytes() }
-    }
-}
-
-/// Headers of every answer beside its policy: nothing is stored or told to other sites.
-const HEADERS: [(&str, &str); 4] = [
-    ("Cache-Control", "no-store"),
-    ("Referrer-Policy", "no-referrer"),
-    ("X-Content-Type-Options", "nosniff"),
-    ("Cross-Origin-Resource-Policy", "same-origin"),
-];
-
-fn header<'a>(request: &'a Request, name: &'static str) -> Vec<&'a str> {
-    request.headers().iter().filter(|header| header.field.equiv(name)).map(|header| header.value.as_str()).collect()
-}
-
-/// Key and value pairs after the question mark; what is escaped stays so, since neither tokens nor ids are.
-fn query_of(url: &str) -> Vec<(String, String)> {
-    let pairs = url.split_once('?').map_or("", |(_, query)| query).split('&');
-    pairs.filter_map(|pair| pair.split_once('=')).map(|(key, value)| (key.into(), value.into())).collect()
-}
-
-/// Whether two texts are equal, in a time that does not tell how far they are.
+/// Returns true if two texts are equal, in a time that depends on their lengths only.
 fn equal(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
 }
 
 impl Gate {
-    /// Why a request is not let in.
-    fn refuses(&self, request: &Request, query: &[(String, String)]) -> Option<Answer> {
+    /// The reason why a request is not let in.
+    fn refuses(&self, request: &Request) -> Option<Answer> {
         let own = [format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port)];
-        let [host] = header(request, "Host")[..] else { return Some(Answer::text(403, "one Host is needed")) };
+        let [host] = request.header("Host")[..] else { return Some(Answer::text(403, "one Host is needed")) };
         if !own.iter().any(|name| name == host) {
             return Some(Answer::text(403, "this Host is not served"));
         }
         let foreign = |origin: &&str| !own.iter().any(|name| **origin == format!("http://{name}"));
-        if header(request, "Origin").iter().any(foreign) {
+        if request.header("Origin").iter().any(foreign) {
             return Some(Answer::text(403, "another site is not answered"));
         }
-        let tokens: Vec<&str> = query.iter().filter(|(key, _)| key == "token").map(|(_, own)| own.as_str()).collect();
+        let tokens: Vec<&str> =
+            request.query.iter().filter(|(key, _)| key == "token").map(|(_, own)| own.as_str()).collect();
         match tokens[..] {
             [token] if equal(token, &self.token) => None,
             _ => Some(Answer::text(403, "the address is not whole: its token is missing or wrong")),
@@ -77,43 +70,101 @@ impl Gate {
     }
 }
 
-/// The body of a request; an answer where it is too long or breaks off.
-fn body_of(request: &mut Request) -> Result<Vec<u8>, Answer> {
-    let too_long = || Answer::text(413, format!("more than {LONGEST} bytes are not read"));
-    if request.body_length().is_some_and(|length| length as u64 > LONGEST) {
-        return Err(too_long());
-    }
-    let mut body = Vec::new();
-    match request.as_reader().take(LONGEST + 1).read_to_end(&mut body) {
-        Ok(_) if body.len() as u64 > LONGEST => Err(too_long()),
-        Ok(_) => Ok(body),
-        Err(error) => Err(Answer::text(400, error.to_string())),
+/// The work of a server: method, path, query and body give an answer.
+pub type Route<'a> = &'a (dyn Fn(&str, &str, &[(String, String)], &[u8]) -> Answer + Sync);
+
+/// Answers requests until the process ends.
+pub fn serve(listener: &TcpListener, gate: &Gate, route: Route) {
+    let connections = Connections::new(MAX_CONNECTIONS);
+    std::thread::scope(|scope| {
+        loop {
+            let Ok((stream, _)) = listener.accept() else {
+                std::thread::sleep(ACCEPT_PAUSE);
+                continue;
+            };
+            let stream = Arc::new(stream);
+            let Some(connection) = connections.enter(&stream) else {
+                refuse(&stream, gate);
+                continue;
+            };
+            // Without a thread for it the connection is dropped.
+            drop(std::thread::Builder::new().spawn_scoped(scope, move || {
+                let wire = Wire::new(connection.stream(), LIMITS);
+                converse(wire, &connection, gate, route);
+            }));
+        }
+    });
+}
+
+/// Refuses a connection without waiting for it.
+fn refuse(stream: &TcpStream, gate: &Gate) {
+    let answer = Answer::text(503, "all connections are busy");
+    if stream.set_nonblocking(true).is_ok() {
+        drop(std::io::Write::write(&mut &*stream, &answer.bytes(&gate.policy)));
     }
 }
 
-/// What answers: method, path, query and body.
-pub type Route<'a> = &'a (dyn Fn(&str, &str, &[(String, String)], &[u8]) -> Answer + Sync);
-
-/// Waits for a request and answers it; `false` when no more will come.
-pub fn received(server: &Server, gate: &Gate, route: Route) -> bool {
-    let Ok(mut request) = server.recv() else { return false };
-    let url = request.url().to_string();
-    let query = query_of(&url);
-    let path = url.split('?').next().unwrap_or_default();
-    let answer = match gate.refuses(&request, &query) {
-        Some(refusal) => refusal,
-        None => match body_of(&mut request) {
-            Ok(body) => route(request.method().as_str(), path, &query, &body),
-            Err(refusal) => refusal,
-        },
+/// Reads one request and sends its answer. A reader that has gone away is no error.
+fn converse(mut wire: Wire, connection: &Connection, gate: &Gate, route: Route) {
+    let answer = match request(&mut wire, connection, gate) {
+        Ok(Some((request, body))) => {
+            let work = || route(&request.method, &request.path, &request.query, &body);
+            catch_unwind(AssertUnwindSafe(work))
+                .unwrap_or_else(|_| Answer::text(500, "the work on this request failed"))
+        }
+        Ok(None) => return,
+        Err(refusal) => refusal,
     };
-    let own = [("Content-Type", answer.kind), ("Content-Security-Policy", gate.policy.as_str())];
-    let headers = HEADERS.iter().copied().chain(own);
-    let mut response = Response::from_data(answer.body).with_status_code(answer.code);
-    for header in headers.filter_map(|(name, value)| Header::from_bytes(name, value).ok()) {
-        response.add_header(header);
+    if wire.send(&answer.bytes(&gate.policy)).is_ok() {
+        connection.may_be_closed(true);
+        wire.finish();
     }
-    // A reader that has gone away is no error.
-    drop(request.respond(response));
-    true
+}
+
+/// A request that has passed the gate, with its body; `None` if nothing came.
+fn request(wire: &mut Wire, connection: &Connection, gate: &Gate) -> Result<Option<(Request, Vec<u8>)>, Answer> {
+    let Some(head) = wire.head()? else { return Ok(None) };
+    let request = Request::parse(&head)?;
+    if let Some(refusal) = gate.refuses(&request) {
+        return Err(refusal);
+    }
+    connection.may_be_closed(false);
+    let length = request.body_length(LIMITS.body)?;
+    if request.waits_for_permission()? && length > 0 {
+        // Without it the body does not come, and that is found below.
+        drop(wire.send(b"HTTP/1.1 100 Continue\r\n\r\n"));
+    }
+    Ok(Some((request, wire.body(length)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Read, Write};
+
+    /// After a panic in the work for one request its reader gets an error, and the server goes on.
+    #[test]
+    fn a_panic_does_not_end_the_server() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let port = listener.local_addr().expect("an address").port();
+        // The thread ends with the tests.
+        std::thread::spawn(move || {
+            let gate = Gate { port, token: "t".into(), policy: "default-src 'none'".into() };
+            serve(&listener, &gate, &|_, path, _, _| match path {
+                "/panic" => panic!("this panic belongs to a test"),
+                _ => Answer::text(200, "well"),
+            });
+        });
+        let ask = |path: &str| {
+            let mut stream = TcpStream::connect(("127.0.0.1", port)).expect("a connection");
+            write!(stream, "GET {path}?token=t HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n").expect("sent");
+            let mut answer = String::new();
+            stream.read_to_string(&mut answer).expect("an answer");
+            answer
+        };
+        for _ in 0..2 * MAX_CONNECTIONS {
+            assert!(ask("/panic").starts_with("HTTP/1.1 500 "));
+        }
+        assert!(ask("/").starts_with("HTTP/1.1 200 OK\r\n") && ask("/").ends_with("\r\n\r\nwell"));
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::codes::{FINE, NO_ACCESS, say};
 use super::files;
-use super::http::{Answer, Gate, received};
+use super::http::{self, Answer, Gate};
 use super::open::open;
 use crate::serve::{Asked, Session};
 use crate::solve::Observer;
@@ -10,12 +10,10 @@ use crate::writers::page::served_policy;
 use serde_json::Value as Json;
 use std::collections::hash_map::RandomState;
 use std::hash::{BuildHasher, Hasher};
+use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use tiny_http::Server;
 
-/// Connections served side by side.
-const SIDE_BY_SIDE: usize = 4;
 /// A path that takes longer is not followed.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -41,11 +39,12 @@ pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> u8 {
         Ok(session) => session,
         Err(code) => return code,
     };
-    let (server, port) = match Server::http("127.0.0.1:0") {
-        Ok(server) => match server.server_addr().to_ip() {
-            Some(address) => (server, address.port()),
-            None => return refused("it has no address"),
-        },
+    let bound = TcpListener::bind("127.0.0.1:0").and_then(|listener| {
+        let port = listener.local_addr()?.port();
+        Ok((listener, port))
+    });
+    let (listener, port) = match bound {
+        Ok(bound) => bound,
         Err(error) => return refused(error),
     };
     // Where signals cannot be caught the system's own way ends it.
@@ -62,15 +61,7 @@ pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> u8 {
     }
     // Only a header can forbid frames.
     let gate = Gate { port, token, policy: format!("{}; frame-ancestors 'none'", served_policy()) };
-    std::thread::scope(|scope| {
-        for _ in 0..SIDE_BY_SIDE {
-            scope.spawn(|| {
-                while received(&server, &gate, &|method, path, query, body| route(&session, method, path, query, body))
-                {
-                }
-            });
-        }
-    });
+    http::serve(&listener, &gate, &|method, path, query, body| route(&session, method, path, query, body));
     FINE
 }
 
@@ -79,7 +70,7 @@ fn refused(why: impl std::fmt::Display) -> u8 {
     NO_ACCESS
 }
 
-/// What a request that has passed the gate gets.
+/// The answer to a request that has passed the gate.
 fn route(session: &Session, method: &str, path: &str, query: &[(String, String)], body: &[u8]) -> Answer {
     let patience = Patience(Instant::now());
     let asked = || serde_json::from_slice::<Asked>(body).map_err(|error| Answer::text(400, error.to_string()));

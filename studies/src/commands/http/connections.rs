@@ -1,0 +1,78 @@
+//! The connections that are open: a fixed number, of which those without a right to be here make room.
+
+use std::net::{Shutdown, TcpStream};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long a new connection waits for the place of one that was closed for it.
+const MAX_WAIT: Duration = Duration::from_secs(1);
+
+/// All open connections, oldest first.
+pub(super) struct Connections {
+    most: usize,
+    open: Mutex<Vec<Place>>,
+    left: Condvar,
+}
+
+struct Place {
+    stream: Arc<TcpStream>,
+    /// Whether it may be closed for a newer one: its request has not passed the gate, or its answer is sent.
+    closable: bool,
+}
+
+/// One open connection; its place is free when it is dropped.
+pub(super) struct Connection<'a> {
+    all: &'a Connections,
+    stream: Arc<TcpStream>,
+}
+
+impl Connections {
+    /// Room for some connections.
+    pub fn new(most: usize) -> Self {
+        Connections { most, open: Mutex::new(Vec::new()), left: Condvar::new() }
+    }
+
+    fn open(&self) -> MutexGuard<'_, Vec<Place>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A place for a connection. If all are taken, the oldest closable one is closed; `None` if there is none.
+    pub fn enter(&self, stream: &Arc<TcpStream>) -> Option<Connection<'_>> {
+        let mut open = self.open();
+        if open.len() >= self.most {
+            let oldest = open.iter_mut().find(|place| place.closable)?;
+            oldest.closable = false;
+            // Its thread wakes up and leaves.
+            drop(oldest.stream.shutdown(Shutdown::Both));
+            let full = |open: &mut Vec<Place>| open.len() >= self.most;
+            open = self.left.wait_timeout_while(open, MAX_WAIT, full).unwrap_or_else(PoisonError::into_inner).0;
+            if open.len() >= self.most {
+                return None;
+            }
+        }
+        open.push(Place { stream: stream.clone(), closable: true });
+        Some(Connection { all: self, stream: stream.clone() })
+    }
+}
+
+impl Connection<'_> {
+    /// Its bytes.
+    pub fn stream(&self) -> &TcpStream {
+        &self.stream
+    }
+
+    /// Allows or forbids that it makes room for a newer one.
+    pub fn may_be_closed(&self, closable: bool) {
+        let mut open = self.all.open();
+        if let Some(place) = open.iter_mut().find(|place| Arc::ptr_eq(&place.stream, &self.stream)) {
+            place.closable = closable;
+        }
+    }
+}
+
+impl Drop for Connection<'_> {
+    fn drop(&mut self) {
+        self.all.open().retain(|place| !Arc::ptr_eq(&place.stream, &self.stream));
+        self.all.left.notify_one();
+    }
+}
