@@ -267,9 +267,9 @@ impl BulkMaterial for DruckerPragerCap {
     }
 }
 
-static NUMBER: Shape = Shape::Number(Quantity::Ratio, Range::ANY);
-static STRENGTH: Shape = Shape::Number(Quantity::Stress, Range::POSITIVE);
-static ENTRY: Shape = Shape::Tuple(&[&NUMBER, &STRENGTH]);
+const NUMBER: Shape = Shape::Number(Quantity::Ratio, Range::ANY);
+const STRENGTH: Shape = Shape::Number(Quantity::Stress, Range::POSITIVE);
+static ENTRY: Shape = Shape::Tuple(&[("plastic volume strain", NUMBER), ("pressure", STRENGTH)]);
 
 /// Squeezed from all sides beyond a constant p_b, then back with K.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {

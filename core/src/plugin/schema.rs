@@ -187,8 +187,8 @@ pub enum Shape {
         /// Greatest number of entries.
         max: usize,
     },
-    /// A list with one entry for each of these shapes, in order.
-    Tuple(&'static [&'static Shape]),
+    /// A list with one entry for each of these names and shapes, in order: `[x, y]`.
+    Tuple(&'static [(&'static str, Shape)]),
     /// A table with these keys.
     Table(&'static [Parameter]),
     /// A table whose keys depend on the word under `key`.

@@ -24,6 +24,8 @@ pub enum Quantity {
     Acceleration,
     /// J/m².
     EnergyPerArea,
+    /// K.
+    Temperature,
 }
 
 const POUND_FORCE: f64 = 4.448_221_615_260_5; // exact: 0.45359237 kg × 9.80665 m/s²
@@ -66,6 +68,7 @@ impl Quantity {
             Quantity::Density => "kg/m3",
             Quantity::Acceleration => "m/s2",
             Quantity::EnergyPerArea => "J/m2",
+            Quantity::Temperature => "K",
         }
     }
 
@@ -89,6 +92,7 @@ impl Quantity {
             }
             Quantity::Acceleration => ACCELERATIONS.to_vec(),
             Quantity::EnergyPerArea => ENERGIES_PER_AREA.to_vec(),
+            Quantity::Temperature => vec![("K", 1.0)],
         }
     }
 

@@ -115,7 +115,7 @@ pub(crate) const PROPERTIES: Parameter = Parameter {
     need: Need::Default("{}"),
 };
 pub(crate) const TEMPERATURE: Parameter =
-    Parameter::number("temperature", Quantity::Ratio, Range::POSITIVE, "temperature, in K").default("293.15");
+    Parameter::number("temperature", Quantity::Temperature, Range::POSITIVE, "temperature").default("293.15");
 pub(crate) const VARIABLES: Parameter = Parameter {
     name: "variables",
     doc: "its external state variables without the temperature, by their names in the library",

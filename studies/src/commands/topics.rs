@@ -1,8 +1,9 @@
 //! What `voussoir explain` knows besides plug-ins: words about studies, and every key of a study file.
 
+use crate::config::key_meaning::quantity_of;
 use crate::study::study_keys;
 use std::collections::BTreeSet;
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Shape, Variant, cards, cards_of};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, cards, cards_of};
 
 /// Words with a page of their own; the first of each row is its name.
 const PAGES: [(&[&str], &str); 9] = [
@@ -94,7 +95,10 @@ pub fn describe(key: &Parameter) -> String {
             format!(" [{unit}], {}", range.describe())
         }
         Shape::Choice(words) => format!(", one of {}", words.join(", ")),
-        _ => String::new(),
+        shape => match quantity_of(shape).map(Quantity::unit) {
+            None | Some("") => String::new(),
+            Some(unit) => format!(" [{unit}]"),
+        },
     };
     let need = match key.need {
         Need::Required => "required".to_string(),

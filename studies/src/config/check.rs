@@ -174,17 +174,22 @@ impl<'a> Checker<'a> {
         entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
     }
 
-    fn tuple(&mut self, node: &Node, nodes: &[Node], shapes: &[&Shape], key: &str) -> Option<Json> {
+    fn tuple(
+        &mut self,
+        node: &Node,
+        nodes: &[Node],
+        shapes: &'static [(&'static str, Shape)],
+        key: &str,
+    ) -> Option<Json> {
         if nodes.len() != shapes.len() {
             let entries = if nodes.len() == 1 { "entry" } else { "entries" };
             let message = format!("the list has {} {entries}; it needs {}", nodes.len(), shapes.len());
-            let words: Vec<_> = shapes.iter().map(|shape| describe(shape)).collect();
-            let help = format!("write a list [{}]", words.join(", "));
+            let help = format!("write {}", describe(&Shape::Tuple(shapes)));
             return self.wrong_with_help(&node.origin, key, message, help);
         }
         let entries = nodes.iter().zip(shapes).enumerate();
         let entries: Vec<_> =
-            entries.map(|(i, (node, shape))| self.check(node, shape, &join(key, &i.to_string()))).collect();
+            entries.map(|(i, (node, (_, shape)))| self.check(node, shape, &join(key, &i.to_string()))).collect();
         entries.into_iter().collect::<Option<Vec<_>>>().map(Json::Array)
     }
 

@@ -152,6 +152,18 @@ impl Expansion {
         self.axes.iter().map(|axis| axis.values.len()).product::<usize>() * self.variants.len() * self.scenes.len()
     }
 
+    /// Ids of up to `most` cases: one for each variant, scene and text of an axis. Axes of numbers stay at their first value.
+    pub fn one_of_each(&self, most: usize) -> Vec<usize> {
+        let mut ids: Vec<usize> = (0..self.variants.len() * self.scenes.len()).take(most).collect();
+        for axis in &self.axes {
+            let numbers = axis.values.iter().flatten().all(|value| value.number().is_some());
+            let steps = if numbers { 1 } else { axis.values.len() };
+            let further = |id: usize| (0..steps).map(move |step| id * axis.values.len() + step);
+            ids = ids.into_iter().flat_map(further).take(most).collect();
+        }
+        ids
+    }
+
     /// Case `id < count()`.
     pub fn case(&self, id: usize) -> Result<Expanded, Vec<LocatedDiagnostic>> {
         let mut rest = id;

@@ -2,6 +2,7 @@
 
 use crate::config::common_keys::{common_parameters, common_words};
 use crate::config::document::parse_value;
+use crate::config::key_meaning::quantity_of;
 use crate::config::origin::Origin;
 use serde_json::{Map, Value as Json, json};
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, candidates};
@@ -61,9 +62,7 @@ pub fn table(parameters: &[Parameter], tag: Option<(&str, &str)>) -> Json {
     for parameter in parameters {
         let mut schema = shape(&parameter.shape);
         let mut text = parameter.doc.to_string();
-        if let Shape::Number(quantity, _) = parameter.shape
-            && quantity != Quantity::Ratio
-        {
+        if let Some(quantity) = quantity_of(&parameter.shape).filter(|quantity| *quantity != Quantity::Ratio) {
             text = format!("{text} [{}]", quantity.unit());
         }
         match parameter.need {
@@ -107,7 +106,7 @@ fn shape(of: &Shape) -> Json {
             schema
         }
         Shape::Tuple(shapes) => {
-            let entries: Vec<_> = shapes.iter().map(|of| shape(of)).collect();
+            let entries: Vec<_> = shapes.iter().map(|(_, of)| shape(of)).collect();
             json!({ "type": "array", "prefixItems": entries, "items": false, "minItems": shapes.len() })
         }
         Shape::Table(parameters) => table(parameters, None),

@@ -16,6 +16,7 @@ pub mod dotted_key;
 pub mod expand;
 pub mod gravity;
 pub mod json_schema;
+pub mod key_meaning;
 pub mod limits;
 pub mod names;
 pub mod nesting;

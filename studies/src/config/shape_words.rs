@@ -23,7 +23,11 @@ pub fn describe(shape: &Shape) -> String {
             _ => format!("a list, each entry {}", describe(of)),
         },
         Shape::Tuple(shapes) => {
-            format!("a list [{}]", shapes.iter().map(|shape| describe(shape)).collect::<Vec<_>>().join(", "))
+            let names: Vec<_> = shapes.iter().map(|(name, _)| *name).collect();
+            let mut entries: Vec<_> = shapes.iter().map(|(_, shape)| describe(shape)).collect();
+            entries.dedup();
+            let each = if entries.len() == 1 { "each " } else { "" };
+            format!("a list [{}], {each}{}", names.join(", "), entries.join(" and "))
         }
         Shape::Table(_) | Shape::Map(_) => "a table".into(),
         Shape::Tagged { key, .. } => format!("a table with the key {key}"),

@@ -19,7 +19,12 @@ fn factor(quantity: Quantity) -> f64 {
         Quantity::Stress => STRESS,
         Quantity::Stiffness => STRESS / LENGTH,
         Quantity::EnergyPerArea => STRESS * LENGTH,
-        Quantity::Ratio | Quantity::Degrees | Quantity::Radians | Quantity::Density | Quantity::Acceleration => 1.0,
+        Quantity::Ratio
+        | Quantity::Degrees
+        | Quantity::Radians
+        | Quantity::Density
+        | Quantity::Acceleration
+        | Quantity::Temperature => 1.0,
     }
 }
 
@@ -43,7 +48,7 @@ fn scaled(value: &Json, shape: &Shape) -> Json {
         (Shape::Number(quantity, _), value) => value.as_f64().map_or(value.clone(), |x| (x * factor(*quantity)).into()),
         (Shape::List { of, .. }, Json::Array(entries)) => entries.iter().map(|entry| scaled(entry, of)).collect(),
         (Shape::Tuple(shapes), Json::Array(entries)) => {
-            entries.iter().zip(*shapes).map(|(entry, shape)| scaled(entry, shape)).collect()
+            entries.iter().zip(*shapes).map(|(entry, (_, shape))| scaled(entry, shape)).collect()
         }
         (Shape::Table(parameters), value) => scaled_table(value, parameters),
         (Shape::Tagged { key, variants }, value) => {

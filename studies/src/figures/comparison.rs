@@ -1,9 +1,10 @@
 //! The figure of a comparison: for each scene the ratios of all variants to the reference.
 
 use super::axes::{Axis, COLOURS, Canvas};
-use super::format::{format_number, format_value, status_word};
+use super::format::{format_number, status_word};
 use super::text_layout::{text_width, wrapped};
 use crate::results::{Comparison, ComparisonCell, ComparisonRow};
+use crate::study::SweptKeys;
 use voussoir_core::limit::Status;
 
 /// Relative width from which a bracket is open.
@@ -19,15 +20,9 @@ pub fn open_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
     cell.bounds.filter(|[low, high]| (high - low).abs() > OPEN * high.abs().max(low.abs()))
 }
 
-/// What a row is called.
-pub fn row_name(row: &ComparisonRow) -> String {
-    // The last name of a key; of an entry of a list also the list's.
-    let last = |key: &str| {
-        let names: Vec<&str> = key.split('.').collect();
-        let index = names.last().is_some_and(|name| name.parse::<usize>().is_ok());
-        names[names.len().saturating_sub(if index { 2 } else { 1 })..].join(".")
-    };
-    let swept = row.parameters.iter().map(|(key, value)| format!("{} = {}", last(key), format_value(value)));
+/// The name of a row: its scene and its swept values.
+pub fn row_name(row: &ComparisonRow, keys: &SweptKeys) -> String {
+    let swept = Some(keys.text(&row.parameters)).filter(|text| !text.is_empty());
     let parts: Vec<String> = row.scene.iter().cloned().chain(swept).collect();
     if parts.is_empty() { "the scene".into() } else { parts.join(", ") }
 }
@@ -90,7 +85,7 @@ impl Rows<'_> {
 }
 
 /// The figure; `None` where no variant has a ratio.
-pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
+pub fn comparison_svg(study: &str, comparison: &Comparison, keys: &SweptKeys) -> Option<String> {
     let base = |row: &ComparisonRow| {
         let cell = row.cells.get(comparison.variants.iter().position(|variant| *variant == comparison.reference)?)?;
         cell.load_factor.filter(|factor| *factor > 0.0)
@@ -108,7 +103,8 @@ pub fn comparison_svg(study: &str, comparison: &Comparison) -> Option<String> {
     }
     let margin = (0.04 * (high - low)).max(0.01);
     let low = if low - margin < 0.1 * high { 0.0 } else { low - margin };
-    let names: Vec<Vec<String>> = comparison.rows.iter().map(|row| wrapped(&row_name(row), 13.0, 230.0)).collect();
+    let names: Vec<Vec<String>> =
+        comparison.rows.iter().map(|row| wrapped(&row_name(row, keys), 13.0, 230.0)).collect();
     let widest = names.iter().flatten().map(|line| text_width(line, 13.0)).fold(80.0, f64::max);
     let (left, plot) = (widest + 34.0, 520.0);
     let remarks: Vec<String> = comparison.rows.iter().map(|row| row_remarks(comparison, row)).collect();

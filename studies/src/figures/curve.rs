@@ -1,7 +1,7 @@
 //! Load-displacement curves of paths, with the joints that became hinges on the way.
 
 use super::chart::chart_svg;
-use super::format::{case_title, format_force, parameters_text, unit_load};
+use super::format::{format_force, unit_load};
 use super::series::{Marker, Series, Spot};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
@@ -109,13 +109,12 @@ fn spots(result: &CaseResult, events: &[JointEvent], line: &[(f64, f64)], labell
 }
 
 /// The curve of one case, its hinges labelled; `None` without a curve of two points or more.
-pub fn curve_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> Option<String> {
+pub fn curve_svg(title: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> Option<String> {
     let line = points(result.path.curve.as_deref().filter(|curve| curve.len() > 1)?);
     let spots = spots(result, &joint_events(assembly, result), &line, true);
-    let title = case_title(study, result);
     let name = result.stages.last().map_or("path".into(), |stage| format!("stage \"{}\"", stage.name));
     let series = [Series { name, points: line, spots: Some(spots), ..Series::default() }];
-    Some(chart_svg(&title, X_LABEL, &factor_label(unit_load(stages)), &series, &[]))
+    Some(chart_svg(title, X_LABEL, &factor_label(unit_load(stages)), &series, &[]))
 }
 
 /// (name, chart) of the curves of several cases: one chart for all where they are few, else one for
@@ -151,7 +150,7 @@ pub fn curve_charts(study: &StudyOutput) -> Vec<(String, String)> {
             let spots = spots(&cases[place], &joint_events(assembly, &cases[place]), &line, false);
             let words = [
                 cases[place].label.variant.clone().filter(|_| !one_variant).unwrap_or_default(),
-                parameters_text(&cases[place]),
+                study.keys.text(&cases[place].label.parameters),
             ];
             let words: Vec<_> = words.into_iter().filter(|words| !words.is_empty()).collect();
             let title = if words.is_empty() { format!("case {}", cases[place].label.id) } else { words.join(", ") };

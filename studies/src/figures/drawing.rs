@@ -2,7 +2,7 @@
 //! hinges, sliding and crushing joints.
 
 use super::fill;
-use super::format::{case_title, format_force, headline};
+use super::format::{format_force, headline};
 use super::loads::Loads;
 use super::svg_canvas::SvgCanvas;
 use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
@@ -18,14 +18,14 @@ const MANY: usize = 300;
 type Legend = Vec<(Symbol, String)>;
 
 /// The drawing of a case, as SVG. `study` is the study's name, `stages` its stages in order.
-pub fn scene_svg(study: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> String {
+pub fn scene_svg(title: &str, assembly: &Assembly, stages: &[Stage], result: &CaseResult) -> String {
     let (low, high) = extent(assembly, &[]);
     let reached = result.load_factor.or_else(|| match result.status {
         Status::Stands => result.stages.last().and_then(|stage| stage.factor),
         _ => None,
     });
     let loads = Loads::new(assembly, stages, reached);
-    let titles = [case_title(study, result), headline(result, stages)];
+    let titles = [title.to_string(), headline(result, stages)];
     let mut canvas = SvgCanvas::new(low, high, loads.margins(low, high), &titles);
     let mut legend = Legend::new();
     let filled = fill::draw(&mut canvas, assembly);

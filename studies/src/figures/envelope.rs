@@ -3,17 +3,17 @@
 use super::chart::chart_svg;
 use super::format::format_number;
 use super::series::{Marker, Series, Spot};
-use super::words::title_of_key;
-use crate::results::StudyResults;
+use crate::study::SweptKeys;
+use crate::writers::StudyOutput;
 use serde_json::Value as Json;
 
 /// The chart, where the results are those of an envelope.
-pub fn envelope_chart(study: &str, results: &StudyResults) -> Option<String> {
-    let list = |name: &str| results.own.get(name).and_then(Json::as_array);
+pub fn envelope_chart(study: &StudyOutput) -> Option<String> {
+    let list = |name: &str| study.results.own.get(name).and_then(Json::as_array);
     let (curve, worsts) = (list("curve")?, list("worsts")?);
     let mut series: Vec<Series> = Vec::new();
     for place in curve {
-        let name = line_name(place);
+        let name = line_name(place, &study.keys);
         let index = series.iter().position(|line| line.name == name).unwrap_or_else(|| {
             series.push(Series { name: name.clone(), spots: Some(Vec::new()), ..Series::default() });
             series.len() - 1
@@ -24,24 +24,23 @@ pub fn envelope_chart(study: &str, results: &StudyResults) -> Option<String> {
     }
     for worst in worsts {
         let (Some(x), Some(y)) = (worst["value"].as_f64(), worst["result"].as_f64()) else { continue };
-        let name = line_name(worst);
+        let name = line_name(worst, &study.keys);
         if let Some(spots) = series.iter_mut().find(|line| line.name == name).and_then(|line| line.spots.as_mut()) {
             let label = format!("{} at {}", format_number(y, 4), format_number(x, 4));
             spots.push(Spot { at: (x, y), kind: "worst place", marker: Marker::Dot, label });
         }
     }
     series.retain(|line| !line.points.is_empty());
-    let x_label = worsts.first().and_then(|worst| worst["parameter"].as_str()).unwrap_or("place");
-    let title = format!("{study}: load factor at collapse over the place of the load");
-    let label = if x_label.ends_with(".at") { "x of the vehicle's origin [m]".into() } else { title_of_key(x_label) };
+    let key = worsts.first().and_then(|worst| worst["parameter"].as_str());
+    let label = key.map_or("place".into(), |key| study.keys.title(key));
+    let title = format!("{}: load factor at collapse over the place of the load", study.name);
     (!series.is_empty()).then(|| chart_svg(&title, &label, "load factor at collapse [-]", &series, &[]))
 }
 
 /// Vehicle, way, variant and swept values of an entry.
-pub(super) fn line_name(entry: &Json) -> String {
+pub(super) fn line_name(entry: &Json, keys: &SweptKeys) -> String {
     let words = ["variant", "vehicle", "direction"].iter().filter_map(|key| entry[key].as_str().map(str::to_string));
-    let swept = entry["parameters"].as_object().into_iter().flatten();
-    let swept = swept.map(|(key, value)| format!("{} = {value}", key.rsplit('.').next().unwrap_or(key)));
+    let swept = entry["parameters"].as_object().map(|values| keys.text(values)).filter(|text| !text.is_empty());
     let name: Vec<String> = words.chain(swept).collect();
     if name.is_empty() { "load".into() } else { name.join(", ") }
 }

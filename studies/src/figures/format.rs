@@ -2,12 +2,10 @@
 
 use super::hinges::{DrawnHinge, drawn_hinges};
 use crate::results::CaseResult;
-use crate::study::study_keys;
 use voussoir_core::certificate::{Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Parameter, Shape, cards};
 
 /// `x` with so many significant digits; powers of ten only below 1e-4 and from 1e7.
 pub fn format_number(x: f64, digits: usize) -> String {
@@ -130,53 +128,6 @@ pub fn hinge_list(mechanism: &Mechanism) -> Vec<String> {
     drawn_hinges(&mechanism.hinges).iter().map(DrawnHinge::label).collect()
 }
 
-/// Unit of a study file's key, from the cards of all plug-ins by the key's last name; `None` where
-/// no card knows it, or it is a pure number.
-pub fn unit_of_key(key: &str) -> Option<&'static str> {
-    fn in_shape(shape: &Shape, name: &str) -> Option<&'static str> {
-        match shape {
-            Shape::List { of, .. } | Shape::Map(of) => in_shape(of, name),
-            Shape::Table(parameters) => in_table(parameters, name),
-            Shape::Tagged { variants, .. } => variants.iter().find_map(|v| in_table(v.parameters, name)),
-            Shape::Either(shapes) => shapes.iter().find_map(|s| in_shape(s, name)),
-            _ => None,
-        }
-    }
-    fn number(shape: &Shape) -> Option<&'static str> {
-        match shape {
-            Shape::Number(quantity, _) => Some(quantity.unit()),
-            Shape::List { of, .. } => number(of),
-            Shape::Either(shapes) => shapes.iter().find_map(number),
-            _ => None,
-        }
-    }
-    fn in_table(parameters: &[Parameter], name: &str) -> Option<&'static str> {
-        let here = parameters.iter().find(|p| p.name == name).and_then(|p| number(&p.shape));
-        here.or_else(|| parameters.iter().find_map(|p| in_shape(&p.shape, name)))
-    }
-    let name = key.rsplit('.').next()?;
-    let known = cards().iter().find_map(|card| in_table(card.parameters, name));
-    known.or_else(|| in_table(study_keys(), name)).filter(|unit| !unit.is_empty())
-}
-
-/// `key [unit]`, or the key where no unit is known.
-pub fn key_with_unit(key: &str) -> String {
-    unit_of_key(key).map_or_else(|| key.to_string(), |unit| format!("{key} [{unit}]"))
-}
-
-/// The swept values of a case: `rise = 2.99 m, friction = 0.6`; empty where nothing is swept.
-/// A key is cut to its last name where that is enough to tell it from the others.
-pub fn parameters_text(result: &CaseResult) -> String {
-    let last = |key: &str| key.rsplit('.').next().unwrap_or("").to_string();
-    let entries = result.label.parameters.iter().map(|(key, value)| {
-        let short = last(key);
-        let alone = result.label.parameters.keys().filter(|other| last(other) == short).count() == 1;
-        let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
-        format!("{} = {}{unit}", if alone { &short } else { key }, format_value(value))
-    });
-    entries.collect::<Vec<_>>().join(", ")
-}
-
 /// The resultant of a stage's forces at factor 1 \[N\]; `None` where the last stage has none, they
 /// cancel, or it also has accelerations.
 pub fn unit_load(stages: &[Stage]) -> Option<f64> {
@@ -216,13 +167,4 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
         (status, Some(factor)) => format!("{}, {}", status_word(status).replace('_', " "), load(factor)),
         (status, None) => status_word(status).replace('_', " "),
     }
-}
-
-/// Where a case stands in its study: `strathmashie, case 3, associated, rise = 2.99 m`.
-pub fn case_title(study: &str, result: &CaseResult) -> String {
-    let mut parts = vec![study.to_string(), format!("case {}", result.label.id)];
-    parts.extend(result.label.variant.clone());
-    parts.extend(result.label.scene.clone());
-    parts.extend(Some(parameters_text(result)).filter(|text| !text.is_empty()));
-    parts.join(", ")
 }

@@ -2,7 +2,7 @@
 
 use super::displaced::{Placement, displaced};
 use super::drawing::{extent, faces, outline_width, supports};
-use super::format::{case_title, format_short, kind_words};
+use super::format::{format_short, kind_words};
 use super::hinge_closure::close_hinges;
 use super::hinges::named_hinges;
 use super::svg_canvas::SvgCanvas;
@@ -17,7 +17,7 @@ use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
 
 /// The mechanism of a case with displacements exaggerated, as SVG; `None` where it has none.
-pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
+pub fn mechanism_svg(title: &str, assembly: &Assembly, result: &CaseResult) -> Option<String> {
     let shown = Shown::of(assembly, result)?;
     let mechanism = &shown.mechanism;
     let (placements, scale) = displaced(assembly, &shown.motion)?;
@@ -34,7 +34,7 @@ pub fn mechanism_svg(study: &str, assembly: &Assembly, result: &CaseResult) -> O
     let further: Vec<Vec2> = moved.iter().flatten().copied().collect();
     let (low, high) = extent(assembly, &further);
     let titles = [
-        case_title(study, result),
+        title.to_string(),
         match shown.stands {
             true => format!("displaced: {} hinges open", named_hinges(&mechanism.hinges).len()),
             false => format!("mechanism: {}", kind_words(mechanism.kind).trim_end_matches(" mechanism")),

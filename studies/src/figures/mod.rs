@@ -24,7 +24,6 @@ pub mod sweep;
 pub mod symbols;
 pub mod text_layout;
 pub mod thrust;
-pub mod words;
 
 #[cfg(test)]
 pub(crate) mod sample;

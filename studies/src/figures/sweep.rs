@@ -1,9 +1,8 @@
 //! The chart of a study with one swept number: the load against it.
 
 use super::chart::chart;
-use super::format::{format_short, kind_words, unit_load, unit_of_key};
+use super::format::{format_short, kind_words, unit_load};
 use super::series::{ChartStyle, Marker, Series, Spot};
-use super::words::{title_of_key, words_of_key};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;
@@ -29,7 +28,7 @@ pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
     {
         return Some(("span / rise [-]".into(), ratios));
     }
-    Some((title_of_key(key), values))
+    Some((study.keys.title(key), values))
 }
 
 /// More lines than this are not drawn in one chart.
@@ -52,13 +51,13 @@ fn two_axes(study: &StudyOutput) -> Option<(String, Vec<f64>, Vec<String>)> {
     let (key, values, other, others) =
         if different(&a) >= different(&b) { (first, a, second, b) } else { (second, b, first, a) };
     let line = |(case, value): (&CaseResult, &f64)| {
-        let unit = unit_of_key(other).map_or(String::new(), |unit| format!(" {unit}"));
-        let swept = format!("{} {}{unit}", words_of_key(other), format_short(*value, 5));
+        let unit = study.keys.unit(other).map_or(String::new(), |unit| format!(" {unit}"));
+        let swept = format!("{} {}{unit}", study.keys.words(other), format_short(*value, 5));
         case.label.variant.as_ref().map_or(swept.clone(), |variant| format!("{variant}, {swept}"))
     };
     let lines: Vec<String> = cases.iter().zip(&others).map(line).collect();
     let count = lines.iter().collect::<std::collections::BTreeSet<_>>().len();
-    (count <= LINES && different(&values) > 1).then(|| (title_of_key(key), values, lines))
+    (count <= LINES && different(&values) > 1).then(|| (study.keys.title(key), values, lines))
 }
 
 /// The chart of a study, if it has one: the load where all cases have the same at factor 1, else

@@ -7,7 +7,7 @@ use super::sweep::{study_chart, sweep_chart};
 use super::text_layout::Area;
 use super::*;
 use crate::results::{CaseResult, StudyResults};
-use crate::study::{Drawn, Output};
+use crate::study::{Drawn, Output, Resolved, SweptKeys};
 use crate::writers::{SceneOutput, StudyOutput, writers};
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
@@ -224,9 +224,6 @@ fn numbers_and_units_in_words() {
         ["698.0 kN", "1.000 MN", "12.00 N", "0 N"]
     );
     assert_eq!([format_length(2.0), format_length(0.05)], ["2 m", "50 mm"]);
-    assert_eq!(unit_of_key("joints.dry.friction_angle"), Some("deg"));
-    assert_eq!(unit_of_key("joints.dry.friction"), None);
-    assert_eq!(key_with_unit("materials.stone.density"), "materials.stone.density [kg/m3]");
 }
 
 #[test]
@@ -238,9 +235,8 @@ fn a_ring_of_ten_thousand_stays_a_small_file() {
 
 #[test]
 fn special_characters_are_escaped() {
-    let mut scene = scenes().swap_remove(0);
-    scene.answer.label.variant = Some("μ < 0.6 & \"dry\"".into());
-    let svg = scene_svg("a<b>&c", &scene.assembly, &scene.stages, &scene.answer);
+    let scene = scenes().swap_remove(0);
+    let svg = scene_svg("a<b>&c, μ < 0.6 & \"dry\"", &scene.assembly, &scene.stages, &scene.answer);
     assert!(svg.contains("a&lt;b&gt;&amp;c") && svg.contains("μ &lt; 0.6 &amp;"));
     let series = Series { name: "<&>".into(), points: vec![(1.0, 2.0), (2.0, 3.0)], ..Series::default() };
     let chart = chart_svg("a<b&c", "x", "y", &[series], &["<note>".into()]);
@@ -277,12 +273,15 @@ fn sweep() -> (Vec<Assembly>, Vec<Vec<Stage>>, StudyResults) {
 fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
     let (assemblies, stages, results) = sweep();
     let pairs = assemblies.iter().zip(&stages);
-    let scenes = pairs.map(|(assembly, stages)| SceneOutput { assembly, stages, finite: false }).collect();
+    let resolved = Resolved::default();
+    let scenes =
+        pairs.map(|(assembly, stages)| SceneOutput { assembly, stages, finite: false, resolved: &resolved }).collect();
     then(&StudyOutput {
         name: "rise & <fall>",
         results: &results,
         scenes,
         sweep_keys: vec!["scene.profile.rise".into()],
+        keys: SweptKeys::default(),
         output: Output { figures: if figures { Drawn::All } else { Drawn::Nothing }, ..Output::default() },
         drawn: None,
         inputs: None,

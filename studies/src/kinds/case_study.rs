@@ -13,7 +13,7 @@ use crate::results::{CaseLabel, CaseResult, StudyResults};
 use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::Observer;
 use crate::solve::explain::explain;
-use crate::study::{Case, Study, as_blocks};
+use crate::study::{Case, Study, SweptKeys, as_blocks};
 use crate::verify::{StoredCheck, misfits, solve_again};
 use crate::writers::comparison::comparison_table;
 use crate::writers::record::record;
@@ -126,16 +126,15 @@ impl LoadedStudy for Study {
         };
         match piece {
             Piece::Record => None,
-            Piece::Chart => study_chart(&output).or_else(|| envelope_chart(&self.name, &results)),
+            Piece::Chart => study_chart(&output).or_else(|| envelope_chart(&output)),
             Piece::Scene(id) => {
-                of_case(id).map(|(case, assembly, stages)| scene_svg(&self.name, assembly, stages, case))
+                of_case(id).map(|(case, assembly, stages)| scene_svg(&output.case_title(case), assembly, stages, case))
             }
             Piece::Mechanism(id) => {
-                of_case(id).and_then(|(case, assembly, _)| mechanism_svg(&self.name, assembly, case))
+                of_case(id).and_then(|(case, assembly, _)| mechanism_svg(&output.case_title(case), assembly, case))
             }
-            Piece::Curve(id) => {
-                of_case(id).and_then(|(case, assembly, stages)| curve_svg(&self.name, assembly, stages, case))
-            }
+            Piece::Curve(id) => of_case(id)
+                .and_then(|(case, assembly, stages)| curve_svg(&output.case_title(case), assembly, stages, case)),
         }
     }
 
@@ -228,13 +227,13 @@ fn table(output: &StudyOutput) -> String {
     let mut table = results_table(output);
     if let Some(comparison) = &output.results.comparison {
         table += "\n";
-        table += &comparison_table(comparison);
+        table += &comparison_table(comparison, &output.keys);
     }
-    table + &found(&output.results.own)
+    table + &found(&output.results.own, &output.keys)
 }
 
 /// What a kind that searches has found, a line each.
-fn found(own: &Map<String, Json>) -> String {
+fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
     let entries = |name: &str| own.get(name).and_then(Json::as_array).into_iter().flatten();
     let line = |entry: &Json| {
         let words =
@@ -243,9 +242,10 @@ fn found(own: &Map<String, Json>) -> String {
         let status = entry["status"].as_str().unwrap_or_default();
         let (key, case) = (entry["parameter"].as_str().unwrap_or_default(), &entry["case"]);
         format!(
-            "\nworst: {} ({status}) at {key} = {}{} (case {case})\n",
+            "\nworst: {} ({status}) at {key} = {}{}{} (case {case})\n",
             number("result"),
             number("value"),
+            keys.unit(key).map_or(String::new(), |unit| format!(" {unit}")),
             words.collect::<String>()
         )
     };

@@ -31,8 +31,8 @@ pub const KEYS: &[Parameter] = &[
         shape: Shape::Text,
         need: Need::Required,
     },
-    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value"),
-    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value"),
+    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value, in the unit of the key"),
+    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value, in the unit of the key"),
     Parameter::number(
         "tolerance",
         Quantity::Ratio,

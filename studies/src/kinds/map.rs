@@ -3,7 +3,6 @@
 
 use super::compare::{REFERENCE, beside_each_other, check_variants};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
-use crate::figures::words::title_of_key;
 use crate::results::{CaseResult, Comparison, MapAxes};
 use crate::study::{Outline, Study, StudyError, StudySource};
 use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
@@ -89,9 +88,10 @@ fn map_of(study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
     let mut comparison = beside_each_other(study, cases, reference)?;
     let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
     let (x, y) = (x?, y?);
+    let keys = study.swept_keys();
     let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
         Some(text) => text.to_string(),
-        None => title_of_key(key),
+        None => keys.title(key),
     };
     let names = comparison.variants.clone();
     let name = |key: &str, otherwise: usize| names[outline.variant(key).unwrap_or(otherwise)].clone();

@@ -34,8 +34,8 @@ pub const KEYS: &[Parameter] = &[
         shape: Shape::List { of: &Shape::Text, min: 1, max: 100 },
         need: Need::Optional("parameter is given"),
     },
-    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value"),
-    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value"),
+    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value, in the unit of the key"),
+    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value, in the unit of the key"),
     Parameter {
         name: "goal",
         doc: "which way is better",

@@ -61,8 +61,8 @@ voussoir_core::inventory::submit! {
         summary: "wheels or axles on the extrados of an arch",
         parameters: &[
             Parameter::number("at", Quantity::Ratio, FRACTION, "span fraction of the origin of the positions"),
-            many("positions", &Shape::Number(Quantity::Length, Range::ANY), "horizontal distances from there"),
-            many("forces", &Shape::Number(Quantity::Force, Range::ANY), "downwards, one for each position"),
+            many("positions", &Shape::Number(Quantity::Length, Range::ANY), "positions of the axles, as horizontal distances from the origin"),
+            many("forces", &Shape::Number(Quantity::Force, Range::ANY), "forces, downwards, one for each position"),
         ],
         file: file!(),
         page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle. An axle \

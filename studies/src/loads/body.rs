@@ -22,6 +22,8 @@ impl LoadKind for BodyLoad {
     }
 }
 
+const ACCELERATION: Shape = Shape::Number(Quantity::Acceleration, Range::ANY);
+
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::LoadKind,
@@ -29,8 +31,8 @@ voussoir_core::inventory::submit! {
         summary: "acceleration of every block, times its mass",
         parameters: &[Parameter {
             name: "acceleration",
-            doc: "x to the right, y upwards",
-            shape: Shape::List { of: &Shape::Number(Quantity::Acceleration, Range::ANY), min: 2, max: 2 },
+            doc: "acceleration, x to the right and y upwards",
+            shape: Shape::Tuple(&[("x", ACCELERATION), ("y", ACCELERATION)]),
             need: Need::Required,
         }],
         file: file!(),

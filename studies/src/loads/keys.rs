@@ -7,7 +7,8 @@ use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape,
 /// A span fraction.
 pub(super) const FRACTION: Range = Range::ANY;
 /// A force \[x, y\].
-pub(super) const VECTOR: Shape = Shape::List { of: &Shape::Number(Quantity::Force, Range::ANY), min: 2, max: 2 };
+pub(super) const VECTOR: Shape = Shape::Tuple(&[("x", FORCE), ("y", FORCE)]);
+const FORCE: Shape = Shape::Number(Quantity::Force, Range::ANY);
 /// An index or a number of a block.
 pub(super) const NUMBER: Shape = Shape::Integer { min: 0, max: i64::MAX };
 /// A block.

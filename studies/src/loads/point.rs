@@ -81,11 +81,11 @@ voussoir_core::inventory::submit! {
             BLOCK.optional("span_fraction is given"),
             Parameter {
                 name: "point",
-                doc: "in or on the block",
+                doc: "point in or on the block",
                 shape: POINT,
                 need: Need::Optional("span_fraction is given"),
             },
-            Parameter { name: "force", doc: "x to the right, y upwards", shape: VECTOR, need: Need::Required },
+            Parameter { name: "force", doc: "force, x to the right and y upwards", shape: VECTOR, need: Need::Required },
             DISPERSION,
         ],
         file: file!(),

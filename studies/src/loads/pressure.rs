@@ -49,7 +49,7 @@ voussoir_core::inventory::submit! {
                 shape: NUMBER,
                 need: Need::Required,
             },
-            Parameter::number("value", Quantity::Stress, Range::ANY, "pushes inwards"),
+            Parameter::number("value", Quantity::Stress, Range::ANY, "pressure, which pushes inwards"),
         ],
         file: file!(),
         page: "# `pressure`\n\nAn even pressure on one edge of a block, over the full width: > 0 pushes inwards.\n",

@@ -120,7 +120,7 @@ voussoir_core::inventory::submit! {
                 shape: Shape::Reference("vehicles"),
                 need: Need::Required,
             },
-            Parameter::number("at", Quantity::Length, Range::ANY, "x of its origin, which is its first axle"),
+            Parameter::number("at", Quantity::Length, Range::ANY, "x of the vehicle's origin, which is its first axle"),
             Parameter {
                 name: "direction",
                 doc: "forward: axles at x + their distances; backward: at x − their distances",

@@ -34,11 +34,11 @@ pub struct VehicleAxles {
 }
 
 const AXLE: &[Parameter] = &[
-    Parameter::number("at", Quantity::Length, Range::ANY, "distance from the vehicle's origin"),
-    Parameter::number("force", Quantity::Force, Range::ANY, "downwards"),
-    Parameter::number("wheel_width", Quantity::Length, Range::POSITIVE, "of the loaded area, across the road")
+    Parameter::number("at", Quantity::Length, Range::ANY, "distance of the axle from the vehicle's origin"),
+    Parameter::number("force", Quantity::Force, Range::ANY, "force of the axle, downwards"),
+    Parameter::number("wheel_width", Quantity::Length, Range::POSITIVE, "width of the loaded area, across the road")
         .optional("the whole width"),
-    Parameter::number("length", Quantity::Length, Range::NON_NEGATIVE, "of the loaded area, along the road")
+    Parameter::number("length", Quantity::Length, Range::NON_NEGATIVE, "length of the loaded area, along the road")
         .default("0.0"),
     Parameter::number("lift_off", Quantity::Ratio, Range::NON_NEGATIVE, "factor of the axle's force").default("1.0"),
 ];

@@ -139,7 +139,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { name: "profile", doc: "shape of the intrados", shape: PROFILE, need: Need::Required },
     Parameter {
         name: "thickness",
-        doc: "of the ring, along the joints; { crown, springing } grows with the arc length between them",
+        doc: "thickness of the ring, along the joints; { crown, springing } grows with the arc length between them",
         shape: THICKNESS,
         need: Need::Optional("the profile is a list of points"),
     },
@@ -147,7 +147,7 @@ const PARAMETERS: &[Parameter] = &[
     PLANE,
     Parameter {
         name: "voussoirs",
-        doc: "their number",
+        doc: "number of voussoirs",
         shape: Shape::Integer { min: 1, max: MAX_VOUSSOIRS as i64 },
         need: Need::Optional("the profile is a list of points"),
     },

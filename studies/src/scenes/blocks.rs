@@ -1,7 +1,7 @@
 //! `blocks`: a free assembly of polygonal blocks.
 #![doc = include_str!("blocks.md")]
 
-use super::keys::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
+use super::keys::{JOINT, LENGTH, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take, unknown};
 use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
 use serde::{Deserialize, Serialize};
@@ -327,7 +327,7 @@ const BLOCK: &[Parameter] = &[
     Parameter { name: "name", doc: "unique", shape: Shape::Text, need: Need::Required },
     Parameter {
         name: "vertices",
-        doc: "in either sense",
+        doc: "vertices, in either sense",
         shape: Shape::List { of: &POINT, min: 3, max: usize::MAX },
         need: Need::Required,
     },
@@ -354,7 +354,7 @@ const PAIR: &[Parameter] = &[
 
 const OPENING: Shape = Shape::Number(Quantity::Length, Range::NON_NEGATIVE);
 /// \[s, gap\]: that the gap is not negative is said by the scene's own check.
-const GAP_ROW: Shape = POINT;
+const GAP_ROW: Shape = Shape::Tuple(&[("position", LENGTH), ("gap", LENGTH)]);
 
 const PARAMETERS: &[Parameter] = &[
     WIDTH,

@@ -24,7 +24,7 @@ impl From<PlaneState> for Plane {
     }
 }
 
-pub(super) const WIDTH: Parameter = Parameter::number("width", Quantity::Length, Range::POSITIVE, "out of plane");
+pub(super) const WIDTH: Parameter = Parameter::number("width", Quantity::Length, Range::POSITIVE, "width out of plane");
 
 pub(super) const PLANE: Parameter = Parameter {
     name: "plane",
@@ -48,5 +48,5 @@ pub(super) const JOINT: Parameter = Parameter {
 };
 
 /// A point \[x, y\] in m.
-pub(crate) const POINT: Shape = Shape::List { of: &LENGTH, min: 2, max: 2 };
+pub(crate) const POINT: Shape = Shape::Tuple(&[("x", LENGTH), ("y", LENGTH)]);
 pub(super) const LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);

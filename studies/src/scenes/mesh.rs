@@ -58,6 +58,7 @@ const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
 /// Greatest number of entries of the dense matrix that condenses a block.
 const MAX_CONDENSED_NUMBERS: f64 = 1.25e8;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
+const COUNT: Shape = Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 };
 const GRADING_NUMBER: Shape = Shape::Number(Quantity::Ratio, GRADING);
 
 /// The density of a scene's mesh, where it gives none the default.
@@ -112,7 +113,7 @@ const KEYS: &[Parameter] = &[
     Parameter {
         name: "elements",
         doc: "elements along the ring, across it; of other blocks along edges 0 and 2, along 1 and 3",
-        shape: Shape::List { of: &Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 }, min: 2, max: 2 },
+        shape: Shape::Tuple(&[("along", COUNT), ("across", COUNT)]),
         need: Need::Default("[4, 6]"),
     },
     Parameter {
@@ -124,7 +125,7 @@ const KEYS: &[Parameter] = &[
     Parameter {
         name: "grading",
         doc: "greatest over least element size along an edge, one number or [along the ring, across it]: more than 1 is finer towards the joint's ends",
-        shape: Shape::Either(&[GRADING_NUMBER, Shape::List { of: &GRADING_NUMBER, min: 2, max: 2 }]),
+        shape: Shape::Either(&[GRADING_NUMBER, Shape::Tuple(&[("along", GRADING_NUMBER), ("across", GRADING_NUMBER)])]),
         need: Need::Default("1.0"),
     },
 ];

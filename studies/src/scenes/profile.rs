@@ -166,7 +166,7 @@ const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
 const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
 
 /// What `springing` may hold.
-pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::List { of: &DEGREES, min: 2, max: 2 }]);
+pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::Tuple(&[("left", DEGREES), ("right", DEGREES)])]);
 
 impl Springing {
     /// \[left, right\] \[deg\], each with its key.

@@ -26,8 +26,8 @@ pub struct Taper {
 
 const NUMBER: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
 const TAPER: Shape = Shape::Table(&[
-    Parameter::number("crown", Quantity::Length, Range::POSITIVE, "at the middle of the intrados"),
-    Parameter::number("springing", Quantity::Length, Range::POSITIVE, "at both springings"),
+    Parameter::number("crown", Quantity::Length, Range::POSITIVE, "thickness at the crown, the middle of the intrados"),
+    Parameter::number("springing", Quantity::Length, Range::POSITIVE, "thickness at both springings"),
 ]);
 /// What `thickness` may hold.
 pub const THICKNESS: Shape = Shape::Either(&[NUMBER, TAPER]);

@@ -243,7 +243,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "brick",
         doc: "length and height of a brick",
-        shape: Shape::List { of: &SIDE, min: 2, max: 2 },
+        shape: Shape::Tuple(&[("length", SIDE), ("height", SIDE)]),
         need: Need::Required,
     },
     Parameter {

@@ -1,8 +1,7 @@
 //! Sliders for the numbers of a case: ranges from the schema, steps from the values.
 
-use crate::config::dotted_key::segments;
+use crate::config::key_meaning::key_meaning;
 use crate::figures::format::{escape, format_short};
-use crate::figures::words::words_of_key;
 use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
 use serde_json::Value as Json;
 use std::fmt::Write;
@@ -51,6 +50,7 @@ fn usual(quantity: Quantity) -> f64 {
         Quantity::Density => 2500.0,
         Quantity::Acceleration => 10.0,
         Quantity::EnergyPerArea => 100.0,
+        Quantity::Temperature => 300.0,
     }
 }
 
@@ -89,50 +89,14 @@ fn real_track(quantity: Quantity, range: Range, value: f64) -> Track {
     Track { from: from.min(value), to: to.max(value), step }
 }
 
-/// What a key says of where it stands: names that a user has given, places in lists; and of which number it is.
-fn place(key: &str, resolved: &Json) -> (Vec<String>, String) {
-    let names = segments(key);
-    let (mut node, mut before, mut after) = (resolved, Vec::new(), String::new());
-    for (index, name) in names.iter().enumerate() {
-        let last = index.checked_sub(1).map_or("", |index| names[index].as_str());
-        if let (Some(items), Ok(number)) = (node.as_array(), name.parse::<usize>()) {
-            node = node.get(number).unwrap_or(&Json::Null);
-            let single = if last == "vertices" { "vertex" } else { last.trim_end_matches('s') };
-            let numbered = || format!("{} {}", single.replace('_', " "), number + 1);
-            match (node["name"].as_str(), items.len()) {
-                (Some(own), _) => before.push(own.to_string()),
-                (None, count) if node.is_array() || (node.is_object() && count > 1) => before.push(numbered()),
-                // A pair of coordinates, itself or in a list of such.
-                (None, 2) if node.is_number() && (VECTORS.contains(&last) || last.parse::<usize>().is_ok()) => {
-                    after = format!(" in {}", ["x", "y"][number.min(1)]);
-                }
-                (None, _) if node.is_number() => after = format!(", number {}", number + 1),
-                _ => {}
-            }
-        } else {
-            if index == 1 && ["materials", "joints", "vehicles"].contains(&last) {
-                before.push(name.clone());
-            }
-            node = node.get(name.as_str()).unwrap_or(&Json::Null);
-        }
-    }
-    (before, after)
-}
-
-/// Keys whose two numbers are x and y.
-const VECTORS: [&str; 5] = ["force", "point", "displacement", "acceleration", "gravity"];
-
-/// A key in words, with what tells it from others of the same name.
-fn words(key: &str, resolved: &Json) -> String {
-    let (before, after) = place(key, resolved);
-    let words: Vec<String> = before.into_iter().chain([words_of_key(key) + &after]).collect();
-    words.join(": ")
+/// The label of a number: names of the tables above it, its words and its unit.
+fn label(key: &NumericKey, resolved: &Json) -> String {
+    let meaning = key_meaning(study_keys(), &|name| resolved.get(name), &key.key);
+    meaning.map_or(key.key.clone(), |meaning| meaning.title())
 }
 
 fn control(key: &NumericKey, resolved: &Json) -> String {
-    let unit = if key.unit().is_empty() { String::new() } else { format!(" [{}]", key.unit()) };
-    let label = format!("{}{unit}", words(&key.key, resolved));
-    let (label, name) = (escape(&label), escape(&key.key));
+    let (label, name) = (escape(&label(key, resolved)), escape(&key.key));
     let field = |value: &str| {
         format!(
             "<input type=\"text\" inputmode=\"decimal\" data-key=\"{name}\" value=\"{value}\" placeholder=\"not given\" \
@@ -180,19 +144,23 @@ mod tests {
 
     #[test]
     fn labels_tell_numbers_apart() {
-        let resolved = serde_json::json!({
-            "scene": { "spans": [{ "rise": 1.0 }, { "rise": 2.0 }], "blocks": [{ "name": "pier", "vertices": [[0.0, 1.0]] }] },
-            "materials": { "stone": { "density": 2000.0 } },
-            "stages": [{ "name": "live", "loads": [{ "force": [0.0, -1.0] }] }],
-        });
-        for (key, start, end) in [
-            ("scene.spans.1.rise", "span 2: ", ""),
-            ("scene.blocks.0.vertices.0.1", "pier: vertex 1: ", " in y"),
-            ("materials.stone.density", "stone: ", ""),
-            ("stages.0.loads.0.force.1", "live: ", " in y"),
+        let text = "name = \"pier\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
+            blocks = [{ name = \"ground\", fixed = true, vertices = [[0.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0]] }, \
+            { name = \"pier\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] }]\n\
+            [materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\nlaw = \"coulomb\"\nfriction = 0.5\n\
+            [[stages]]\nname = \"live\"\ngravity = 9.81\n\
+            loads = [{ kind = \"point\", block = \"pier\", point = [1.0, 1.0], force = [-1.0, 0.0] }]\n";
+        let study = crate::study::load(text, "pier.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let resolved = study.cases[0].resolved.to_json();
+        let keys = numeric_keys(study_keys(), &resolved, LONGEST);
+        for (key, words) in [
+            ("scene.blocks.1.vertices.2.1", "pier: vertices, number 3, y [m]"),
+            ("materials.stone.density", "stone: density [kg/m3]"),
+            ("stages.0.loads.0.force.1", "live: point: force, y [N]"),
+            ("stages.0.loads.0.point.0", "live: point: point in or on the block, x [m]"),
         ] {
-            let words = words(key, &resolved);
-            assert!(words.starts_with(start) && words.ends_with(end), "{words}");
+            let own = keys.iter().find(|own| own.key == key).unwrap_or_else(|| panic!("no {key}"));
+            assert_eq!(label(own, &resolved), words);
         }
     }
 

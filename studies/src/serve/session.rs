@@ -57,11 +57,10 @@ impl Session {
 
     /// Variant, scene and swept values of each case; `None` where they are too many to choose from.
     pub fn labels(&self) -> Option<Vec<String>> {
+        let keys = self.sweep.swept_keys();
         let label = |id: usize| {
             let case = self.sweep.expansion.case(id).ok()?;
-            let swept = case.parameters.iter().map(|(key, value)| {
-                format!("{} = {}", key.rsplit('.').next().unwrap_or(key), crate::figures::format::format_value(value))
-            });
+            let swept = Some(keys.text(&case.parameters)).filter(|text| !text.is_empty());
             let words: Vec<String> = case.variant.into_iter().chain(case.scene).chain(swept).collect();
             Some(if words.is_empty() { format!("case {id}") } else { words.join(", ") })
         };

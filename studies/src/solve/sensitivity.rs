@@ -31,7 +31,7 @@ fn usual(quantity: Quantity) -> f64 {
         Quantity::Stress => 1e6,
         Quantity::Stiffness => 1e10,
         Quantity::Acceleration => 10.0,
-        Quantity::EnergyPerArea => 100.0,
+        Quantity::EnergyPerArea | Quantity::Temperature => 100.0,
     }
 }
 

@@ -11,15 +11,20 @@ const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) ->
     Parameter { name, doc, shape, need }
 }
 
-static LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
-static ACCELERATION: Shape = Shape::Number(Quantity::Acceleration, Range::ANY);
+const LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
+const ACCELERATION: Shape = Shape::Number(Quantity::Acceleration, Range::ANY);
 static FREE: Shape = Shape::Free;
 static MATERIAL: Shape = Shape::Plugin(PluginKind::BulkMaterial);
 static LAW: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
 
 static SETTLEMENT: Shape = Shape::Table(&[
     key("support", Shape::Text, Need::Required, "left, right, or the name of a fixed block"),
-    key("displacement", Shape::List { of: &LENGTH, min: 2, max: 2 }, Need::Default("[0.0, 0.0]"), "movement [x, y]"),
+    key(
+        "displacement",
+        Shape::Tuple(&[("x", LENGTH), ("y", LENGTH)]),
+        Need::Default("[0.0, 0.0]"),
+        "displacement of the support, x to the right and y upwards",
+    ),
     Parameter::number(
         "rotation",
         Quantity::Radians,
@@ -36,7 +41,7 @@ static STAGE: &[Parameter] = &[
         "gravity",
         Shape::Either(&[
             Shape::Number(Quantity::Acceleration, Range::NON_NEGATIVE),
-            Shape::List { of: &ACCELERATION, min: 2, max: 2 },
+            Shape::Tuple(&[("x", ACCELERATION), ("y", ACCELERATION)]),
         ]),
         Need::Optional("gravity stays as it was"),
         "gravity from this stage on: downwards, or a vector [gx, gy]",
@@ -74,9 +79,12 @@ static AXIS: Shape = Shape::Table(&[
         Need::Optional("from and to are given"),
         "the values",
     ),
-    Parameter::number("from", Quantity::Ratio, Range::ANY, "first value").optional("list is given"),
-    Parameter::number("to", Quantity::Ratio, Range::ANY, "last value").optional("list is given"),
-    Parameter::number("step", Quantity::Ratio, Range::ANY, "step towards `to`").optional("count is given"),
+    Parameter::number("from", Quantity::Ratio, Range::ANY, "first value, in the unit of the key")
+        .optional("list is given"),
+    Parameter::number("to", Quantity::Ratio, Range::ANY, "last value, in the unit of the key")
+        .optional("list is given"),
+    Parameter::number("step", Quantity::Ratio, Range::ANY, "step towards `to`, in the unit of the key")
+        .optional("count is given"),
     key("count", Shape::Integer { min: 1, max: 1_000_000 }, Need::Optional("step is given"), "number of values"),
 ]);
 static AXES: Shape = Shape::Either(&[AXIS, Shape::Map(&AXIS)]);

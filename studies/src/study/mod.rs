@@ -28,6 +28,7 @@ mod source;
 mod stages;
 mod survey;
 mod sweep;
+mod swept_keys;
 
 pub(crate) use assemble::read_plugin;
 pub use builder::StudyBuilder;
@@ -47,3 +48,4 @@ pub use source::{StudySource, kind_of};
 pub(crate) use survey::read_bounded;
 pub use survey::{ReadFile, beside, no_files};
 pub use sweep::Sweep;
+pub use swept_keys::{SweptKeys, meaning_in};

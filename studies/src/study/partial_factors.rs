@@ -19,21 +19,27 @@ const LOAD: Shape = Shape::Number(Quantity::Ratio, Range::POSITIVE);
 
 /// What `[factors]` may hold.
 pub(super) const FACTORS: Shape = Shape::Table(&[
-    factor("masonry_weight", "multiplies the density of every material"),
-    factor("fill_weight", "multiplies the densities of fill, layers and backing"),
+    factor("masonry_weight", "partial factor on the density of every material, which is multiplied"),
+    factor(
+        "fill_weight",
+        "partial factor on the weight of the fill, which multiplies the densities of fill, layers and backing",
+    ),
     Parameter {
         name: "loads",
-        doc: "multiplies the loads of all stages, or of the stages named: { live = 1.5 }",
+        doc: "partial factor on loads, for all stages or for the stages named: { live = 1.5 }",
         shape: Shape::Either(&[LOAD, Shape::Map(&LOAD)]),
         need: Need::Optional("1"),
     },
-    factor("friction", "divides the coefficients of friction of joints"),
-    factor("cohesion", "divides the cohesion of joints"),
-    factor("tensile_strength", "divides the tensile strength of joints"),
-    factor("compressive_strength", "divides the crushing strength of joints"),
-    factor("fill_friction", "divides the tangent of the fill's angles of friction"),
-    factor("fill_cohesion", "divides the cohesion of the fill"),
-    factor("backing_strength", "divides the strength of the backing"),
+    factor("friction", "partial factor on the friction of joints, whose coefficients are divided"),
+    factor("cohesion", "partial factor on the cohesion of joints, which is divided"),
+    factor("tensile_strength", "partial factor on the tensile strength of joints, which is divided"),
+    factor("compressive_strength", "partial factor on the crushing strength of joints, which is divided"),
+    factor(
+        "fill_friction",
+        "partial factor on the friction of the fill, which divides the tangents of its angles of friction",
+    ),
+    factor("fill_cohesion", "partial factor on the cohesion of the fill, which is divided"),
+    factor("backing_strength", "partial factor on the strength of the backing, which is divided"),
 ]);
 
 /// Which numbers of a table a factor changes.

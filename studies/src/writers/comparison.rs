@@ -5,9 +5,10 @@ use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
-use crate::figures::format::{format_number, format_short, format_value, key_with_unit, kind_word, status_word};
+use crate::figures::format::{format_number, format_short, format_value, kind_word, status_word};
 use crate::figures::map::map_svg;
 use crate::results::{Comparison, ComparisonCell};
+use crate::study::SweptKeys;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::Value as Json;
 
@@ -18,21 +19,20 @@ pub struct ComparisonFiles;
 impl Writer for ComparisonFiles {
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
-        let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison).into_bytes())];
+        let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison, &study.keys).into_bytes())];
         if study.output.figures.anything() {
-            files.extend(
-                figure(study.name, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())),
-            );
+            files
+                .extend(figure(study, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())));
         }
         files
     }
 }
 
 /// The figure of a comparison with its name: that of a map where it is one.
-pub fn figure(study: &str, comparison: &Comparison) -> Option<(&'static str, String)> {
+pub fn figure(study: &StudyOutput, comparison: &Comparison) -> Option<(&'static str, String)> {
     match comparison.map {
-        Some(_) => Some(("map", map_svg(study, comparison)?)),
-        None => Some(("comparison", comparison_svg(study, comparison)?)),
+        Some(_) => Some(("map", map_svg(study.name, comparison)?)),
+        None => Some(("comparison", comparison_svg(study.name, comparison, &study.keys)?)),
     }
 }
 
@@ -41,10 +41,10 @@ fn swept(comparison: &Comparison) -> Vec<String> {
 }
 
 /// One row per scene and swept value; for each variant status, factor, bounds, ratio and mechanism.
-pub fn comparison_csv(comparison: &Comparison) -> String {
+pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
     let keys = swept(comparison);
     let mut header = vec!["scene".to_string()];
-    header.extend(keys.iter().map(|key| key_with_unit(key)));
+    header.extend(keys.iter().map(|key| meanings.column(key)));
     for variant in &comparison.variants {
         let columns = [
             "status".to_string(),
@@ -88,14 +88,14 @@ fn factor(cell: &ComparisonCell) -> String {
 }
 
 /// Header and rows: factors of all variants, then ratios of all but the reference.
-pub fn comparison_rows(comparison: &Comparison) -> (Vec<String>, Vec<Vec<String>>) {
+pub fn comparison_rows(comparison: &Comparison, keys: &SweptKeys) -> (Vec<String>, Vec<Vec<String>>) {
     let mut header = vec![if comparison.rows.iter().any(|row| row.scene.is_some()) { "scene" } else { "" }.to_string()];
     header.extend(comparison.variants.iter().cloned());
     let others: Vec<usize> =
         (0..comparison.variants.len()).filter(|&i| comparison.variants[i] != comparison.reference).collect();
     header.extend(others.iter().map(|&i| format!("{} / {}", comparison.variants[i], comparison.reference)));
     let rows = comparison.rows.iter().map(|row| {
-        let mut cells = vec![row_name(row)];
+        let mut cells = vec![row_name(row, keys)];
         cells.extend(row.cells.iter().map(factor));
         cells.extend(others.iter().map(|&i| row.cells[i].ratio.map_or("–".into(), |ratio| format!("{ratio:.4}"))));
         cells
@@ -105,8 +105,8 @@ pub fn comparison_rows(comparison: &Comparison) -> (Vec<String>, Vec<Vec<String>
 }
 
 /// The table on the terminal.
-pub fn comparison_table(comparison: &Comparison) -> String {
-    let (header, rows) = comparison_rows(comparison);
+pub fn comparison_table(comparison: &Comparison, keys: &SweptKeys) -> String {
+    let (header, rows) = comparison_rows(comparison, keys);
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
     for row in rows {

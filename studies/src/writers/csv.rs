@@ -4,7 +4,7 @@ use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{format_value, key_with_unit, kind_word, status_word};
+use crate::figures::format::{format_value, kind_word, status_word};
 use crate::results::CaseResult;
 use serde_json::Value as Json;
 
@@ -45,12 +45,11 @@ const AFTER: [&str; 18] = [
 pub fn results_csv(study: &StudyOutput) -> String {
     let scenes = study.results.cases.iter().any(|case| case.label.scene.is_some());
     let rows = study.results.cases.iter().map(|case| row(case, scenes, &study.sweep_keys));
-    csv_table(header(&study.sweep_keys, scenes), rows)
+    csv_table(header(study.sweep_columns(), scenes), rows)
 }
 
-/// Names of the columns, where `keys` are swept; with one for scenes where several are compared.
-pub(super) fn header(keys: &[String], scenes: bool) -> Vec<String> {
-    let keys = keys.iter().map(|key| key_with_unit(key));
+/// Names of the columns. `keys` are the columns of the swept keys; `scenes` adds one for the compared scenes.
+pub(super) fn header(keys: impl Iterator<Item = String>, scenes: bool) -> Vec<String> {
     let before = BEFORE.iter().copied().chain(scenes.then_some("scene"));
     before.map(|s| s.to_string()).chain(keys).chain(AFTER.iter().map(|s| s.to_string())).collect()
 }

@@ -4,7 +4,7 @@ use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{format_value, key_with_unit};
+use crate::figures::format::format_value;
 use serde_json::Value as Json;
 
 /// Writes `curve.csv`.
@@ -21,7 +21,7 @@ impl Writer for CurveCsv {
 /// One row per point of each case's curve, in the order of the path.
 pub fn curve_csv(study: &StudyOutput) -> String {
     let mut header = vec!["id".to_string(), "variant".into()];
-    header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
+    header.extend(study.sweep_columns());
     header.extend(["stage", "displacement [m]", "load_factor [-]"].map(String::from));
     let mut rows = Vec::new();
     for case in &study.results.cases {

@@ -22,7 +22,7 @@ impl Writer for Figures {
         }
         let mut files: Vec<(String, String)> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
-        files.extend(envelope_chart(study.name, study.results).map(|svg| ("figures/envelope.svg".to_string(), svg)));
+        files.extend(envelope_chart(study).map(|svg| ("figures/envelope.svg".to_string(), svg)));
         files.extend(moving_load_svg(study).map(|svg| ("figures/moving-load.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         let drawn: Vec<_> =
@@ -30,9 +30,10 @@ impl Writer for Figures {
         let of_case = |(place, case): &(usize, &CaseResult)| {
             let Some((assembly, stages)) = study.scene(*place) else { return Vec::new() };
             let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.label.id);
-            let mut own = vec![(name("scene"), scene_svg(study.name, assembly, stages, case))];
-            own.extend(mechanism_svg(study.name, assembly, case).map(|svg| (name("mechanism"), svg)));
-            own.extend(curve_svg(study.name, assembly, stages, case).map(|svg| (name("curve"), svg)));
+            let title = study.case_title(case);
+            let mut own = vec![(name("scene"), scene_svg(&title, assembly, stages, case))];
+            own.extend(mechanism_svg(&title, assembly, case).map(|svg| (name("mechanism"), svg)));
+            own.extend(curve_svg(&title, assembly, stages, case).map(|svg| (name("curve"), svg)));
             own
         };
         files.extend(drawn.par_iter().flat_map_iter(of_case).collect::<Vec<_>>());

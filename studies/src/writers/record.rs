@@ -1,9 +1,10 @@
 //! The inputs of a study for a page: geometry, materials, joints, loads, stages and solver in words, with units.
 
 use super::assumptions::{assumptions, sources};
-use crate::figures::format::{escape, format_short, format_value, unit_of_key};
-use crate::figures::words::words_of_key;
-use crate::study::{Case, Study};
+use crate::config::dotted_key::join;
+use crate::config::key_meaning::KeyMeaning;
+use crate::figures::format::{escape, format_short, format_value};
+use crate::study::{Case, Study, meaning_in};
 use serde_json::Value as Json;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -54,76 +55,78 @@ pub fn section(heading: &str, rows: &[(String, String)]) -> String {
 
 fn rows_of(table: &str, value: &Json, case: &Case) -> Vec<(String, String)> {
     let mut rows = Vec::new();
-    gather(&mut rows, table, "", value);
+    gather(&mut rows, table, value, case);
     if table == "scene" {
         let free = case.assembly.bodies.iter().filter(|body| !body.fixed).count();
-        rows.push(("blocks that are free, joints".into(), format!("{free}, {}", case.assembly.joints.len())));
+        rows.push(("free blocks".into(), free.to_string()));
+        rows.push(("joints".into(), case.assembly.joints.len().to_string()));
     }
     rows
 }
 
-/// Rows of everything below a value; names that a user has chosen stand before the words.
-fn gather(rows: &mut Vec<(String, String)>, key: &str, before: &str, value: &Json) {
+/// Rows of everything below a value.
+fn gather(rows: &mut Vec<(String, String)>, key: &str, value: &Json, case: &Case) {
     match value {
         Json::Object(map) => {
-            for (name, inner) in map {
-                let path = format!("{key}.{name}");
-                // Names of materials and joints are the user's.
-                let named = ["materials", "joints", "vehicles"].contains(&key);
-                // Fill, haunching and mesh have keys of the same names as the scene.
-                let part = key == "scene" && inner.is_object() && name != "profile";
-                let before = if named || part { format!("{name}: ") } else { before.to_string() };
-                gather(rows, &path, &before, inner);
-            }
+            // The name of a table is in the words of its other keys.
+            let below = map.iter().filter(|(name, value)| *name != "name" || !value.is_string());
+            below.for_each(|(name, inner)| gather(rows, &join(key, name), inner, case));
         }
         Json::Array(items) if items.iter().any(Json::is_object) => {
-            for (index, item) in items.iter().enumerate() {
-                let name = item["name"].as_str().or(item["kind"].as_str()).map(str::to_string);
-                let list = key.rsplit('.').next().unwrap_or_default();
-                let one = list.strip_suffix('s').unwrap_or(list);
-                let before = format!("{before}{}: ", name.unwrap_or_else(|| format!("{one} {}", index + 1)));
-                gather(rows, &format!("{key}.{index}"), &before, item);
-            }
+            let entries = items.iter().enumerate();
+            entries.for_each(|(index, item)| gather(rows, &join(key, &index.to_string()), item, case));
         }
         Json::Null => {}
         Json::Array(items) if items.is_empty() => {}
         value => {
-            // Both stand before the words already.
-            if ["name", "kind"].contains(&key.rsplit('.').next().unwrap_or_default()) {
+            let meaning = meaning_in(&case.resolved, key);
+            // The kind of a load is in the words of its other keys.
+            if meaning.as_ref().is_some_and(|meaning| is_in_place(meaning, value)) {
                 return;
             }
-            rows.push((format!("{before}{}", words(key)), shown(key, value)));
+            let words = meaning.map_or(key.to_string(), |meaning| meaning.words_in_place());
+            rows.push((words, shown(key, value, case)));
         }
     }
 }
 
-/// A key in words; the word that chooses a plug-in says of what.
-fn words(key: &str) -> String {
-    let mut names = key.rsplit('.');
-    match names.next().unwrap_or_default() {
-        "law" if key.starts_with("scene.") => names.next().unwrap_or("law").into(),
-        "law" => "law".into(),
-        "scene" => "scene".into(),
-        "solver" => "solver".into(),
-        "strategy" => "continuation".into(),
-        _ => words_of_key(key),
-    }
+/// Returns true if a word that chooses the keys of a table is also the name of the table.
+fn is_in_place(meaning: &KeyMeaning, value: &Json) -> bool {
+    let name = meaning.place.last().zip(value.as_str());
+    meaning.tag && name.is_some_and(|(name, word)| name.split(' ').next() == Some(word))
 }
 
 /// A value with its unit.
-fn shown(key: &str, value: &Json) -> String {
-    let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
+fn shown(key: &str, value: &Json, case: &Case) -> String {
+    let unit = meaning_in(&case.resolved, key).and_then(|meaning| meaning.unit()).unwrap_or_default();
     match value {
-        Json::Number(_) => quantity(value.as_f64().unwrap_or(f64::NAN), unit.trim()),
+        Json::Number(_) => quantity(value.as_f64().unwrap_or(f64::NAN), unit),
         Json::Array(items) => {
-            let listed: Vec<String> = items.iter().take(LISTED).map(|item| shown("", item)).collect();
+            // Entries show their units if the list has no common one.
+            let entry = |(index, item): (usize, &Json)| match unit {
+                "" => shown(&join(key, &index.to_string()), item, case),
+                _ => plain(item),
+            };
+            let listed: Vec<String> = items.iter().enumerate().take(LISTED).map(entry).collect();
             let more = items.len().saturating_sub(LISTED);
             let more = if more > 0 { format!(", and {more} more") } else { String::new() };
-            format!("[{}{more}]{unit}", listed.join(", "))
+            format!("[{}{more}] {unit}", listed.join(", ")).trim_end().to_string()
         }
-        Json::String(word) => word.clone(),
+        other => plain(other),
+    }
+}
+
+/// A value without a unit.
+fn plain(value: &Json) -> String {
+    match value {
+        Json::Array(items) => {
+            let listed: Vec<String> = items.iter().take(LISTED).map(plain).collect();
+            let more = items.len().saturating_sub(LISTED);
+            let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+            format!("[{}{more}]", listed.join(", "))
+        }
         Json::Bool(truth) => if *truth { "yes" } else { "no" }.into(),
-        other => other.to_string(),
+        other => format_value(other),
     }
 }
 
@@ -139,12 +142,14 @@ fn quantity(x: f64, unit: &str) -> String {
 
 /// Axes of the sweep with their values, and the variants.
 fn varied(study: &Study) -> Vec<(String, String)> {
-    let mut rows = Vec::new();
+    let (mut rows, keys) = (Vec::new(), study.swept_keys());
     for key in study.outline.axes.iter().flat_map(|(keys, _)| keys) {
         let mut seen = HashSet::new();
         let swept = study.cases.iter().filter_map(|case| case.parameters.get(key));
         let values: Vec<&Json> = swept.filter(|value| seen.insert(value.to_string())).collect();
-        let unit = unit_of_key(key).map_or(String::new(), |unit| format!(" {unit}"));
+        // Texts contain their units.
+        let unit = keys.unit(key).filter(|_| values.iter().all(|value| value.is_number()));
+        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
         let words = match values.as_slice() {
             [] => continue,
             [first, .., last] if values.len() > LISTED => {
@@ -152,7 +157,7 @@ fn varied(study: &Study) -> Vec<(String, String)> {
             }
             few => format!("{}{unit}", few.iter().map(|value| format_value(value)).collect::<Vec<_>>().join(", ")),
         };
-        rows.push((words_of_key(key), words));
+        rows.push((keys.words_in_place(key), words));
     }
     if !study.outline.variants.is_empty() {
         rows.push(("variants".into(), study.outline.variants.join("; ")));

@@ -11,12 +11,11 @@ use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
-    case_title, escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list,
-    kind_words, open_bounds, parameters_text, status_meaning, status_word, unit_load,
+    escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
+    open_bounds, status_meaning, status_word, unit_load,
 };
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
-use crate::figures::words::title_of_key;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::{CaseResult, least_of};
@@ -57,7 +56,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += "<figcaption>Each marker is one case. An arrow at the upper edge is a case that carries any load; \
                  lines only join neighbouring cases.</figcaption></figure>\n";
     }
-    if let Some(chart) = study.output.figures.anything().then(|| envelope_chart(study.name, study.results)).flatten() {
+    if let Some(chart) = study.output.figures.anything().then(|| envelope_chart(study)).flatten() {
         body += &format!(
             "<h2>Envelope</h2>\n<figure>{chart}<figcaption>The load factor at every place that was tried; only the worst \
              is drawn below.</figcaption></figure>\n"
@@ -77,7 +76,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     if study.output.figures.anything() {
         body += &figures(study, drawn);
     }
-    body += &sensitivities_csv::table(cases);
+    body += &sensitivities_csv::table(study);
     body += &paths(study, drawn);
     body += &certificates(cases);
     body += &format!(
@@ -98,7 +97,7 @@ fn comparison(study: &StudyOutput) -> String {
         escape(&comparison.reference)
     );
     if study.output.figures.anything()
-        && let Some((name, svg)) = figure(study.name, comparison)
+        && let Some((name, svg)) = figure(study, comparison)
     {
         let caption = match name {
             "map" => {
@@ -109,7 +108,7 @@ fn comparison(study: &StudyOutput) -> String {
         };
         body += &format!("<figure>{svg}<figcaption>{caption}</figcaption></figure>\n");
     }
-    let (header, rows) = comparison_rows(comparison);
+    let (header, rows) = comparison_rows(comparison, &study.keys);
     body + &page::table(&header, rows.into_iter())
 }
 
@@ -168,8 +167,14 @@ fn least(study: &StudyOutput) -> Option<String> {
     let place = cases.iter().position(|other| other.label.id == case.label.id)?;
     let unit = study.scene(place).and_then(|(_, stages)| unit_load(stages));
     let load = unit.map_or_else(|| format!("λ = {}", format_number(factor, 4)), |unit| format_force(factor * unit));
-    let where_found: Vec<String> =
-        case.label.variant.iter().cloned().chain([parameters_text(case)]).filter(|words| !words.is_empty()).collect();
+    let where_found: Vec<String> = case
+        .label
+        .variant
+        .iter()
+        .cloned()
+        .chain([study.keys.text(&case.label.parameters)])
+        .filter(|words| !words.is_empty())
+        .collect();
     Some(if where_found.is_empty() { load } else { format!("{load}, where {}", where_found.join(", ")) })
 }
 
@@ -200,7 +205,7 @@ fn case_table(study: &StudyOutput) -> String {
     let mut header = vec!["id".to_string()];
     header.extend(variants.then(|| "variant".into()));
     header.extend(scenes.then(|| "scene".into()));
-    header.extend(study.sweep_keys.iter().map(|key| title_of_key(key)));
+    header.extend(study.sweep_keys.iter().map(|key| study.keys.title(key)));
     header.extend(["status".to_string(), "load factor".into()]);
     header.extend(with_load.then(|| "load".into()));
     header.extend(["bounds", "mechanism", "hinges at joints", "certificate", "time"].map(String::from));
@@ -261,22 +266,23 @@ fn figures(study: &StudyOutput, drawn: usize) -> String {
     for (place, case) in chosen().take(drawn) {
         let Some((assembly, stages)) = study.scene(place) else { continue };
         let open = if Some(place) == first && chosen().count() <= drawn { " open" } else { "" };
-        let title = format!("{}: {}", case_title(study.name, case), headline(case, stages));
+        let own = study.case_title(case);
+        let title = format!("{own}: {}", headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
-        let scene = page::own_ids(&scene_svg(study.name, assembly, stages, case), &format!("scene-{}", case.label.id));
+        let scene = page::own_ids(&scene_svg(&own, assembly, stages, case), &format!("scene-{}", case.label.id));
         text += &format!(
             "<figure>{scene}<figcaption>The scene with its loads, forces and joints that move.</figcaption></figure>\n"
         );
         if study.output.figures.anything() && (case.proof.motion.is_some() || !case.path.states.is_empty()) {
             text += &format!("<div class=\"moving\" data-case=\"{}\"></div>\n", case.label.id);
         }
-        if let Some(svg) = mechanism_svg(study.name, assembly, case) {
+        if let Some(svg) = mechanism_svg(&own, assembly, case) {
             let svg = page::own_ids(&svg, &format!("mechanism-{}", case.label.id));
             text += &format!(
                 "<figure>{svg}<figcaption>How it collapses; displacements are exaggerated.</figcaption></figure>\n"
             );
         }
-        if let Some(svg) = curve_svg(study.name, assembly, stages, case) {
+        if let Some(svg) = curve_svg(&own, assembly, stages, case) {
             text += &format!("<figure>{svg}<figcaption>{CURVE}</figcaption></figure>\n");
         }
         text += "</details>\n";
@@ -335,7 +341,7 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
         let (case, Some((assembly, _))) = (&cases[index], study.scene(index)) else { continue };
         let events = joint_events(assembly, case);
         let open = if place == 0 { " open" } else { "" };
-        text += &format!("<details{open}><summary>{}</summary>\n", escape(&case_title(study.name, case)));
+        text += &format!("<details{open}><summary>{}</summary>\n", escape(&study.case_title(case)));
         if events.is_empty() {
             text += "<p>No joint became a hinge or slid.</p>\n";
         } else {

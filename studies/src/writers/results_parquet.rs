@@ -4,7 +4,7 @@ use super::parquet::{Cell, Parquet};
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{format_value, key_with_unit, kind_word, status_word};
+use crate::figures::format::{format_value, kind_word, status_word};
 use crate::results::CaseResult;
 use serde_json::Value as Json;
 use std::io::{self, Write};
@@ -26,7 +26,12 @@ impl Writer for ResultsParquet {
         }
         let numeric =
             |key: &String| cases.iter().all(|case| case.label.parameters.get(key).is_some_and(Json::is_number));
-        let keys = study.sweep_keys.iter().map(|key| (key.clone(), numeric(key))).collect();
+        let keys = study
+            .sweep_keys
+            .iter()
+            .zip(study.sweep_columns())
+            .map(|(key, name)| SweptColumn { numeric: numeric(key), key: key.clone(), name })
+            .collect();
         let whole = || -> io::Result<Vec<u8>> {
             let mut rows = ParquetRows::new(Vec::new(), keys, cases.iter().any(|case| case.label.scene.is_some()))?;
             cases.iter().try_for_each(|case| rows.add(case))?;
@@ -45,7 +50,7 @@ fn joints(list: impl Iterator<Item = usize>) -> Option<String> {
 }
 
 /// The cells of a case in order, each with the name of its column.
-fn row(case: &CaseResult, scenes: bool, keys: &[(String, bool)]) -> Vec<(String, Cell)> {
+fn row(case: &CaseResult, scenes: bool, keys: &[SweptColumn]) -> Vec<(String, Cell)> {
     let word = |word: &str| Cell::Text(Some(word.to_string()).filter(|word| !word.is_empty()));
     let mechanism = case.mechanism.as_ref();
     let residual = case.certificate.residuals.values().copied().reduce(f64::max);
@@ -54,11 +59,11 @@ fn row(case: &CaseResult, scenes: bool, keys: &[(String, bool)]) -> Vec<(String,
         ("variant".to_string(), Cell::Text(case.label.variant.clone())),
     ];
     row.extend(scenes.then(|| ("scene".to_string(), Cell::Text(case.label.scene.clone()))));
-    row.extend(keys.iter().map(|(key, numeric)| {
+    row.extend(keys.iter().map(|SweptColumn { key, name, numeric }| {
         let value = case.label.parameters.get(key);
         let cell =
             if *numeric { Cell::Number(value.and_then(Json::as_f64)) } else { Cell::Text(value.map(format_value)) };
-        (key_with_unit(key), cell)
+        (name.clone(), cell)
     }));
     let rest = [
         ("status", word(status_word(case.status))),
@@ -84,17 +89,26 @@ fn row(case: &CaseResult, scenes: bool, keys: &[(String, bool)]) -> Vec<(String,
     row
 }
 
+/// The column of a swept key.
+pub struct SweptColumn {
+    /// The key.
+    pub key: String,
+    /// The key with its unit.
+    pub name: String,
+    /// True if all values are numbers.
+    pub numeric: bool,
+}
+
 /// `results.parquet`, row by row.
 pub struct ParquetRows<W: Write> {
     table: Parquet<W>,
-    keys: Vec<(String, bool)>,
+    keys: Vec<SweptColumn>,
     scenes: bool,
 }
 
 impl<W: Write> ParquetRows<W> {
-    /// Begins the file. `keys` are those that are swept, and whether all their values are numbers; `scenes` says whether
-    /// several are compared.
-    pub fn new(out: W, keys: Vec<(String, bool)>, scenes: bool) -> io::Result<Self> {
+    /// Begins the file with columns for the swept keys; `scenes` adds one for the compared scenes.
+    pub fn new(out: W, keys: Vec<SweptColumn>, scenes: bool) -> io::Result<Self> {
         let table = Parquet::new(out, &row(&CaseResult::empty(), scenes, &keys))?;
         Ok(ParquetRows { table, keys, scenes })
     }

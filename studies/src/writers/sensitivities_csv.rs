@@ -5,9 +5,10 @@ use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{format_number, format_short, unit_of_key};
-use crate::figures::words::title_of_key;
+use crate::config::key_meaning::KeyMeaning;
+use crate::figures::format::{format_number, format_short};
 use crate::results::{CaseResult, SensitivityEntry};
+use crate::study::meaning_in;
 use serde_json::Value as Json;
 
 /// Rows of the report's table.
@@ -19,7 +20,7 @@ pub struct Sensitivities;
 
 impl Writer for Sensitivities {
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        let rows: Vec<Vec<String>> = entries(&study.results.cases).map(|(case, entry)| row(case, entry)).collect();
+        let rows: Vec<Vec<String>> = entries(study).map(|entry| row(&entry)).collect();
         if rows.is_empty() {
             return Vec::new();
         }
@@ -28,17 +29,27 @@ impl Writer for Sensitivities {
     }
 }
 
-fn entries(cases: &[CaseResult]) -> impl Iterator<Item = (&CaseResult, &SensitivityEntry)> {
-    cases.iter().flat_map(|case| case.sensitivities.iter().map(move |entry| (case, entry)))
+/// A derivative with its case and the meaning of its key there.
+struct Entry<'a> {
+    case: &'a CaseResult,
+    own: &'a SensitivityEntry,
+    meaning: Option<KeyMeaning>,
 }
 
-fn row(case: &CaseResult, entry: &SensitivityEntry) -> Vec<String> {
+fn entries<'a>(study: &'a StudyOutput) -> impl Iterator<Item = Entry<'a>> {
+    study.results.cases.iter().zip(&study.scenes).flat_map(|(case, scene)| {
+        let entry = |own| Entry { case, own, meaning: meaning_in(scene.resolved, &own.key) };
+        case.sensitivities.iter().map(entry)
+    })
+}
+
+fn row(Entry { case, own: entry, meaning }: &Entry) -> Vec<String> {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     vec![
         case.label.id.to_string(),
         case.label.variant.clone().unwrap_or_default(),
         entry.key.clone(),
-        unit_of_key(&entry.key).unwrap_or_default().into(),
+        meaning.as_ref().and_then(KeyMeaning::unit).unwrap_or_default().into(),
         entry.value.to_string(),
         number(entry.left),
         number(entry.right),
@@ -48,14 +59,14 @@ fn row(case: &CaseResult, entry: &SensitivityEntry) -> Vec<String> {
 }
 
 /// The report's table; empty where no case has any.
-pub(super) fn table(cases: &[CaseResult]) -> String {
-    let count = entries(cases).count();
+pub(super) fn table(study: &StudyOutput) -> String {
+    let count = study.results.cases.iter().map(|case| case.sensitivities.len()).sum::<usize>();
     if count == 0 {
         return String::new();
     }
     let header =
         ["id", "number", "value", "per unit, falling", "per unit, growing", "% of the factor per 1 % of it", "", "key"];
-    let rows = entries(cases).take(ROWS).map(|(case, entry)| {
+    let rows = entries(study).take(ROWS).map(|Entry { case, own: entry, meaning }| {
         let slope = |x: Option<f64>| x.map_or("–".into(), |x| format_number(x, 6));
         let relative = entry.relative(case.load_factor.unwrap_or(f64::NAN));
         let share = |x: f64| format!("{x:+.3}");
@@ -72,7 +83,7 @@ pub(super) fn table(cases: &[CaseResult]) -> String {
         let value = format_short(entry.value, 7);
         vec![
             case.label.id.to_string(),
-            title_of_key(&entry.key),
+            meaning.map_or(entry.key.clone(), |meaning| meaning.title()),
             value,
             slope(entry.left),
             slope(entry.right),

@@ -3,6 +3,7 @@
 use super::csv::{header, row};
 use super::csv_table::CsvRows;
 use crate::results::CaseResult;
+use crate::study::Sweep;
 use std::io::{self, Write};
 
 /// results.csv of a study without scenes to compare, row by row.
@@ -12,9 +13,11 @@ pub struct CsvStream<W: Write> {
 }
 
 impl<W: Write> CsvStream<W> {
-    /// Writes the header; `keys` are those that are swept.
-    pub fn new(out: W, keys: Vec<String>) -> io::Result<Self> {
-        Ok(CsvStream { rows: CsvRows::new(out, header(&keys, false))?, keys })
+    /// Writes the header.
+    pub fn new(out: W, sweep: &Sweep) -> io::Result<Self> {
+        let (keys, meanings) = (sweep.keys(), sweep.swept_keys());
+        let columns = header(keys.iter().map(|key| meanings.column(key)), false);
+        Ok(CsvStream { rows: CsvRows::new(out, columns)?, keys })
     }
 
     /// Writes the row of a case.

@@ -1,6 +1,6 @@
 //! The tables beside results.json of very many cases, row by row: those that a study asks for, by their file's name.
 
-use super::results_parquet::{FILE, ParquetRows, TAG};
+use super::results_parquet::{FILE, ParquetRows, SweptColumn, TAG};
 use super::stream::CsvStream;
 use crate::results::CaseResult;
 use crate::study::Sweep;
@@ -33,10 +33,13 @@ impl<W: Write> StreamedTable<W> {
     pub fn new(name: &str, out: W, sweep: &Sweep) -> io::Result<Self> {
         Ok(match name {
             FILE => {
-                let rows = ParquetRows::new(out, sweep.expansion.number_keys(), false)?;
+                let meanings = sweep.swept_keys();
+                let key = |(key, numeric): (String, bool)| SweptColumn { name: meanings.column(&key), key, numeric };
+                let keys = sweep.expansion.number_keys().into_iter().map(key).collect();
+                let rows = ParquetRows::new(out, keys, false)?;
                 StreamedTable::Parquet(Box::new(rows))
             }
-            _ => StreamedTable::Csv(Box::new(CsvStream::new(out, sweep.keys())?)),
+            _ => StreamedTable::Csv(Box::new(CsvStream::new(out, sweep)?)),
         })
     }
 

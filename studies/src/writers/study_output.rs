@@ -1,7 +1,7 @@
 //! What writers are given: the results and what they were computed from.
 
 use crate::results::{CaseResult, StudyResults, least_of};
-use crate::study::{Case, Drawn, Output, Study};
+use crate::study::{Case, Drawn, Output, Resolved, Study, SweptKeys};
 use serde_json::Value as Json;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,6 +19,8 @@ pub struct StudyOutput<'a> {
     pub scenes: Vec<SceneOutput<'a>>,
     /// Swept keys, outermost first.
     pub sweep_keys: Vec<String>,
+    /// Units and words of the swept keys, and of those that the study kind varies.
+    pub keys: SweptKeys,
     /// What is wanted besides the results.
     pub output: Output,
     /// Ids of the cases that are drawn, where not all are.
@@ -36,6 +38,8 @@ pub struct SceneOutput<'a> {
     pub stages: &'a [Stage],
     /// Whether displacements are finite.
     pub finite: bool,
+    /// The case's own study file.
+    pub resolved: &'a Resolved,
 }
 
 impl<'a> StudyOutput<'a> {
@@ -45,17 +49,35 @@ impl<'a> StudyOutput<'a> {
             assembly: &case.assembly,
             stages: &case.stages,
             finite: case.solver.settings.finite,
+            resolved: &case.resolved,
         };
+        let mut keys = study.swept_keys();
+        keys.add_keys_of(cases.iter().map(Cow::as_ref));
         let swept = results.cases.first().map(|case| &case.label.parameters);
         StudyOutput {
             name: &study.name,
             results,
             scenes: cases.iter().map(scene).collect(),
             sweep_keys: swept.map(|parameters| parameters.keys().cloned().collect()).unwrap_or_default(),
+            keys,
             output: study.output.clone(),
             drawn: drawn(study, results),
             inputs: Some(study),
         }
+    }
+
+    /// Names of the columns of the swept keys.
+    pub fn sweep_columns(&self) -> impl Iterator<Item = String> {
+        self.sweep_keys.iter().map(|key| self.keys.column(key))
+    }
+
+    /// The title of a case: `strathmashie, case 3, associated, rise = 2.99 m`.
+    pub fn case_title(&self, case: &CaseResult) -> String {
+        let mut parts = vec![self.name.to_string(), format!("case {}", case.label.id)];
+        parts.extend(case.label.variant.clone());
+        parts.extend(case.label.scene.clone());
+        parts.extend(Some(self.keys.text(&case.label.parameters)).filter(|text| !text.is_empty()));
+        parts.join(", ")
     }
 
     /// Whether a case is drawn.

@@ -2,7 +2,7 @@
 
 use super::study_output::StudyOutput;
 use crate::figures::format::{
-    format_number, format_short, format_value, hinge_list, key_with_unit, kind_word, open_bounds, status_word,
+    format_number, format_short, format_value, hinge_list, kind_word, open_bounds, status_word,
 };
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -17,7 +17,7 @@ pub fn results_table(study: &StudyOutput) -> String {
     header.extend(variants.then(|| "variant".to_string()));
     let scenes = cases.iter().any(|case| case.label.scene.is_some());
     header.extend(scenes.then(|| "scene".to_string()));
-    header.extend(study.sweep_keys.iter().map(|key| key_with_unit(key)));
+    header.extend(study.sweep_columns());
     let factor_column = header.len() + 1;
     header.extend(["status", "load factor", "kind", "hinges", "certificate", "notes"].map(String::from));
     let mut table = Table::new();

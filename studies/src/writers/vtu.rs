@@ -3,7 +3,7 @@
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{case_title, escape};
+use crate::figures::format::escape;
 use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use serde_json::Value as Json;
 use std::fmt::Write;
@@ -21,7 +21,7 @@ impl Writer for Vtu {
         let mut sets = String::new();
         let mut list = String::from(MEANING);
         for (case, scene) in study.results.cases.iter().zip(&study.scenes) {
-            let title = case_title(study.name, case);
+            let title = study.case_title(case);
             match displaced_blocks(scene.assembly, scene.stages, case, scene.finite) {
                 Ok(blocks) => {
                     let name = format!("case-{:04}.vtu", case.label.id);

@@ -14,3 +14,4 @@ mod round_trip;
 mod streamed;
 mod survey;
 mod tampering;
+mod units;

@@ -107,7 +107,7 @@ fn inside(shape: &'static Shape, keys: &mut BTreeMap<&'static str, Vec<&'static 
     match shape {
         Shape::Table(parameters) => parameters.iter().for_each(|parameter| gather(parameter, keys)),
         Shape::List { of, .. } | Shape::Map(of) => inside(of, keys),
-        Shape::Tuple(shapes) => shapes.iter().for_each(|shape| inside(shape, keys)),
+        Shape::Tuple(shapes) => shapes.iter().for_each(|(_, shape)| inside(shape, keys)),
         Shape::Either(shapes) => shapes.iter().for_each(|shape| inside(shape, keys)),
         Shape::Tagged { variants, .. } => {
             variants.iter().flat_map(|variant| variant.parameters).for_each(|parameter| gather(parameter, keys));
@@ -173,7 +173,9 @@ fn of_shape(shape: &Shape, random: &mut Sequence, depth: usize) -> Value {
             let count = (*min).max(random.whole(0, 3)).min((*max).max(*min));
             Value::Array((0..count.min(8)).map(|_| of_shape(of, random, depth + 1)).collect())
         }
-        Shape::Tuple(shapes) => Value::Array(shapes.iter().map(|shape| of_shape(shape, random, depth + 1)).collect()),
+        Shape::Tuple(shapes) => {
+            Value::Array(shapes.iter().map(|(_, shape)| of_shape(shape, random, depth + 1)).collect())
+        }
         Shape::Table(parameters) => table(parameters, random, depth).into(),
         Shape::Tagged { key, variants } => {
             let variant = random.one_of(variants);

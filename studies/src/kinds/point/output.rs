@@ -5,11 +5,12 @@ use super::result::{PathStatus, PointResult};
 use super::study::PointStudy;
 use super::surface::yield_surface;
 use crate::figures::chart::chart_svg;
-use crate::figures::format::{format_number, format_value, key_with_unit};
+use crate::figures::format::{format_number, format_value};
 use crate::figures::series::Series;
 use crate::kinds::case_study::remarks;
 use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification};
 use crate::solve::Observer;
+use crate::study::SweptKeys;
 use crate::verify::repeat::differences;
 use crate::writers::csv_table::csv_table;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -120,7 +121,8 @@ fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> J
 /// (name, text) of every file.
 pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
     let whole = results_json(study, results, version);
-    let mut out = vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(results))];
+    let mut out =
+        vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(study, results))];
     if study.figures {
         out.push(("figures/path.svg".into(), figure(study, results)));
     }
@@ -133,7 +135,7 @@ fn keys(results: &[PointResult]) -> Vec<String> {
 }
 
 /// One row per step of every case; columns that a case's law does not have are empty.
-pub fn csv(results: &[PointResult]) -> String {
+pub fn csv(study: &PointStudy, results: &[PointResult]) -> String {
     let mut columns: Vec<&String> = Vec::new();
     for column in results.iter().flat_map(|result| &result.columns) {
         if !columns.contains(&column) {
@@ -141,7 +143,7 @@ pub fn csv(results: &[PointResult]) -> String {
         }
     }
     let keys = keys(results);
-    let header = ["id".to_string(), "variant".into()].into_iter().chain(keys.iter().map(|key| key_with_unit(key)));
+    let header = ["id".to_string(), "variant".into()].into_iter().chain(keys.iter().map(|key| study.keys.column(key)));
     let header = header.chain(["segment".to_string(), "region".into()]).chain(columns.iter().map(|c| c.to_string()));
     let mut rows = Vec::new();
     for result in results {
@@ -158,11 +160,11 @@ pub fn csv(results: &[PointResult]) -> String {
     csv_table(header.collect(), rows.into_iter())
 }
 
-/// What tells a case apart: keys by their last name, those of one value together.
-fn name(result: &PointResult) -> String {
+/// The name of a case: its swept values, keys with the same value together.
+fn name(study: &PointStudy, result: &PointResult) -> String {
     let mut parameters: Vec<(String, String)> = Vec::new();
     for (key, value) in &result.parameters {
-        let (short, value) = parameter(key, value);
+        let (short, value) = parameter(&study.keys, key, value);
         match parameters.iter_mut().find(|(_, other)| *other == value) {
             Some((names, _)) => *names += &format!(", {short}"),
             None => parameters.push((short, value)),
@@ -173,14 +175,16 @@ fn name(result: &PointResult) -> String {
     if words.is_empty() { result.law.clone() } else { words.join(", ") }
 }
 
-/// A swept key and its value as the legend says them: components of stress in MPa.
-fn parameter(key: &str, value: &Json) -> (String, String) {
-    let mut names = key.rsplit('.');
-    let (short, of) = (names.next().unwrap_or(key), names.next());
-    match (of, value.as_f64()) {
-        (Some("stress"), Some(stress)) => (format!("σ_{short}"), format!("{} MPa", stress / 1e6)),
-        (Some("strain"), _) => (format!("ε_{short}"), format_value(value)),
-        _ => (short.into(), format_value(value)),
+/// The short name of a swept key and its value for the legend: stresses in MPa.
+fn parameter(keys: &SweptKeys, key: &str, value: &Json) -> (String, String) {
+    let name = match keys.first(key).map(|meaning| (meaning.table, meaning.name)) {
+        Some((Some("stress"), component)) => format!("σ_{component}"),
+        Some((Some("strain"), component)) => format!("ε_{component}"),
+        _ => keys.name(key),
+    };
+    match (keys.unit(key).as_deref(), value.as_f64()) {
+        (Some("Pa"), Some(stress)) => (name, format!("{} MPa", format_value(&(stress / 1e6).into()))),
+        _ => (name, keys.value(key, value)),
     }
 }
 
@@ -214,10 +218,10 @@ pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
                 (place, factor)
             });
             if result.status == PathStatus::Stalled {
-                notes.push(format!("{}: {}", name(result), result.notes.last().cloned().unwrap_or_default()));
+                notes.push(format!("{}: {}", name(study, result), result.notes.last().cloned().unwrap_or_default()));
             }
             let points = result.rows.iter().map(|row| (row[x.0] * x.1, row[y.0] * y.1)).collect();
-            Series { name: name(result), points, ..Series::default() }
+            Series { name: name(study, result), points, ..Series::default() }
         })
         .collect();
     series.extend(surfaces(study, results));
@@ -278,7 +282,7 @@ pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
         let told_apart = result.variant.is_some() || !keys.is_empty();
         table.add_row([
             result.id.to_string(),
-            if told_apart { name(result) } else { String::new() },
+            if told_apart { name(study, result) } else { String::new() },
             result.law.clone(),
             if result.status == PathStatus::Reached { "reached" } else { "stalled" }.into(),
             result.rows.len().to_string(),

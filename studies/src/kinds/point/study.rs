@@ -5,7 +5,7 @@ use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort, suggest};
 use crate::config::dotted_key::join;
 use crate::config::expand::{Expanded, Expansion};
-use crate::study::{DiagnosticList, Drawn, OUTPUT, StudyError, StudySource, read_plugin};
+use crate::study::{DiagnosticList, Drawn, OUTPUT, StudyError, StudySource, SweptKeys, read_plugin};
 use serde_json::{Map, Value as Json};
 use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate, Plane};
 use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
@@ -15,33 +15,35 @@ const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) ->
     Parameter { name, doc, shape, need }
 }
 
-const fn component(name: &'static str, quantity: Quantity) -> Parameter {
-    Parameter {
-        name,
-        doc: "target of this component at the end of the segment",
-        shape: Shape::Number(quantity, Range::ANY),
-        need: Need::Optional("it keeps what it had"),
-    }
+const fn component(name: &'static str, quantity: Quantity, doc: &'static str) -> Parameter {
+    Parameter { name, doc, shape: Shape::Number(quantity, Range::ANY), need: Need::Optional("it keeps what it had") }
 }
 
+const STRAIN_DOC: &str = "strain at the end of the segment";
+const STRESS_DOC: &str = "stress at the end of the segment";
+const GAP_DOC: &str = "gap at the end of the segment";
+const TRACTION_DOC: &str = "traction at the end of the segment";
+
 static STRAIN: Shape = Shape::Table(&[
-    component("xx", Quantity::Ratio),
-    component("yy", Quantity::Ratio),
-    component("zz", Quantity::Ratio),
-    component("xy", Quantity::Ratio),
-    component("yz", Quantity::Ratio),
-    component("zx", Quantity::Ratio),
+    component("xx", Quantity::Ratio, STRAIN_DOC),
+    component("yy", Quantity::Ratio, STRAIN_DOC),
+    component("zz", Quantity::Ratio, STRAIN_DOC),
+    component("xy", Quantity::Ratio, STRAIN_DOC),
+    component("yz", Quantity::Ratio, STRAIN_DOC),
+    component("zx", Quantity::Ratio, STRAIN_DOC),
 ]);
 static STRESS: Shape = Shape::Table(&[
-    component("xx", Quantity::Stress),
-    component("yy", Quantity::Stress),
-    component("zz", Quantity::Stress),
-    component("xy", Quantity::Stress),
-    component("yz", Quantity::Stress),
-    component("zx", Quantity::Stress),
+    component("xx", Quantity::Stress, STRESS_DOC),
+    component("yy", Quantity::Stress, STRESS_DOC),
+    component("zz", Quantity::Stress, STRESS_DOC),
+    component("xy", Quantity::Stress, STRESS_DOC),
+    component("yz", Quantity::Stress, STRESS_DOC),
+    component("zx", Quantity::Stress, STRESS_DOC),
 ]);
-static GAP: Shape = Shape::Table(&[component("n", Quantity::Length), component("t", Quantity::Length)]);
-static TRACTION: Shape = Shape::Table(&[component("n", Quantity::Stress), component("t", Quantity::Stress)]);
+static GAP: Shape =
+    Shape::Table(&[component("n", Quantity::Length, GAP_DOC), component("t", Quantity::Length, GAP_DOC)]);
+static TRACTION: Shape =
+    Shape::Table(&[component("n", Quantity::Stress, TRACTION_DOC), component("t", Quantity::Stress, TRACTION_DOC)]);
 
 static SEGMENT: Shape = Shape::Table(&[
     key("steps", Shape::Integer { min: 1, max: 100_000 }, Need::Default("20"), "equal steps of the segment"),
@@ -146,6 +148,8 @@ pub struct PointStudy {
     pub figures: bool,
     /// Its cases.
     pub cases: Vec<PointCase>,
+    /// Units and words of the swept keys.
+    pub keys: SweptKeys,
     /// The file with `--set` applied.
     pub resolved: toml::Value,
 }
@@ -191,7 +195,8 @@ impl PointStudy {
             return Err(diagnostics.into());
         }
         let name = root.table().and_then(|table| table.get("name")?.text()).unwrap_or_default().to_string();
-        Ok(PointStudy { name, figures, cases, resolved: root.to_toml() })
+        let keys = SweptKeys::of_expansion(STUDY, &expansion);
+        Ok(PointStudy { name, figures, cases, keys, resolved: root.to_toml() })
     }
 }
 

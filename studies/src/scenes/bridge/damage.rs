@@ -127,7 +127,7 @@ pub(super) const DAMAGE: Shape = Shape::Tagged {
                 RING,
                 Parameter {
                     name: "voussoirs",
-                    doc: "their numbers, from 0 at the left",
+                    doc: "numbers of the voussoirs, from 0 at the left",
                     shape: NUMBERS,
                     need: Need::Required,
                 },

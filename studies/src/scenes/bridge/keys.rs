@@ -29,7 +29,7 @@ const SPAN: &[Parameter] = &[
         "thickness",
         THICKNESS,
         Need::Optional("the profile is a list of points"),
-        "of all rings together, along the joints; { crown, springing } grows with the arc length between them",
+        "thickness of all rings together, along the joints; { crown, springing } grows with the arc length between them",
     ),
     key(
         "voussoirs",
@@ -73,7 +73,7 @@ const SPAN: &[Parameter] = &[
 ];
 
 const PIER: &[Parameter] = &[
-    Parameter::number("height", Quantity::Length, Range::POSITIVE, "below the lower of the springings on it"),
+    Parameter::number("height", Quantity::Length, Range::POSITIVE, "height below the lower of the springings on it"),
     Parameter::number(
         "width",
         Quantity::Length,

@@ -1,0 +1,146 @@
+//! Units and words of the swept keys of a study, for columns, axes and titles.
+
+use super::keys::study_keys;
+use super::model::{Case, Study};
+use super::resolved::Resolved;
+use super::sweep::Sweep;
+use crate::config::expand::Expansion;
+use crate::config::key_meaning::{KeyMeaning, key_meaning};
+use serde_json::{Map, Value as Json};
+use voussoir_core::plugin::Parameter;
+
+/// Greatest number of cases in which keys are looked up.
+const MAX_CASES: usize = 1000;
+
+/// The swept keys of a study, each with its different meanings in the variants and scenes.
+#[derive(Debug, Clone, Default)]
+pub struct SweptKeys(Vec<(String, Vec<KeyMeaning>)>);
+
+/// The meaning of a key in a case; `None` if the schema does not know the key.
+pub fn meaning_in(resolved: &Resolved, key: &str) -> Option<KeyMeaning> {
+    key_meaning(study_keys(), &|name| resolved.get(name), key)
+}
+
+impl SweptKeys {
+    /// The axes of an expansion. `parameters` are the top-level keys of the study file. One case is read for each variant,
+    /// scene and text of an axis, because these decide which plug-in owns a key.
+    pub(crate) fn of_expansion(parameters: &'static [Parameter], expansion: &Expansion) -> Self {
+        let mut keys = SweptKeys(expansion.swept().map(|key| (key.to_string(), Vec::new())).collect());
+        let ids = if keys.0.is_empty() { Vec::new() } else { expansion.one_of_each(MAX_CASES) };
+        for case in ids.into_iter().filter_map(|id| expansion.case(id).ok()) {
+            let root = case.root.to_json();
+            for (key, meanings) in &mut keys.0 {
+                let meaning = key_meaning(parameters, &|name| root.get(name), key);
+                meanings.extend(meaning.filter(|meaning| !meanings.contains(meaning)));
+            }
+        }
+        for (_, meanings) in &mut keys.0 {
+            if meanings.iter().any(|meaning| meaning.used) {
+                meanings.retain(|meaning| meaning.used);
+            }
+        }
+        keys
+    }
+
+    /// Adds the keys of cases that a study kind has made.
+    pub fn add_keys_of<'a>(&mut self, cases: impl Iterator<Item = &'a Case>) {
+        for case in cases {
+            for key in case.parameters.keys() {
+                if self.0.iter().all(|(known, _)| known != key) {
+                    self.0.push((key.clone(), meaning_in(&case.resolved, key).into_iter().collect()));
+                }
+            }
+        }
+    }
+
+    fn meanings(&self, key: &str) -> &[KeyMeaning] {
+        self.0.iter().find(|(own, _)| own == key).map_or(&[], |(_, meanings)| meanings)
+    }
+
+    /// The first meaning of a key.
+    pub fn first(&self, key: &str) -> Option<&KeyMeaning> {
+        self.meanings(key).first()
+    }
+
+    /// Different texts of the meanings of a key, joined.
+    fn joined(&self, key: &str, text: impl Fn(&KeyMeaning) -> String) -> String {
+        let mut texts: Vec<String> = Vec::new();
+        for text in self.meanings(key).iter().map(text) {
+            if !texts.contains(&text) {
+                texts.push(text);
+            }
+        }
+        texts.join(" or ")
+    }
+
+    /// The unit of a key; `m or -` if it has several. `None` for pure numbers, texts and unknown keys.
+    pub fn unit(&self, key: &str) -> Option<String> {
+        let unit = self.joined(key, |meaning| meaning.unit().unwrap_or("-").into());
+        Some(unit).filter(|unit| !["", "-"].contains(&unit.as_str()))
+    }
+
+    /// The name of a column: the key with its unit.
+    pub fn column(&self, key: &str) -> String {
+        self.with_unit(key, key.into())
+    }
+
+    /// A key in words; the key itself if the schema does not know it.
+    pub fn words(&self, key: &str) -> String {
+        self.told_apart(key, KeyMeaning::words, KeyMeaning::words_in_place)
+    }
+
+    /// A key in words, after the names of the tables above it.
+    pub fn words_in_place(&self, key: &str) -> String {
+        Some(self.joined(key, KeyMeaning::words_in_place)).filter(|words| !words.is_empty()).unwrap_or(key.into())
+    }
+
+    /// The title of an axis or a column in words: `rise of the intrados [m]`.
+    pub fn title(&self, key: &str) -> String {
+        self.with_unit(key, self.words(key))
+    }
+
+    /// Values of keys in one line: `rise = 2.99 m, friction = 0.6`.
+    pub fn text(&self, values: &Map<String, Json>) -> String {
+        let entries = values.iter().map(|(key, value)| format!("{} = {}", self.name(key), self.value(key, value)));
+        entries.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The short name of a key; the whole key if another one has the same name.
+    pub fn name(&self, key: &str) -> String {
+        self.told_apart(key, KeyMeaning::short_name, |_| key.into())
+    }
+
+    /// The value of a key with its unit; a text contains its unit already.
+    pub fn value(&self, key: &str, value: &Json) -> String {
+        let unit = self.unit(key).filter(|_| value.is_number()).map_or(String::new(), |unit| format!(" {unit}"));
+        format!("{}{unit}", crate::figures::format::format_value(value))
+    }
+
+    fn with_unit(&self, key: &str, words: String) -> String {
+        self.unit(key).map_or(words.clone(), |unit| format!("{words} [{unit}]"))
+    }
+
+    /// The short text of a key, or the long one if the short one belongs to another key too.
+    fn told_apart(&self, key: &str, short: fn(&KeyMeaning) -> String, long: impl Fn(&KeyMeaning) -> String) -> String {
+        if self.meanings(key).is_empty() {
+            return key.into();
+        }
+        let own = self.joined(key, short);
+        let shared = self.0.iter().any(|(other, _)| other != key && self.joined(other, short) == own);
+        if shared { self.joined(key, long) } else { own }
+    }
+}
+
+impl Study {
+    /// Units and words of the swept keys.
+    pub fn swept_keys(&self) -> SweptKeys {
+        SweptKeys::of_expansion(study_keys(), &self.expansion)
+    }
+}
+
+impl Sweep {
+    /// Units and words of the swept keys.
+    pub fn swept_keys(&self) -> SweptKeys {
+        SweptKeys::of_expansion(study_keys(), &self.expansion)
+    }
+}
