@@ -14,6 +14,7 @@ use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::Observer;
 use crate::solve::explain::explain;
 use crate::study::{Case, Study, SweptKeys, as_blocks};
+use crate::verify::repeat::differences;
 use crate::verify::{StoredCheck, misfits, solve_again};
 use crate::writers::comparison::comparison_table;
 use crate::writers::record::record;
@@ -175,8 +176,12 @@ impl LoadedStudy for Study {
         }
         // Read once more, entry by entry: as a tree of values all of them take more space than everything else here.
         let mut check = StoredCheck::new(self, &results, &again);
-        read_cases(stored.results()?, &mut |entry| check.entry(&entry))?;
-        let findings = check.findings()?;
+        let beside = read_cases(stored.results()?, &mut |entry| check.entry(&entry))?;
+        let mut findings = check.findings()?;
+        // Keys that no one reads.
+        let read = serde_json::to_value(&results.comparison).unwrap_or_default();
+        let foreign = beside.get("comparison").map(|stored| differences(stored, &read)).unwrap_or_default();
+        findings.extend(foreign.into_iter().map(|why| (0, format!("comparison: {why}"))));
         let (count, stalled) = (results.cases.len(), stalled(&results));
         let own = results.cases.iter().filter(|case| case.label.id < self.count()).count();
         // Stored results are drawn only if they are confirmed: then each number was solved again.

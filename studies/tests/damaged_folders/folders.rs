@@ -41,13 +41,7 @@ pub fn studies() -> Vec<(&'static str, String)> {
         ("limit", arch("limit", "", RIGID, ASSOCIATED, "[sweep]\n\"scene.thickness\" = { list = [0.28, 0.32] }\n")),
         (
             "own_flow",
-            arch(
-                "own_flow",
-                "",
-                RIGID,
-                "law = \"coulomb\"\nfriction = 0.4",
-                "[solver]\nsolver = \"limit_least\"\n",
-            ),
+            arch("own_flow", "", RIGID, "law = \"coulomb\"\nfriction = 0.4", "[solver]\nsolver = \"limit_least\"\n"),
         ),
         ("event", path("event", "solver = \"event_path\"")),
         ("newton", path("newton", "solver = \"newton_path\"")),
