@@ -11,6 +11,7 @@
 
 pub mod certificate;
 pub mod elastic;
+mod form;
 pub mod law;
 pub mod limit;
 pub mod linear;

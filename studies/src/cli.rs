@@ -146,9 +146,9 @@ enum Command {
         #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
         export: Option<String>,
     },
-    /// Check whether a law keeps what its card and its trait promise
+    /// Check that a law, solver or strategy keeps the promises of its card and its trait
     Conform {
-        /// Tags of laws of joints or materials; all where they are left out
+        /// Tags of laws, solvers or strategies; all laws if there are none
         tags: Vec<String>,
         /// Folder for studies that show what was found
         #[arg(long)]

@@ -230,7 +230,7 @@ fn words_completions_and_manual() {
 fn a_law_is_checked_and_a_new_one_is_written() {
     let output = voussoir(&["conform", "coulomb", "elastic"]);
     assert_eq!(code(&output), 0);
-    assert!(String::from_utf8_lossy(&output.stdout).contains("2 law(s) conform"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("2 plug-in(s) conform"));
     let output = voussoir(&["conform", "coulom"]);
     assert_eq!(code(&output), 2);
     assert!(String::from_utf8_lossy(&output.stderr).contains("did you mean \"coulomb\"?"));

@@ -3,6 +3,7 @@
 mod lower_proof;
 mod problem;
 mod solver;
+mod well_formed;
 
 pub use self::lower_proof::{BracketPoint, BracketWork, FIRST, LAST, LowerProof, LowerProofKind, ProductStep};
 pub use self::problem::{JointForce, LimitJoint, LimitProblem, Velocity};

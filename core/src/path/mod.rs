@@ -19,6 +19,7 @@ mod response_check;
 mod sliding;
 mod solver;
 mod state;
+mod well_formed;
 mod work;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};

@@ -6,19 +6,31 @@ use crate::conformance::{Options, Report, conform, conform_all};
 use std::path::Path;
 use voussoir_core::plugin::{PluginKind, cards_of};
 
-/// Checks laws of these tags, or all; failures become studies in a folder.
+/// Kinds of plug-ins that have checks.
+const KINDS: [PluginKind; 5] = [
+    PluginKind::InterfaceLaw,
+    PluginKind::BulkMaterial,
+    PluginKind::LimitSolver,
+    PluginKind::PathSolver,
+    PluginKind::Continuation,
+];
+
+/// Checks plug-ins of these tags, or all laws; failures of laws become studies in a folder.
 pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
-    let kinds = [PluginKind::InterfaceLaw, PluginKind::BulkMaterial];
-    let cards: Vec<_> = kinds.into_iter().flat_map(cards_of).collect();
+    let cards: Vec<_> = KINDS.into_iter().flat_map(cards_of).collect();
     let names: Vec<&str> = cards.iter().map(|card| card.tag).collect();
     let mut unknown = FINE;
     for tag in tags.iter().filter(|tag| !names.contains(&tag.as_str())) {
-        complain(format_args!("no law of joints or materials is called \"{tag}\"; {}", suggest(tag, &names, "laws")));
+        let help = suggest(tag, &names, "plug-ins with checks");
+        complain(format_args!("no law, solver or strategy is called \"{tag}\"; {help}"));
         unknown = WRONG_INPUT;
     }
     if unknown != FINE {
         return unknown;
     }
+    // Panics of a plug-in are findings; dishonest solvers panic too.
+    let said = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
     let options = Options::default();
     let reports = match tags {
         [] => conform_all(&options),
@@ -27,6 +39,7 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
             wanted.map(|card| conform(card, &options)).collect()
         }
     };
+    std::panic::set_hook(said);
     let mut code = FINE;
     for report in &reports {
         say(report.to_string().trim_end());
@@ -38,8 +51,10 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
     let failed: Vec<&str> =
         reports.iter().filter(|report| !report.passed()).map(|report| report.tag.as_str()).collect();
     match failed.as_slice() {
-        [] => say(format!("{} law(s) conform", reports.len())),
-        failed => say(format!("{} of {} law(s) do not conform: {}", failed.len(), reports.len(), failed.join(", "))),
+        [] => say(format!("{} plug-in(s) conform", reports.len())),
+        failed => {
+            say(format!("{} of {} plug-in(s) do not conform: {}", failed.len(), reports.len(), failed.join(", ")))
+        }
     }
     code
 }

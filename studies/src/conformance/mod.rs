@@ -18,6 +18,7 @@ mod facets;
 mod findings;
 mod joint;
 mod known_path;
+pub mod lies;
 mod material;
 mod options;
 mod point;
@@ -36,17 +37,18 @@ use findings::Recorder;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir_core::plugin::{Card, PluginKind, cards_of};
 
-/// Checks one law, of joints or materials, by its card. Other plug-ins have no checks but those of the card itself.
+/// Checks one law, solver or continuation strategy by its card. Other plug-ins have no checks.
 pub fn conform(card: &Card, options: &Options) -> Report {
     let mut recorder = Recorder::new(card);
     // A law that panics fails; the others go on.
-    let checks: [fn(&mut Recorder, &Card, &Options); 4] =
-        [samples::check, joint::check, material::check, known_path::check];
+    let solver = |recorder: &mut Recorder, card: &Card, _: &Options| lies::check(recorder, card);
+    let checks: [fn(&mut Recorder, &Card, &Options); 5] =
+        [samples::check, joint::check, material::check, known_path::check, solver];
     for check in checks {
         let ended = catch_unwind(AssertUnwindSafe(|| check(&mut recorder, card, options)));
         if let Err(panic) = ended {
             let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
-            recorder.fail("panic", format!("the law panics: {}", said.unwrap_or("it says nothing")));
+            recorder.fail("panic", format!("a panic: {}", said.unwrap_or("it says nothing")));
         }
     }
     recorder.report()

@@ -9,7 +9,7 @@ use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
 use crate::study::SelectedSolver;
 use voussoir_core::certificate::Hinge;
-use voussoir_core::limit::{Counters, LimitProblem, LimitQuestion, Status};
+use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
 
 /// What is asked of a stage: can it stand at its start, and how far does it go from there?
@@ -119,6 +119,20 @@ fn settled_hinges(
     }
 }
 
+/// The result of an answer with its certificate; a stalled one if the answer is malformed.
+fn read(
+    input: &CaseInput,
+    stage: &Stage,
+    (problem, loads): (&LimitProblem, &StageLoads),
+    asked: LimitQuestion,
+    solved: LimitAnswer,
+) -> CaseResult {
+    match solved.check_form(problem) {
+        Ok(()) => certified(input, stage, (problem, loads), asked, solved),
+        Err(why) => CaseResult::stalled(why),
+    }
+}
+
 /// The first certified answer of the solvers to try; without one the stage is stalled.
 fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &StageLoads) -> CaseResult {
     let stage = &input.stages[index];
@@ -134,13 +148,13 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
         }
         let asked = ask(stage, problem);
         let solved = solver.solve(problem, asked);
-        let mut result = certified(input, stage, (problem, loads), asked, solved);
+        let mut result = read(input, stage, (problem, loads), asked, solved);
         if !result.certificate.passed {
             // Numbers of very unlike sizes are what solvers fail on; the certificate reads the laws as they are.
             let within = problem.within_reach();
             let bounded = within.as_ref().unwrap_or(problem).with_bounded_shear();
             let solve =
-                |easier: LimitProblem| certified(input, stage, (problem, loads), asked, solver.solve(&easier, asked));
+                |easier: LimitProblem| read(input, stage, (problem, loads), asked, solver.solve(&easier, asked));
             let easier = [within, bounded].into_iter().flatten();
             result = easier.map(solve).find(|again| again.certificate.passed).unwrap_or(result);
         }

@@ -21,10 +21,16 @@ struct Watched<'a> {
     /// The last state of each stage, by index.
     ends: Vec<Option<PathState>>,
     recorder: Recorder<'a>,
+    /// The first state that cannot be read, in words.
+    malformed: Result<(), String>,
 }
 
 impl PathObserver for Watched<'_> {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
+        self.malformed = std::mem::replace(&mut self.malformed, Ok(())).and_then(|()| state.check_form(problem));
+        if self.malformed.is_err() {
+            return false;
+        }
         self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
         self.recorder.state(problem, state);
         self.ended |= !self.observer.state(problem, state);
@@ -123,10 +129,14 @@ fn traced(
         Err(why) => return (failed(tag, why), false),
     };
     let recorder = Recorder::new(input);
-    let mut watched = Watched { checker, observer, ended: false, ends: vec![None; input.stages.len()], recorder };
+    let mut watched =
+        Watched { checker, observer, ended: false, ends: vec![None; input.stages.len()], recorder, malformed: Ok(()) };
     let solved = solver.trace(problem, input.settings, &mut watched);
     let energy = solver.energy_tolerance();
-    let Watched { checker, ended, ends, recorder, .. } = watched;
+    let Watched { checker, ended, ends, recorder, malformed, .. } = watched;
+    if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
+        return (failed(tag, format!("{tag}: {why}")), ended);
+    }
     (path_result(input, tag, problem, solved, Seen { checker, ends, energy, states: recorder.chosen() }), ended)
 }
 

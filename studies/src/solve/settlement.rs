@@ -110,14 +110,15 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
     let supports = support_motions(assembly, input.stages, index)?;
     let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + asked.factor * b[i]);
     let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
-    let (field, motion, unique, flow) =
-        match asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports)) {
-            SettlementAnswer::Follows { field, motion, unique, flow } => (field, motion, unique, flow),
-            SettlementAnswer::Blocked(ray) => {
-                return blocked(input, asked, &contact_forces(problem, &ray), &supports, result).map(|()| Vec::new());
-            }
-            SettlementAnswer::Refused(why) => return Err(why),
-        };
+    let answer = asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports));
+    answer.check_form(problem)?;
+    let (field, motion, unique, flow) = match answer {
+        SettlementAnswer::Follows { field, motion, unique, flow } => (field, motion, unique, flow),
+        SettlementAnswer::Blocked(ray) => {
+            return blocked(input, asked, &contact_forces(problem, &ray), &supports, result).map(|()| Vec::new());
+        }
+        SettlementAnswer::Refused(why) => return Err(why),
+    };
     let field = contact_forces(problem, &field);
     let free = body_velocities(assembly, problem, &motion);
     let motion: Vec<CentroidVelocity> = supports.iter().zip(free).map(|(held, free)| held.unwrap_or(free)).collect();

@@ -1,0 +1,319 @@
+//! Small scenes whose answers are known.
+
+use super::truth::Truth;
+use crate::study::{Case, StudyError, load};
+use voussoir_core::limit::Status;
+
+/// A scene and its known answer.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownScene {
+    /// Its name.
+    pub name: &'static str,
+    /// Where the answer comes from.
+    pub source: &'static str,
+    /// Scene, materials and joints.
+    scene: &'static str,
+    /// Stages.
+    stages: &'static str,
+    /// Kinematics and stop.
+    solver: &'static str,
+    /// The answer.
+    pub truth: Truth,
+    /// The solver of ours whose curve, events and stability a path is compared with.
+    pub reference: Option<&'static str>,
+}
+
+impl KnownScene {
+    /// The study with a solver: the keys of `[solver]` as TOML.
+    pub fn study(&self, solver: &str) -> String {
+        format!(
+            "name = \"{}\"\n[scene]\nmaterial = \"stone\"\njoint = \"dry\"\n{}\n{}\n[solver]\n{solver}\n{}\n\
+             [output]\nfigures = false\ncurve = true\n",
+            self.name, self.scene, self.stages, self.solver
+        )
+    }
+
+    /// The case with a solver; an error if the solver does not accept the scene.
+    ///
+    /// # Errors
+    /// The mistakes of the study.
+    pub fn case(&self, solver: &str) -> Result<Case, StudyError> {
+        Ok(load(&self.study(solver), "known_scene.toml", &[])?.cases.remove(0))
+    }
+}
+
+/// A block 1 m long and 2 m high on the ground: it weighs 20 kN at g = 10 m/s².
+macro_rules! block {
+    ($stone:literal, $dry:literal) => {
+        concat!(
+            "scene = \"blocks\"\nwidth = 1.0\nblocks = [\n",
+            "{ name = \"ground\", vertices = [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]], fixed = true },\n",
+            "{ name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]] },\n]\n",
+            "[materials.stone]\ndensity = 1000.0\n",
+            $stone,
+            "\n[joints.dry]\n",
+            $dry
+        )
+    };
+}
+
+/// Two such blocks of half the height on each other, pushed below the middle of the upper one.
+macro_rules! stack {
+    ($dry:literal) => {
+        concat!(
+            "scene = \"blocks\"\nwidth = 1.0\nblocks = [\n",
+            "{ name = \"ground\", vertices = [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]], fixed = true },\n",
+            "{ name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] },\n",
+            "{ name = \"b\", vertices = [[0.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]] },\n]\n",
+            "[materials.stone]\ndensity = 1000.0\nlaw = \"rigid\"\n[joints.dry]\n",
+            $dry
+        )
+    };
+}
+
+/// Two such blocks beside each other, each pushed: any one of them may tip.
+macro_rules! pair {
+    ($dry:literal) => {
+        concat!(
+            "scene = \"blocks\"\nwidth = 1.0\nblocks = [\n",
+            "{ name = \"ground\", vertices = [[-1.0, -1.0], [6.0, -1.0], [6.0, 0.0], [-1.0, 0.0]], fixed = true },\n",
+            "{ name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]] },\n",
+            "{ name = \"b\", vertices = [[3.0, 0.0], [4.0, 0.0], [4.0, 2.0], [3.0, 2.0]] },\n]\n",
+            "[materials.stone]\ndensity = 1000.0\nlaw = \"rigid\"\n[joints.dry]\n",
+            $dry
+        )
+    };
+}
+
+macro_rules! live {
+    ($end:literal, $load:literal) => {
+        concat!(
+            "[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"live\"\n",
+            $end,
+            "\nloads = [{ kind = \"point\", ",
+            $load,
+            " }]"
+        )
+    };
+}
+
+const TIPS: Truth = Truth { mechanisms: &["rocking"], ..Truth::collapse(5.0) };
+const TIPS_ALONG_A_PATH: Truth =
+    Truth { endings: &[Status::Collapse, Status::LimitPoint], limit_points: Some(&[5.0]), ..TIPS };
+const SLIDES: Truth = Truth { mechanisms: &["sliding"], ..Truth::collapse(4.0) };
+const CARRIES_5: Truth = Truth { endings: &[Status::Stands], ..Truth::collapse(5.0) };
+const LEANS: Truth = Truth { endings: &[Status::NoEquilibrium], ..Truth::collapse(14.0) };
+const RING: &str = "scene = \"arch\"\nprofile = { shape = \"segmental\", span = 9.42, rise = 2.99 }\nthickness = 0.6\nwidth = 5.81\n\
+     voussoirs = 15\nends = \"bonded\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2200.0\n[joints.dry]\n\
+     law = \"coulomb_associated\"\nfriction = 0.6";
+const RING_LIVE: &str = "[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
+     loads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }]";
+
+const PUSHED_PAIR: &str = "[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [\
+             { kind = \"point\", block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0] }, \
+             { kind = \"point\", block = \"b\", point = [3.0, 2.0], force = [1000.0, 0.0] }]";
+
+const HAND: &str = "by hand";
+
+/// Scenes of limit analysis.
+pub const LIMIT_SCENES: &[KnownScene] = &[
+    KnownScene {
+        name: "block_tips",
+        source: HAND,
+        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "",
+        truth: TIPS,
+        reference: None,
+    },
+    KnownScene {
+        name: "block_slides",
+        source: HAND,
+        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.2"),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 1.0], force = [1000.0, 0.0]"),
+        solver: "",
+        truth: SLIDES,
+        reference: None,
+    },
+    KnownScene {
+        name: "block_falls_short_of_its_target",
+        source: HAND,
+        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
+        stages: live!("factor = 8.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "",
+        truth: TIPS,
+        reference: None,
+    },
+    KnownScene {
+        name: "block_stands_at_its_target",
+        source: HAND,
+        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
+        stages: live!("factor = 2.5", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "",
+        truth: CARRIES_5,
+        reference: None,
+    },
+    KnownScene {
+        name: "stack_tips",
+        source: HAND,
+        scene: stack!("law = \"coulomb_associated\"\nfriction = 0.8"),
+        stages: live!("until = \"collapse\"", "block = \"b\", point = [0.0, 1.5], force = [1000.0, 0.0]"),
+        solver: "",
+        truth: Truth { mechanisms: &["rocking"], ..Truth::collapse(20.0 / 3.0) },
+        reference: None,
+    },
+    KnownScene {
+        name: "two_blocks_tip",
+        source: HAND,
+        scene: pair!("law = \"coulomb_associated\"\nfriction = 0.6"),
+        stages: PUSHED_PAIR,
+        solver: "",
+        truth: Truth { mechanisms: &[], unique: Some(false), ..TIPS },
+        reference: None,
+    },
+    KnownScene {
+        name: "ring",
+        source: "two independent programs: 698.0226652123788",
+        scene: RING,
+        stages: RING_LIVE,
+        solver: "",
+        truth: Truth { mechanisms: &["four_hinge"], ..Truth::collapse(698.022_665_212_378_8) },
+        reference: None,
+    },
+    KnownScene {
+        name: "block_is_pressed",
+        source: HAND,
+        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, -1000.0]"),
+        solver: "",
+        truth: Truth { endings: &[Status::Unbounded], ..Truth::collapse(f64::INFINITY) },
+        reference: None,
+    },
+    KnownScene {
+        name: "block_slides_by_its_weight",
+        source: HAND,
+        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
+        stages: "[[stages]]\nname = \"dead\"\ngravity = [8.0, -10.0]\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
+                 loads = [{ kind = \"point\", block = \"a\", point = [1.0, 1.0], force = [-2000.0, 0.0] }]",
+        solver: "",
+        truth: Truth { feasible: Some([3.0, 13.0]), ..LEANS },
+        reference: None,
+    },
+    KnownScene {
+        name: "block_is_lifted_between_walls",
+        source: "by hand: the weight is lifted; walls press as much as they like",
+        scene: "scene = \"blocks\"\nwidth = 1.0\nblocks = [\n\
+             { name = \"ground\", vertices = [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]], fixed = true },\n\
+             { name = \"left\", vertices = [[-1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]], fixed = true },\n\
+             { name = \"right\", vertices = [[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]], fixed = true },\n\
+             { name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] },\n]\n\
+             [materials.stone]\nlaw = \"rigid\"\ndensity = 1000.0\n[joints.dry]\nlaw = \"coulomb\"\nfriction = 0.5",
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.5, 1.0], force = [0.0, 1000.0]"),
+        solver: "",
+        truth: Truth {
+            endings: &[Status::Collapse, Status::Unbounded],
+            collapse: [10.0, f64::INFINITY],
+            associated: f64::INFINITY,
+            mechanisms: &["sliding"],
+            ..Truth::collapse(10.0)
+        },
+        reference: None,
+    },
+];
+
+/// Scenes of paths.
+pub const PATH_SCENES: &[KnownScene] = &[
+    KnownScene {
+        name: "ring",
+        source: "two independent programs: 698.0226652123788",
+        scene: "scene = \"arch\"\nprofile = { shape = \"segmental\", span = 9.42, rise = 2.99 }\nthickness = 0.6\n\
+             width = 5.81\nvoussoirs = 15\nends = \"bonded\"\nmesh = { elements = [1, 1], order = 2 }\n[materials.stone]\n\
+             law = \"rigid\"\ndensity = 2200.0\n[joints.dry]\nlaw = \"coulomb_associated\"\nfriction = 0.6\n\
+             normal_stiffness = 1e10\nshear_stiffness = 4e9",
+        stages: RING_LIVE,
+        solver: "kinematics = \"small\"",
+        truth: Truth {
+            endings: &[Status::Collapse, Status::LimitPoint],
+            mechanisms: &["four_hinge"],
+            limit_points: Some(&[698.022_665_212_378_8]),
+            ..Truth::collapse(698.022_665_212_378_8)
+        },
+        reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "block_tips",
+        source: HAND,
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
+        ),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "kinematics = \"small\"",
+        truth: TIPS_ALONG_A_PATH,
+        reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "block_slides",
+        source: HAND,
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"coulomb\"\nfriction = 0.2\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
+        ),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 1.0], force = [1000.0, 0.0]"),
+        solver: "kinematics = \"small\"",
+        truth: Truth { endings: &[Status::Collapse, Status::LimitPoint], limit_points: Some(&[4.0]), ..SLIDES },
+        reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "block_falls_short_of_its_target",
+        source: HAND,
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
+        ),
+        stages: live!("factor = 8.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "kinematics = \"small\"",
+        truth: TIPS_ALONG_A_PATH,
+        reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "block_stands_at_its_target",
+        source: HAND,
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
+        ),
+        stages: live!("factor = 4.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "kinematics = \"small\"",
+        truth: Truth { limit_points: Some(&[]), ..CARRIES_5 },
+        reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "two_blocks_tip",
+        source: HAND,
+        scene: pair!("law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"),
+        stages: PUSHED_PAIR,
+        solver: "kinematics = \"small\"",
+        truth: Truth { mechanisms: &[], unique: Some(false), ..TIPS_ALONG_A_PATH },
+        reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "two_blocks_snap_through",
+        source: "least energy of two blocks on springs, by an independent program: 22.594774717",
+        scene: "scene = \"arch\"\nprofile = { shape = \"segmental\", span = 4.0, rise = 0.1 }\nthickness = 0.4\nwidth = 1.0\n\
+             voussoirs = 2\nends = \"jointed\"\nmesh = { elements = [1, 1] }\n[materials.stone]\nlaw = \"rigid\"\n\
+             density = 2000.0\n[joints.dry]\nlaw = \"unilateral\"\ntangential = \"stuck\"\nnormal_stiffness = 1e8\n\
+             shear_stiffness = 5e7",
+        stages: "[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [\
+             { kind = \"point\", span_fraction = 0.4, force = [0.0, -1000.0] }, \
+             { kind = \"point\", span_fraction = 0.6, force = [0.0, -1000.0] }]",
+        solver: "kinematics = \"finite\"\nstop = { displacement = 0.1 }",
+        truth: Truth {
+            endings: &[Status::Collapse, Status::LimitPoint],
+            limit_points: Some(&[22.594_774_717]),
+            associated: f64::INFINITY,
+            ..Truth::collapse(22.594_774_717)
+        },
+        reference: Some("newton_path"),
+    },
+];

