@@ -1,5 +1,5 @@
-//! A solver that never returns: no code in the same process can stop it, so `conform` gives up after a time and says so; and a
-//! solver that shows the same state again and again, which the observer of its path stops.
+//! Solvers that do not end. One never returns: no code in the same process can stop it, so `conform` gives up after a time.
+//! The other one shows the same state 20,000 times.
 
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -16,7 +16,7 @@ fn scene(kind: PluginKind, name: &str) -> &'static KnownScene {
     scenes(kind).iter().find(|scene| scene.name == name).expect("a scene")
 }
 
-/// Changes that make a result claim what it does not prove.
+/// Changes that make a result claim more than it proves.
 fn forgeries(entry: &Value, honest: &Value) -> Vec<(&'static str, Value)> {
     let certified = |entry: &Value| {
         let mut entry = entry.clone();

@@ -1,4 +1,4 @@
-//! Dishonest plug-ins as somebody else would register them: each names the honest plug-in `of` that it is made from, and the
+//! Dishonest plug-ins, registered in the way of any plug-in outside the project: each names the honest plug-in `of` that it is made from, and the
 //! `lie` that it tells.
 
 use serde::{Deserialize, Serialize};
@@ -15,15 +15,15 @@ use voussoir::core::path::{
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
 use voussoir::core::{inventory, typetag};
 
-/// Lies that were told, by name.
+/// The number of lies so far, by name.
 static TOLD: LazyLock<Mutex<BTreeMap<String, usize>>> = LazyLock::new(Mutex::default);
 
-/// The number of times that a lie was told.
+/// The number of times that a plug-in has told this lie.
 pub fn told(kind: PluginKind, lie: &str) -> usize {
     TOLD.lock().map_or(0, |told| told.get(&format!("{kind:?} {lie}")).copied().unwrap_or(0))
 }
 
-/// A lie is told; the guard counts also where it panics.
+/// Counts a lie when it is dropped, also in a panic.
 struct Count(PluginKind, String, Arc<AtomicUsize>);
 
 impl Drop for Count {

@@ -22,7 +22,7 @@ pub struct DishonestLimit {
     /// The lie.
     #[serde(skip)]
     pub lie: Option<&'static LimitLie>,
-    /// The number of times that it was told.
+    /// The number of times that the solver has lied.
     #[serde(skip)]
     pub told: Arc<AtomicUsize>,
 }

@@ -21,7 +21,7 @@ pub struct DishonestPath {
     /// The lie.
     #[serde(skip)]
     pub lie: Option<&'static PathLie>,
-    /// The number of times that it was told.
+    /// The number of times that the solver has lied.
     #[serde(skip)]
     pub told: Arc<AtomicUsize>,
 }

@@ -98,7 +98,7 @@ impl Story {
         self.answer.limit_points.clear();
     }
 
-    /// Changes all states, those of the answer included.
+    /// Changes all states, also in the answer.
     pub fn change(&mut self, change: impl Fn(&mut PathState)) {
         self.states.iter_mut().for_each(&change);
         change(&mut self.answer.state);

@@ -9,13 +9,13 @@ use voussoir_core::limit::Status;
 pub struct KnownScene {
     /// Its name.
     pub name: &'static str,
-    /// Where the answer comes from.
+    /// Source of the answer.
     pub source: &'static str,
-    /// Scene, materials and joints.
+    /// TOML of scene, materials and joints.
     scene: &'static str,
-    /// Stages.
+    /// TOML of the stages.
     stages: &'static str,
-    /// Kinematics and stop.
+    /// Further keys of `[solver]`.
     solver: &'static str,
     /// The answer.
     pub truth: Truth,
@@ -296,6 +296,24 @@ pub const PATH_SCENES: &[KnownScene] = &[
         solver: "kinematics = \"small\"",
         truth: Truth { mechanisms: &[], unique: Some(false), ..TIPS_ALONG_A_PATH },
         reference: Some("event_path"),
+    },
+    KnownScene {
+        name: "soft_block_tips",
+        source: "by hand, to first order: its middle lifts at a lean of 24 mm, the corner carries W = K × 12 mm, K = 1e7/6 N/m",
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e7\nshear_stiffness = 1e9"
+        ),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        solver: "kinematics = \"finite\"\nstop = { displacement = 0.05 }",
+        truth: Truth {
+            endings: &[Status::Collapse, Status::LimitPoint],
+            limit_points: Some(&[4.703_5]),
+            associated: 5.0,
+            tolerance: 1e-3,
+            ..Truth::collapse(4.703_5)
+        },
+        reference: Some("newton_path"),
     },
     KnownScene {
         name: "two_blocks_snap_through",

@@ -1,4 +1,4 @@
-//! Dishonest continuation strategies: each changes what an honest one gives.
+//! Dishonest continuation strategies: each changes an honest one.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub struct StrategyLie {
     pub first_step: fn(f64) -> f64,
     /// Changes the greatest length of a step.
     pub largest_step: fn(f64) -> f64,
-    /// What it says of limit points.
+    /// Changes the claim that limit points are passed.
     pub passes_limit_points: fn(bool) -> bool,
     /// Monitors that it asks for.
     pub monitors: fn(Vec<Monitor>) -> Vec<Monitor>,
@@ -121,7 +121,7 @@ pub const STRATEGY_LIES: &[StrategyLie] = &[
 /// A strategy that tells one lie.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct DishonestStrategy {
-    /// The honest strategy; without one it is a strategy that stays where it is.
+    /// The honest strategy; without one the constraint is always zero.
     #[serde(skip)]
     pub honest: Option<Arc<dyn Continuation>>,
     /// The lie.

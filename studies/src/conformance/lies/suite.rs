@@ -15,17 +15,17 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 use voussoir_core::plugin::PluginKind;
 
-/// Stack of the thread in which a case is solved: as much as that of a program's first thread.
+/// Stack of the thread in which a case is solved: as large as the stack of a program's first thread.
 const STACK: usize = 8 << 20;
 
 /// A lie of any kind.
 #[derive(Debug, Clone, Copy)]
 pub enum Lie {
-    /// Of a limit solver.
+    /// A lie of a limit solver.
     Limit(&'static LimitLie),
-    /// Of a path solver.
+    /// A lie of a path solver.
     Path(&'static PathLie),
-    /// Of a continuation strategy.
+    /// A lie of a continuation strategy.
     Strategy(&'static StrategyLie),
 }
 
@@ -93,7 +93,7 @@ pub fn solver_keys(kind: PluginKind, tag: &str) -> String {
     }
 }
 
-/// The answer to a case; `None` if there is none within the time. A solver cannot be stopped from outside: its thread goes
+/// The answer to a case; `None` if the time is over. A solver cannot be stopped from outside: its thread goes
 /// on until the program ends.
 pub fn answered_within(limit: Duration, case: Case) -> Option<CaseResult> {
     let (sender, receiver) = channel();

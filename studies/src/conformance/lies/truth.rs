@@ -18,7 +18,7 @@ pub struct Truth {
     pub collapse: [f64; 2],
     /// The associated load factor.
     pub associated: f64,
-    /// All factors with an admissible field, if zero is none of them.
+    /// All factors with an admissible field, if they leave out zero.
     pub feasible: Option<[f64; 2]>,
     /// Kinds of mechanism that are true; none if any is.
     pub mechanisms: &'static [&'static str],
@@ -109,7 +109,7 @@ impl Truth {
             }
         };
         if let Some([lower, upper]) = result.bounds {
-            // The lower bound of a non-associated answer says that nothing collapses below it.
+            // The lower bound of a non-associated answer is a bound of the least factor.
             check("lower bound", lower, self.below(lower, least), &least);
             check("upper bound", upper, self.below(least, upper), &least);
         }
@@ -171,7 +171,7 @@ fn curve(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
         wrong.push(format!("the curve passes through {point:?}"));
     }
     let above = known.iter().map(|known| known[1]).fold(0.0, f64::max) + CURVE_TOLERANCE * scale[1];
-    if let Some(point) = curve.iter().find(|point| !(point[1] <= above)) {
+    if let Some(point) = curve.iter().find(|point| point[1].is_nan() || point[1] > above) {
         wrong.push(format!("the curve passes through {point:?}, above the greatest factor"));
     }
 }
@@ -201,7 +201,8 @@ fn not_finite(result: &CaseResult, wrong: &mut Vec<String>) {
     check("curve", result.path.curve.iter().flatten().flatten().all(|value| value.is_finite()));
 }
 
-/// Every event happens on the known path too, at that joint. Steps see points stick that slide on between events.
+/// Every event happens on the known path too, at that joint. A path by steps may report that a point sticks which slides again
+/// within the step.
 fn events(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
     let known = &reference.path.events;
     if known.is_empty() {
