@@ -302,7 +302,8 @@ pub const PATH_SCENES: &[KnownScene] = &[
         source: "by hand, to first order: its middle lifts at a lean of 24 mm, the corner carries W = K × 12 mm, K = 1e7/6 N/m",
         scene: block!(
             "law = \"rigid\"",
-            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e7\nshear_stiffness = 1e9"
+            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e7\nshear_stiffness = 1e9\n\
+             [scene.mesh]\nelements = [1, 1]\norder = 1"
         ),
         stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
         solver: "kinematics = \"finite\"\nstop = { displacement = 0.05 }",
