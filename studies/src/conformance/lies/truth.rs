@@ -6,7 +6,7 @@ use voussoir_core::limit::Status;
 use voussoir_core::path::ContactEvent;
 
 /// Share of the range of a curve by which one of its points may lie off the known curve.
-const CURVE_TOLERANCE: f64 = 5e-3;
+const CURVE_TOLERANCE: f64 = 3e-2;
 
 /// The known truth of a scene: by hand, or by a program that shares nothing with this one.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +59,7 @@ impl Truth {
         self.limit_points(result, &mut wrong);
         not_finite(result, &mut wrong);
         if let Some(reference) = reference.filter(|_| result.certificate.passed) {
-            curve(result, reference, &mut wrong);
+            curve(result, reference, self.collapse[1], &mut wrong);
             events(result, reference, &mut wrong);
             stability(result, reference, &mut wrong);
         }
@@ -152,7 +152,7 @@ impl Truth {
 }
 
 /// Every point of a curve lies on the known curve.
-fn curve(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
+fn curve(result: &CaseResult, reference: &CaseResult, greatest: f64, wrong: &mut Vec<String>) {
     let (Some(curve), Some(known)) = (&result.path.curve, &reference.path.curve) else { return };
     let range = |axis: usize| {
         let values = known.iter().map(|point| point[axis]);
@@ -170,7 +170,7 @@ fn curve(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
     if let Some(point) = curve.iter().find(|point| known.len() > 1 && off(point)) {
         wrong.push(format!("the curve passes through {point:?}"));
     }
-    let above = known.iter().map(|known| known[1]).fold(0.0, f64::max) + CURVE_TOLERANCE * scale[1];
+    let above = greatest + CURVE_TOLERANCE * scale[1];
     if let Some(point) = curve.iter().find(|point| point[1].is_nan() || point[1] > above) {
         wrong.push(format!("the curve passes through {point:?}, above the greatest factor"));
     }
