@@ -43,7 +43,7 @@ pub fn merge(dirs: &[PathBuf], options: &MergeOptions) -> u8 {
 }
 
 fn wrong(text: impl std::fmt::Display) -> u8 {
-    eprintln!("voussoir merge: {text}; nothing was written");
+    complain(format_args!("voussoir merge: {text}; nothing was written"));
     WRONG_INPUT
 }
 

@@ -51,6 +51,10 @@ pub fn own_folder() -> &'static Path {
     &FOLDER
 }
 
+fn last_panic() -> Option<String> {
+    PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
+}
+
 /// Works on the task of the parent; returns at once if there is no parent.
 pub fn work() {
     let Ok(asked) = std::env::var(ASKED) else { return };
@@ -68,9 +72,13 @@ pub fn work() {
         println!("\n{MARK}seed {seed}");
         let attempt = || (target.attempt)(&(target.input)(seed));
         let found = match std::panic::catch_unwind(attempt) {
-            Ok(Ok(())) => continue,
+            // The program catches panics of solvers; they are findings here.
+            Ok(Ok(())) => match last_panic() {
+                Some(panic) => format!("caught {panic}"),
+                None => continue,
+            },
             Ok(Err(why)) => why,
-            Err(_) => PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take().unwrap_or_default(),
+            Err(_) => last_panic().unwrap_or_default(),
         };
         println!("\n{MARK}found {}", found.replace('\n', " | "));
     }
