@@ -272,16 +272,20 @@ impl New {
 }
 
 /// Does what the arguments of the process ask for; 0 all cases answered and certified, 1 some case not,
-/// 2 wrong input, 3 cannot read or write.
+/// 2 wrong input, 3 cannot read or write, or an error of the program itself.
 pub fn main() -> ExitCode {
     #[cfg(feature = "external")]
     if let Some(code) = behaviour_for_another() {
         return code;
     }
-    match main_from(std::env::args_os().skip(1)) {
-        Ok(code) => ExitCode::from(code),
+    match std::panic::catch_unwind(|| main_from(std::env::args_os().skip(1))) {
+        Err(_) => {
+            commands::complain("voussoir: this is an error of the program, not of its input; please report it");
+            ExitCode::from(commands::ended(commands::NO_ACCESS))
+        }
+        Ok(Ok(code)) => ExitCode::from(code),
         // Asked for help or version, or not understood: said, and ended as clap does.
-        Err(said) => {
+        Ok(Err(said)) => {
             let code = u8::try_from(said.exit_code()).unwrap_or(commands::WRONG_INPUT);
             ExitCode::from(commands::printed(said.print(), code))
         }
