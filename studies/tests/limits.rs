@@ -171,6 +171,7 @@ fn sizes_have_limits() {
         "scene.voussoirs=1000000000",
         "scene.mesh.elements=[1000000, 1000000]",
         "scene.mesh.elements=[5, 1000]",
+        "scene.mesh.elements=[1, 1000]",
         "scene.profile={ shape = \"segmental\", span = 1e300, rise = 1e-300 }",
         "sweep.\"scene.thickness\".count=1000000000000",
         "sweep.\"scene.thickness\"={ from = 0.1, to = 1e300, step = 1e-300 }",

@@ -56,7 +56,7 @@ impl From<Mesh> for MeshDensity {
 const MAX_ELEMENTS: usize = 1000;
 const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
 /// Greatest number of entries of the dense matrix that condenses a block.
-const MAX_CONDENSED_NUMBERS: f64 = 1.25e8;
+const MAX_CONDENSED_NUMBERS: f64 = 2.5e7;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
 const COUNT: Shape = Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 };
 const GRADING_NUMBER: Shape = Shape::Number(Quantity::Ratio, GRADING);
