@@ -48,6 +48,7 @@ voussoir_core::inventory::submit! {
         ],
         sources: &["Gilbert 2007, ARCH'07 (backing beside the ring)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("backing.md"),
         ..Card::BLANK
     }

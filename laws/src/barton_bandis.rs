@@ -159,6 +159,7 @@ voussoir_core::inventory::submit! {
             "Bandis, Lumsden & Barton 1983, Int. J. Rock Mech. Min. Sci. 20 (hyperbolic closure)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("barton_bandis.md"),
         ..Card::BLANK
     }

@@ -258,6 +258,7 @@ voussoir_core::inventory::submit! {
             "Alfano & Sacco 2006, Int. J. Numer. Meth. Engng 68 (friction on the damaged share)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("cohesive.md"),
         check: |value| check_as::<Cohesive>(value, Cohesive::validate),
         ..Card::BLANK

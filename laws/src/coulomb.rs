@@ -68,6 +68,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["Coulomb 1776", "Drucker 1954, J. Appl. Mech. 21"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("coulomb.md"),
         check: |value| check_as::<Coulomb>(value, |law| {
             validate_friction(law.friction, law.friction_angle, Some(law.dilatancy_angle))

@@ -58,6 +58,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Drucker 1954, J. Appl. Mech. 21"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("coulomb_associated.md"),
         check: |value| check_as::<CoulombAssociated>(value, |law| {
             validate_friction(law.friction, law.friction_angle, None)

@@ -90,6 +90,7 @@ voussoir_core::inventory::submit! {
             "Zmitrowicz 1981, Int. J. Solids Struct. 17 (friction that depends on the sense of slip)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("coulomb_directional.md"),
         check: |value| check_as::<CoulombDirectional>(value, CoulombDirectional::validate),
         ..Card::BLANK

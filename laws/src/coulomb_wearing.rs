@@ -211,6 +211,7 @@ voussoir_core::inventory::submit! {
             "Plesha 1987, Int. J. Numer. Anal. Meth. Geomech. 11 (asperities that degrade exponentially)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("coulomb_wearing.md"),
         check: |value| check_as::<CoulombWearing>(value, |law| validate_friction(law.friction, law.friction_angle, None)),
         ..Card::BLANK

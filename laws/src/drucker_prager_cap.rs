@@ -321,6 +321,7 @@ voussoir_core::inventory::submit! {
             "Moré & Sorensen 1983, SIAM J. Sci. Stat. Comput. 4 (rational form of the scalar equation)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("drucker_prager_cap.md"),
         check: |value| check_as::<DruckerPragerCap>(value, DruckerPragerCap::validate),
         ..Card::BLANK

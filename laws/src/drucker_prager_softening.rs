@@ -249,6 +249,7 @@ voussoir_core::inventory::submit! {
             "Bažant & Oh 1983, Mater. Struct. 16 (fracture energy over the width of the band)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("drucker_prager_softening.md"),
         check: |value| check_as::<DruckerPragerSoftening>(value, DruckerPragerSoftening::validate),
         ..Card::BLANK

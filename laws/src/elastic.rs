@@ -69,6 +69,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them: limit analysis reads such blocks as rigid.\n",
         ..Card::BLANK
     }

@@ -111,6 +111,7 @@ voussoir_core::inventory::submit! {
             "Gilbert 2007, ARCH'07 (fill elements beside the ring)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("fill_pressure.md"),
         ..Card::BLANK
     }

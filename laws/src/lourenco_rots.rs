@@ -314,6 +314,7 @@ voussoir_core::inventory::submit! {
             "Chandrupatla 1997, Adv. Eng. Softw. 28(3) (bracketed roots)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("lourenco_rots.md"),
         check: |value| check_as::<LourencoRots>(value, LourencoRots::validate),
         ..Card::BLANK

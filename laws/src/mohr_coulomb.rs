@@ -103,6 +103,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12 (rectangular stress block)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("mohr_coulomb.md"),
         check: |value| check_as::<MohrCoulomb>(value, |law| {
             validate_friction(law.friction, law.friction_angle, law.dilatancy_angle)

@@ -158,6 +158,7 @@ voussoir_core::inventory::submit! {
             "Paul 1961, J. Appl. Mech. 28 (tension cut-off)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("mohr_coulomb_solid.md"),
         check: |value| check_as::<MohrCoulombSolid>(value, MohrCoulombSolid::validate),
         ..Card::BLANK

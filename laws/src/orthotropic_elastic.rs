@@ -129,6 +129,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["Lekhnitskii 1963, Theory of Elasticity of an Anisotropic Elastic Body", "Jones 1999, Mechanics of Composite Materials, sections 2.4 and 2.8"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("orthotropic_elastic.md"),
         check: |value| check_as::<OrthotropicElastic>(value, OrthotropicElastic::validate),
         ..Card::BLANK

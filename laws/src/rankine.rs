@@ -105,6 +105,7 @@ voussoir_core::inventory::submit! {
             "Clausen, Damkilde & Andersen 2006, Comput. Struct. 84 (return to a polyhedron of principal stresses)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("rankine.md"),
         ..Card::BLANK
     }

@@ -83,6 +83,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["Signorini 1933", "Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("unilateral.md"),
         ..Card::BLANK
     }

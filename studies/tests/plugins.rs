@@ -69,6 +69,7 @@ voussoir::core::inventory::submit! {
         summary: "reads less than its card says",
         parameters: &[number("effort"), number("efort_of_old")],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "for this test only",
         ..Card::BLANK
     }
@@ -284,6 +285,7 @@ voussoir::core::inventory::submit! {
             Parameter::number("value", Quantity::Ratio, Range::ANY, "that is tried"),
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "for this test only",
         ..Card::BLANK
     }

@@ -99,6 +99,23 @@ pub struct KnownPath {
     pub tolerance: f64,
 }
 
+/// A crate with its version.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Package {
+    /// Name of the crate.
+    pub name: &'static str,
+    /// Its version.
+    pub version: &'static str,
+}
+
+/// The [`Package`] of the crate in which it is written.
+#[macro_export]
+macro_rules! package {
+    () => {
+        $crate::plugin::Package { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") }
+    };
+}
+
 /// What a plug-in says of itself. A card states what it has; the rest is that of [`Card::BLANK`].
 #[derive(Debug)]
 pub struct Card {
@@ -127,6 +144,8 @@ pub struct Card {
     pub sources: &'static [&'static str],
     /// Its source file (`file!()`).
     pub file: &'static str,
+    /// The crate that brings it, with its version (`package!()`).
+    pub package: Package,
     /// Its page: purpose, equations, regimes, state, validity (Markdown).
     pub page: &'static str,
     /// Checks of the whole table that single keys cannot show, for the concrete type:
@@ -149,6 +168,7 @@ impl Card {
         cost: None,
         sources: &[],
         file: "",
+        package: Package { name: "unknown", version: "unknown" },
         page: "",
         check: |_| Vec::new(),
     };

@@ -7,8 +7,8 @@ mod schema;
 mod units;
 
 pub use self::card::{
-    Capability, Card, KnownPath, Property, Requirement, Sample, audit, candidate, candidates, card, cards, cards_of,
-    check_as, describe, nearest,
+    Capability, Card, KnownPath, Package, Property, Requirement, Sample, audit, candidate, candidates, card, cards,
+    cards_of, check_as, describe, nearest,
 };
 pub use self::diagnostic::Diagnostic;
 pub use self::schema::{Need, Parameter, PluginKind, Range, Shape, Variant};

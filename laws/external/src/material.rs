@@ -143,6 +143,7 @@ voussoir_core::inventory::submit! {
         provides: &[Capability::STRESS_UPDATE],
         sources: &["Helfer et al. 2020, J. Open Source Softw. 5(48) (the generic interface)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("external.md"),
         check: |value| check_as::<ExternalMaterial>(value, complaints),
         ..Card::BLANK

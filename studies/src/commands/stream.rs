@@ -10,10 +10,11 @@ use super::tables::Tables;
 use super::today::today;
 use crate::figures::format::{format_number, format_value, status_word};
 use crate::kinds::CasesOf;
-use crate::results::CaseResult;
+use crate::results::{CaseResult, Origin, words};
 use crate::side_by_side::in_order;
 use crate::study::Sweep;
 use crate::writers::results_text::{ResultsHead, ResultsText, case_text};
+use crate::writers::streamed_tables::wanted;
 use serde_json::Map;
 use std::collections::BTreeMap;
 use std::io;
@@ -113,7 +114,9 @@ pub fn finish(
     let mut json = folder.aside("results.json")?;
     let mut tables = Tables::begin(sweep, folder)?;
     let version = env!("CARGO_PKG_VERSION").to_string();
-    let head = ResultsHead { study: sweep.name.clone(), version, date: Some(today()), only_cases };
+    let origin = Origin::here(&words(&sweep.resolved));
+    let files = wanted(sweep).into_iter().map(String::from).collect();
+    let head = ResultsHead { study: sweep.name.clone(), version, origin, date: Some(today()), only_cases, files };
     let written = write(&mut json, &head, lines, &mut |case| {
         tally.add(case);
         tables.add(case)

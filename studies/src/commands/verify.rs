@@ -148,6 +148,7 @@ fn told(path: &Path, findings: &[String], found: &Verification, code: u8) -> Che
         let of = if found.own < found.of { format!(" of the study's {}", found.of) } else { String::new() };
         say(format!("{}: {confirmed} case(s){of} confirmed, {} stalled", path.display(), found.stalled));
         say(found.how);
+        say(found.agreement.words());
     } else {
         say(format!("{}: {} finding(s); the results do not hold", path.display(), findings.len()));
     }

@@ -2,22 +2,23 @@
 //! all writers.
 
 use super::backing::{BackingCount, resumed};
-use super::kind::{CasesOf, LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification, kind};
+use super::kind::{CasesOf, LoadedStudy, Piece, RESULTS, RunOutput, RunRequest, StoredResults, Verification, kind};
 use super::stored_cases::read_cases;
 use crate::caught::caught;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::format_number;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_svg, mechanism_svg, scene_svg};
-use crate::results::{CaseLabel, CaseResult, StudyResults};
+use crate::results::{CaseLabel, CaseResult, Origin, StudyResults, words};
 use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::Observer;
 use crate::solve::explain::explain;
 use crate::study::{Case, Study, SweptKeys, as_blocks};
 use crate::verify::repeat::differences;
-use crate::verify::{StoredCheck, misfits, solve_again};
+use crate::verify::{Agreement, StoredCheck, misfits, solve_again};
 use crate::writers::comparison::comparison_table;
 use crate::writers::record::record;
+use crate::writers::results_json::write_results;
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
 use serde_json::{Map, Value as Json};
@@ -38,15 +39,24 @@ impl Study {
         let (study, version) = (self.name.clone(), version.to_string());
         let ids: Vec<usize> = cases.iter().map(|case| case.label.id).filter(|id| *id < self.cases.len()).collect();
         let only_cases = (ids.len() < self.cases.len()).then_some(ids);
-        StudyResults { study, version, date: None, only_cases, cases, comparison: own.comparison, own: own.other }
+        let origin = Origin::here(&words(&self.resolved));
+        let (comparison, own) = (own.comparison, own.other);
+        StudyResults { study, version, origin, date: None, only_cases, files: Vec::new(), cases, comparison, own }
     }
 
     /// What a run with these results, in order of id, writes and says.
     pub fn output_of(&self, request: &RunRequest, cases: Vec<CaseResult>) -> RunOutput {
-        let results = StudyResults { date: request.date.clone(), ..self.results(&request.version, cases) };
+        let mut results = StudyResults { date: request.date.clone(), ..self.results(&request.version, cases) };
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
         let output = StudyOutput::new(self, &results, &cases);
-        let files = side_by_side(request.jobs, || written(&output, !request.results_apart));
+        let mut files = side_by_side(request.jobs, || written(&output));
+        drop(output);
+        results.files = names(&files);
+        if !request.results_apart {
+            let text = write_results(Vec::new(), &results).expect("results hold no map with other keys than text");
+            files.push((RESULTS.into(), text));
+        }
+        let output = StudyOutput::new(self, &results, &cases);
         let table = if request.quiet { String::new() } else { table(&output) };
         let certified = results.certified();
         let results = request.results_apart.then_some(results);
@@ -56,7 +66,7 @@ impl Study {
     /// The files that results give, by name.
     fn made(&self, results: &StudyResults, jobs: usize) -> Vec<(String, Vec<u8>)> {
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
-        side_by_side(jobs, || written(&StudyOutput::new(self, results, &cases), true))
+        side_by_side(jobs, || written(&StudyOutput::new(self, results, &cases)))
     }
 
     /// Stored cases by id, the last of each, that `kept` wants and that hold by their own proof; and a remark about them.
@@ -176,12 +186,14 @@ impl LoadedStudy for Study {
         }
         // Read once more, entry by entry: as a tree of values all of them take more space than everything else here.
         let mut check = StoredCheck::new(self, &results, &again);
-        let beside = read_cases(stored.results()?, &mut |entry| check.entry(&entry))?;
+        let beside = read_cases(stored.results()?, &mut |_, entry| check.entry(&entry))?;
         let mut findings = check.findings()?;
         // Keys that no one reads.
         let read = serde_json::to_value(&results.comparison).unwrap_or_default();
         let foreign = beside.get("comparison").map(|stored| differences(stored, &read)).unwrap_or_default();
         findings.extend(foreign.into_iter().map(|why| (0, format!("comparison: {why}"))));
+        let agreement = Agreement::of(&results.origin, &self.resolved);
+        let (format, listed) = (results.origin.format, results.files.clone());
         let (count, stalled) = (results.cases.len(), stalled(&results));
         let own = results.cases.iter().filter(|case| case.label.id < self.count()).count();
         // Stored results are drawn only if they are confirmed: then each number was solved again.
@@ -196,16 +208,20 @@ impl LoadedStudy for Study {
             Ok(made) => (made, None),
             Err(why) => (Vec::new(), Some(format!("tables and figures cannot be made: {why}"))),
         };
-        let mut files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
+        let mut files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())), agreement);
         files.extend(unmade);
+        if format > 0 && !made.is_empty() && listed != names(&made) {
+            files.push(format!("files of {RESULTS} are not those of the study"));
+        }
         Ok(Verification {
             cases: count,
             stalled,
             findings,
             files,
-            made: made.into_iter().map(|(name, _)| name).collect(),
+            made: made.into_iter().map(|(name, _)| name).chain([RESULTS.into()]).collect(),
             own,
             of: self.count(),
+            agreement,
             how: HOW,
         })
     }
@@ -225,6 +241,13 @@ fn with_costs(mut cases: Vec<CaseResult>, stored: &StudyResults) -> Vec<CaseResu
 /// Number of stalled cases.
 fn stalled(results: &StudyResults) -> usize {
     results.cases.iter().filter(|case| case.status == Status::Stalled).count()
+}
+
+/// The names of files, sorted.
+fn names(files: &[(String, Vec<u8>)]) -> Vec<String> {
+    let mut names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
+    names.sort();
+    names
 }
 
 /// The table on the terminal, with what the study's kind adds to it.

@@ -38,6 +38,7 @@ voussoir_core::inventory::submit! {
         summary: "several laws and solvers (variants) on one or several scenes: one table with ratios, one figure",
         parameters: KEYS,
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("compare.md"),
         ..Card::BLANK
     }

@@ -69,6 +69,7 @@ voussoir_core::inventory::submit! {
         summary: "moves a load over a range, both ways and for several vehicles: the worst place, and the factor at all of them",
         parameters: KEYS,
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("envelope.md"),
         ..Card::BLANK
     }

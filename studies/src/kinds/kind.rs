@@ -4,6 +4,7 @@ use super::same_bytes::SameBytes;
 use crate::results::{CaseLabel, CaseResult, Comparison, StudyResults};
 use crate::solve::{Observer, Unobserved, solve_cases};
 use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource, Sweep};
+use crate::verify::Agreement;
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::io::{Cursor, Read, Write};
@@ -228,13 +229,25 @@ impl StoredResults<'_> {
         Ok(text)
     }
 
+    /// Returns true if a file of another processor differs by rounding only.
+    fn same_claims(&self, name: &str, bytes: &[u8], agreement: Agreement) -> bool {
+        // A file much longer than the one that is made is another one: it is not read to its end.
+        let limit = 2 * bytes.len() as u64 + 1024;
+        let read = |file: Box<dyn Read>| {
+            let mut stored = Vec::new();
+            file.take(limit).read_to_end(&mut stored).is_ok() && agreement.same_file(&stored, bytes)
+        };
+        agreement == Agreement::Program || agreement == Agreement::Processor && (self.file)(name).is_some_and(read)
+    }
+
     /// What is wrong with the files beside results.json: each that is there must be the one that is made from it.
-    pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<String> {
+    pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>, agreement: Agreement) -> Vec<String> {
         let others = made.filter(|(name, _)| *name != RESULTS);
         let differs = |(name, bytes): &(&str, &[u8])| {
             let Some(stored) = (self.file)(name) else { return false };
             let mut same = SameBytes::new(stored);
-            same.write_all(bytes).is_err() || !same.ended()
+            let bits = same.write_all(bytes).is_ok() && same.ended();
+            !bits && !self.same_claims(name, bytes, agreement)
         };
         others.filter(differs).map(|(name, _)| not_made(name)).collect()
     }
@@ -262,6 +275,8 @@ pub struct Verification {
     pub own: usize,
     /// Number of cases of the study.
     pub of: usize,
+    /// How results were compared with a second run.
+    pub agreement: Agreement,
     /// What was checked how.
     pub how: &'static str,
 }

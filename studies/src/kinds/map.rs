@@ -35,6 +35,7 @@ voussoir_core::inventory::submit! {
         summary: "one or several laws (variants) over two swept numbers: regions of mechanisms, contours of loads or ratios",
         parameters: KEYS,
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("map.md"),
         ..Card::BLANK
     }

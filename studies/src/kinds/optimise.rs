@@ -73,6 +73,7 @@ voussoir_core::inventory::submit! {
         parameters: KEYS,
         sources: &["Kiefer 1953, Proc. Amer. Math. Soc. 4, 502-506"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("optimise.md"),
         ..Card::BLANK
     }

@@ -24,6 +24,7 @@ voussoir_core::inventory::submit! {
         summary: "drives one law at one point through strains, stresses or both",
         parameters: study::POINT,
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `point`\n\nDrives a material or a joint through `[[point.path]]`, segment by segment. Each segment moves the components it names, \
                in `steps` equal steps, to the strains (gaps) or stresses (tractions) given; a component that is not named keeps \
                the strain or the stress it was controlled by last, at first a strain of zero. Strains are tension positive with \

@@ -30,6 +30,7 @@ voussoir_core::inventory::submit! {
         summary: "runs several studies and writes one page: texts, charts of their results, verdicts on claims",
         parameters: keys::REPORT,
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("report.md"),
         ..Card::BLANK
     }

@@ -5,16 +5,19 @@ use serde_json::{Map, Value as Json};
 use std::fmt;
 use std::io::{BufReader, Read};
 
-/// Hands over each case, and returns what stands beside them; an error where it is no results file.
-pub(super) fn read_cases(file: impl Read, take: &mut dyn FnMut(Json)) -> Result<Map<String, Json>, String> {
+/// Hands over each case with the entries that come before all cases, and returns all entries beside them; an error where it is no results file.
+pub(super) fn read_cases(file: impl Read, take: Take) -> Result<Map<String, Json>, String> {
     let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
     let whole = Whole(take).deserialize(&mut text).map_err(|error| error.to_string())?;
     text.end().map_err(|error| error.to_string())?;
     Ok(whole)
 }
 
+/// Receives the head of the file and a case.
+pub(super) type Take<'a> = &'a mut dyn FnMut(&Map<String, Json>, Json);
+
 /// The whole file.
-struct Whole<'a>(&'a mut dyn FnMut(Json));
+struct Whole<'a>(Take<'a>);
 
 impl<'de> DeserializeSeed<'de> for Whole<'_> {
     type Value = Map<String, Json>;
@@ -38,7 +41,7 @@ impl<'de> Visitor<'de> for Whole<'_> {
                 return Err(A::Error::custom(format!("\"{key}\" stands there twice")));
             }
             if key == "cases" {
-                map.next_value_seed(Cases(&mut *self.0))?;
+                map.next_value_seed(Cases(&beside, &mut *self.0))?;
                 listed = true;
             } else {
                 beside.insert(key, map.next_value()?);
@@ -49,7 +52,7 @@ impl<'de> Visitor<'de> for Whole<'_> {
 }
 
 /// The list of cases.
-struct Cases<'a>(&'a mut dyn FnMut(Json));
+struct Cases<'a>(&'a Map<String, Json>, Take<'a>);
 
 impl<'de> DeserializeSeed<'de> for Cases<'_> {
     type Value = IgnoredAny;
@@ -68,7 +71,7 @@ impl<'de> Visitor<'de> for Cases<'_> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<IgnoredAny, A::Error> {
         while let Some(case) = list.next_element()? {
-            (self.0)(case);
+            (self.1)(self.0, case);
         }
         Ok(IgnoredAny)
     }
@@ -83,7 +86,7 @@ mod tests {
     fn cases_come_one_by_one_and_the_rest_stays() {
         let read = |text: &str| {
             let mut cases = Vec::new();
-            read_cases(text.as_bytes(), &mut |case| cases.push(case)).map(|beside| (Json::from(beside), cases))
+            read_cases(text.as_bytes(), &mut |_, case| cases.push(case)).map(|beside| (Json::from(beside), cases))
         };
         let (beside, cases) = read(r#"{ "study": "a", "cases": [1, { "b": 0.1 }], "own": [] }"#).expect("results");
         assert_eq!((beside, cases), (json!({ "study": "a", "own": [] }), vec![json!(1), json!({ "b": 0.1 })]));

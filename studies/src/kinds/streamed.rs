@@ -3,7 +3,7 @@
 
 use super::kind::{CasesOf, LoadedStudy, RunOutput, RunRequest, StoredResults, Verification};
 use super::verify_streamed::verify;
-use crate::results::CaseResult;
+use crate::results::{CaseResult, Origin, words};
 use crate::solve::Observer;
 use crate::solve::explain::explain_first;
 use crate::study::{Sweep, as_blocks};
@@ -48,8 +48,10 @@ impl LoadedStudy for Sweep {
         let head = ResultsHead {
             study: self.name.clone(),
             version: request.version.clone(),
+            origin: Origin::here(&words(&self.resolved)),
             date: request.date.clone(),
             only_cases: only,
+            files: wanted(self).into_iter().map(String::from).collect(),
         };
         let (files, remarks) = match files(self, &head, &cases) {
             Ok(files) => (files, Vec::new()),

@@ -6,12 +6,13 @@ use super::kind::{CasesOf, StoredResults, Verification, not_made};
 use super::same_bytes::SameBytes;
 use super::stored_cases::read_cases;
 use crate::caught::caught;
-use crate::results::CaseResult;
+use crate::results::{CaseResult, HEAD, Origin};
 use crate::side_by_side::side_by_side;
 use crate::solve::{Observer, solve_followed};
 use crate::study::Sweep;
+use crate::verify::Agreement;
 use crate::verify::case::verify_case;
-use crate::verify::repeat::differences;
+use crate::verify::hash_finding;
 use crate::writers::streamed_tables::{StreamedTable, wanted};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -30,6 +31,8 @@ struct Check<'a> {
     observer: &'a dyn Observer,
     jobs: usize,
     waiting: Vec<Json>,
+    agreement: Option<Agreement>,
+    origin: Origin,
     found: Verification,
     ids: Vec<usize>,
     missing: Vec<usize>,
@@ -46,6 +49,8 @@ pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Obser
         observer,
         jobs: stored.jobs,
         waiting: Vec::new(),
+        agreement: None,
+        origin: Origin::default(),
         found: Verification { of: sweep.count(), how: HOW, made, ..Verification::default() },
         ids: Vec::new(),
         missing: Vec::new(),
@@ -59,7 +64,8 @@ pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Obser
         }
     }
     let mut unread = None;
-    let beside = read_cases(stored.results()?, &mut |entry| {
+    let beside = read_cases(stored.results()?, &mut |head, entry| {
+        check.begin(head);
         check.waiting.push(entry);
         if check.waiting.len() >= AT_ONCE * check.jobs.max(1) {
             unread = check.checked().err().or(unread.take());
@@ -74,15 +80,24 @@ pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Obser
 }
 
 impl Check<'_> {
+    /// Reads the origin of the results from their head.
+    fn begin(&mut self, head: &Map<String, Json>) {
+        if self.agreement.is_none() {
+            self.agreement = Some(Agreement::of_head(head, &self.sweep.resolved));
+            self.origin = Origin::deserialize(Json::Object(head.clone())).unwrap_or_default();
+        }
+    }
+
     /// Checks the cases that wait.
     fn checked(&mut self) -> Result<(), String> {
         let entries = std::mem::take(&mut self.waiting);
         let read = |entry: &Json| CaseResult::deserialize(entry).map_err(|error| error.to_string());
         let results = entries.iter().map(read).collect::<Result<Vec<_>, _>>()?;
         let (sweep, observer) = (self.sweep, self.observer);
+        let how = (self.agreement.unwrap_or_default(), &self.origin);
         let pairs = entries.par_iter().zip(&results);
         let check = |(entry, result): (&Json, &CaseResult)| {
-            caught(|| differs(sweep, observer, entry, result)).unwrap_or_else(|why| vec![why])
+            caught(|| differs((sweep, observer), how, entry, result)).unwrap_or_else(|why| vec![why])
         };
         let wrong: Vec<Vec<String>> = side_by_side(self.jobs, || pairs.map(check).collect());
         for (case, wrong) in results.iter().zip(wrong) {
@@ -126,8 +141,13 @@ impl Check<'_> {
             }
             Some(_) => {}
         }
-        let known = ["study", "version", "date", "only_cases"];
-        let foreign = beside.keys().filter(|key| !known.contains(&key.as_str()));
+        let listed: Vec<&str> = wanted(self.sweep);
+        if self.origin.format > 0 && beside.get("files") != Some(&Json::from(listed)) {
+            self.found.findings.push((0, "files are not those of the study".into()));
+        }
+        self.found.agreement = self.agreement.unwrap_or_default();
+        let known = ["study", "version", "date", "only_cases", "files"];
+        let foreign = beside.keys().filter(|key| !known.contains(&key.as_str()) && !HEAD.contains(&key.as_str()));
         self.found.findings.extend(foreign.map(|key| (0, format!("{key} is not in what solving again gives"))));
         let others = self.tables.into_iter().filter_map(|(name, table)| {
             let same = table.finish().is_ok_and(SameBytes::ended);
@@ -140,13 +160,23 @@ impl Check<'_> {
 }
 
 /// What is wrong with a stored case, by itself and against solving again.
-fn differs(sweep: &Sweep, observer: &dyn Observer, entry: &Json, result: &CaseResult) -> Vec<String> {
+fn differs(
+    (sweep, observer): (&Sweep, &dyn Observer),
+    (agreement, origin): (Agreement, &Origin),
+    entry: &Json,
+    result: &CaseResult,
+) -> Vec<String> {
     let Some(case) = CasesOf::Streamed(sweep).case(result.label.id) else {
         return vec!["the study has no such case".into()];
     };
     let Some(again) = solve_followed(&case, observer) else { return vec!["the check was cancelled".into()] };
     match serde_json::to_value(again) {
-        Ok(again) => verify_case(&case, result).into_iter().chain(differences(entry, &again)).collect(),
+        Ok(again) => {
+            let mut found = verify_case(&case, result);
+            found.extend(hash_finding(&case, result, origin));
+            found.extend(agreement.differences(entry, &again));
+            found
+        }
         Err(why) => vec![why.to_string()],
     }
 }

@@ -65,6 +65,7 @@ voussoir_core::inventory::submit! {
             many("forces", &Shape::Number(Quantity::Force, Range::ANY), "forces, downwards, one for each position"),
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle. An axle \
                that is not yet or no longer on the extrados counts nothing, and a note says so.\n",
         ..Card::BLANK

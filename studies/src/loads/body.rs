@@ -36,6 +36,7 @@ voussoir_core::inventory::submit! {
             need: Need::Required,
         }],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `body`\n\nAn acceleration of every block, times its mass: for pushover and tilting.\n",
         ..Card::BLANK
     }

@@ -49,6 +49,7 @@ voussoir_core::inventory::submit! {
             Parameter::number("pressure", Quantity::Stress, Range::ANY, "on the plan area over the full width, downwards"),
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `lane`\n\nAn even vertical pressure on the plan area between two x, over the full width. Each block carries what stands \
                above its upper face; at its ends the load does not spread. What lies beyond the bridge goes to the ground.\n",
         ..Card::BLANK

@@ -89,6 +89,7 @@ voussoir_core::inventory::submit! {
             DISPERSION,
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `point`\n\nA force at a point: on the extrados of an arch at `span_fraction`, or in or on a `block` at `point`. \
                At the boundary of two voussoirs it goes to the one nearer to midspan, at midspan half to each.\n",
         ..Card::BLANK

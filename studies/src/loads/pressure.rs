@@ -52,6 +52,7 @@ voussoir_core::inventory::submit! {
             Parameter::number("value", Quantity::Stress, Range::ANY, "pressure, which pushes inwards"),
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `pressure`\n\nAn even pressure on one edge of a block, over the full width: > 0 pushes inwards.\n",
         ..Card::BLANK
     }

@@ -57,6 +57,7 @@ voussoir_core::inventory::submit! {
             DISPERSION,
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `strip`\n\nAn even vertical pressure on the plan area between two span fractions, over the full width. Each \
                voussoir carries what stands above its straight extrados.\n",
         ..Card::BLANK

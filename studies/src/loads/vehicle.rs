@@ -145,6 +145,7 @@ voussoir_core::inventory::submit! {
             "EN 1991-2:2003, 6.3.6.1 and 6.3.6.2 (25, 50 and 25 % on three sleepers; 4 : 1 in ballast)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("vehicle.md"),
         ..Card::BLANK
     }

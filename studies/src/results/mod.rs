@@ -8,6 +8,7 @@ pub mod inelastic_state;
 mod limit_points;
 pub mod load_entries;
 mod load_factor_error;
+mod origin;
 pub mod path_state;
 mod rank;
 mod sensitivity;
@@ -22,6 +23,7 @@ pub use entries::{
 };
 pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
+pub use origin::{FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
 pub use study_results::StudyResults;

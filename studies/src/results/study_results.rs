@@ -2,6 +2,7 @@
 
 use super::case_result::CaseResult;
 use super::comparison::Comparison;
+use super::origin::Origin;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
@@ -12,12 +13,18 @@ pub struct StudyResults {
     pub study: String,
     /// Version of the program.
     pub version: String,
+    /// What they come from.
+    #[serde(flatten)]
+    pub origin: Origin,
     /// The day of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
     /// Ids of the cases, where the run was asked for some of them only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only_cases: Option<Vec<usize>>,
+    /// Names of the files that the run wrote beside results.json and resolved.toml, sorted.
+    #[serde(default)]
+    pub files: Vec<String>,
     /// One entry per case, by `id`.
     pub cases: Vec<CaseResult>,
     /// Of `kind = "compare"` and `"map"`: the cases beside each other.

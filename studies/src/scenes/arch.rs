@@ -176,6 +176,7 @@ voussoir_core::inventory::submit! {
         parameters: PARAMETERS,
         sources: &["Heyman 1982, The Masonry Arch"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("arch.md"),
         check: |value| check_as::<Arch>(value, Arch::validate),
         ..Card::BLANK

@@ -384,6 +384,7 @@ voussoir_core::inventory::submit! {
         parameters: PARAMETERS,
         sources: &["Livesley 1978, Int. J. Numer. Methods Eng. 12"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("blocks.md"),
         check: |value| check_as::<Blocks>(value, Blocks::validate),
         ..Card::BLANK

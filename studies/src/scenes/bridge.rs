@@ -232,6 +232,7 @@ voussoir_core::inventory::submit! {
         parameters: keys::PARAMETERS,
         sources: &["Heyman 1982, The Masonry Arch", "Melbourne, Gilbert & Wagstaff 1997, Struct. Eng. 75 (multi-span)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("bridge.md"),
         check: |value| check_as::<BridgeScene>(value, BridgeScene::validate),
         ..Card::BLANK

@@ -282,6 +282,7 @@ voussoir_core::inventory::submit! {
         parameters: PARAMETERS,
         sources: &["Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43 (walls given by rows)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("wall.md"),
         check: |value| check_as::<Wall>(value, Wall::validate),
         ..Card::BLANK

@@ -7,6 +7,7 @@ use super::outline::Outline;
 use super::resolved::Resolved;
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
+use crate::results::{Origin, this_program};
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
 use voussoir_core::limit::LimitSolver;
@@ -71,12 +72,17 @@ pub struct Case {
 }
 
 impl Case {
-    /// What tells this case from any other: the version of the program, its label and its whole resolved study, as
-    /// 128 bits of FNV-1a in hexadecimal; of tables their own hashes, which cases share. No seal: it finds confusion, not
-    /// malice.
+    /// The hash of this case in results of this program.
     pub fn hash(&self) -> String {
-        let label = (env!("CARGO_PKG_VERSION"), self.id, &self.variant, &self.scene, &self.parameters);
-        let mut hash = Fnv::of(&label);
+        self.hash_in(this_program())
+    }
+
+    /// What tells this case from any other: commit, sources and plug-ins of the program, its label and its whole resolved
+    /// study, as 128 bits of FNV-1a in hexadecimal; of tables their own hashes, which cases share. No seal: it finds
+    /// confusion, not malice.
+    pub fn hash_in(&self, origin: &Origin) -> String {
+        let label = (self.id, &self.variant, &self.scene, &self.parameters);
+        let mut hash = Fnv::of(&(origin.program(), label));
         self.resolved.add_hashes(&mut hash);
         hash.text()
     }

@@ -3,10 +3,11 @@
 use super::fields::{EQUAL, close, contacts, velocities};
 use super::findings::Findings;
 use super::mechanism::{differences, same_line};
-use crate::results::CaseResult;
+use super::tolerances::GEOMETRY;
 use crate::results::load_entries::fill_entries;
 use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
+use crate::results::{CaseResult, FillEntry};
 use crate::study::Case;
 use voussoir_core::certificate::{
     CentroidVelocity, Certificate, Claim, ContactForce, Hinge, NonAssociatedClaim, certify, mechanism, support_motions,
@@ -54,7 +55,8 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let loads = &stage_loads(assembly, &case.stages)[last];
     let fill: Vec<f64> = result.proof.fill.iter().map(|entry| entry.force).collect();
     let expected = if stored.field.is_some() { fill_entries(assembly, &fill, &loads.fill_bounds) } else { Vec::new() };
-    findings.expect(result.proof.fill == expected, "the forces of the fill do not stand where the fill presses");
+    findings
+        .expect(same_fill(&result.proof.fill, &expected), "the forces of the fill do not stand where the fill presses");
     let start = match stage.target {
         Target::Collapse => search_start(stage),
         // A stage whose loads decrease is asked at its end, any other at its start.
@@ -98,6 +100,14 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         findings.0.extend(certificate.failures);
     }
     Ok(())
+}
+
+/// Whether forces of the fill act where the scene says, between its bounds.
+fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
+    let numbers =
+        |list: &[FillEntry]| list.iter().map(|f| [f.point, f.direction, f.bounds].concat()).collect::<Vec<_>>();
+    let words = |f: &FillEntry| (f.block.clone(), f.force);
+    stored.iter().map(words).eq(expected.iter().map(words)) && GEOMETRY.same_rows(&numbers(stored), &numbers(expected))
 }
 
 /// The stored certificate and bounds against the recomputed ones.

@@ -2,20 +2,27 @@
 //!
 //! Reads only `results.json` and `resolved.toml`. First what the stored numbers prove by themselves, without a
 //! solver: certificate, bounds, mechanism, thrust line, stages, equilibrium of the last state of a path. Then every
-//! number and word against solving the case again, because a path's history is not stored: only counters, seconds
-//! and the version are not looked at.
+//! number and word against solving the case again, because a path's history is not stored: bit by bit if the same program
+//! on the same kind of processor has written them, else by their claims. Counters, seconds and the version are not compared.
 
+mod agreement;
 pub mod case;
+mod curves;
+mod events;
 pub mod fields;
 mod findings;
 mod fit;
 mod limit;
+mod meaning;
 mod mechanism;
 mod path;
 pub mod repeat;
 mod same_study;
 mod study;
+mod texts;
+pub mod tolerances;
 
+pub use agreement::Agreement;
 pub use fit::misfits;
 pub use same_study::first_difference;
-pub use study::{StoredCheck, solve_again, verify, verify_against};
+pub use study::{StoredCheck, hash_finding, solve_again, verify, verify_against};

@@ -1,14 +1,14 @@
 //! All results of a study: proofs from the stored numbers, then every number against solving again.
 
+use super::agreement::Agreement;
 use super::case::verify_case;
-use super::repeat::differences;
 use crate::caught::caught;
 use crate::kinds::kind;
-use crate::results::{CaseResult, StudyResults};
-use crate::solve::{Observer, Unobserved};
-use crate::study::Study;
+use crate::results::{CaseResult, FORMAT, Origin, StudyResults};
+use crate::solve::{Observer, Unobserved, solve_case};
+use crate::study::{Case, Study};
 use serde::Deserialize;
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is wrong with a set of results, by case; empty when everything is confirmed. Solves all its cases again.
@@ -47,6 +47,7 @@ pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Res
 pub struct StoredCheck<'a> {
     study: &'a Study,
     results: &'a StudyResults,
+    agreement: Agreement,
     again: BTreeMap<usize, &'a CaseResult>,
     wrong: Vec<(usize, String)>,
     seen: usize,
@@ -55,10 +56,11 @@ pub struct StoredCheck<'a> {
 impl<'a> StoredCheck<'a> {
     /// Of these results, against the same cases solved `again`.
     pub fn new(study: &'a Study, results: &'a StudyResults, again: &'a [CaseResult]) -> Self {
-        let mut wrong = study_findings(study, results);
+        let agreement = Agreement::of(&results.origin, &study.resolved);
+        let mut wrong = study_findings(study, results, agreement);
         wrong.extend(id_findings(study, results, again));
         let again = again.iter().map(|case| (case.label.id, case)).collect();
-        StoredCheck { study, results, again, wrong, seen: 0 }
+        StoredCheck { study, results, agreement, again, wrong, seen: 0 }
     }
 
     /// The next entry of the list of cases.
@@ -73,10 +75,28 @@ impl<'a> StoredCheck<'a> {
     fn differs(&self, entry: &Json, result: &CaseResult) -> Vec<String> {
         let Some(case) = self.study.case_of(&result.label) else { return vec!["the study has no such case".into()] };
         let mut found = verify_case(&case, result);
-        match self.again.get(&result.label.id).map(serde_json::to_value) {
-            Some(Ok(again)) => found.extend(differences(entry, &again)),
-            Some(Err(why)) => found.push(why.to_string()),
-            None => {}
+        found.extend(hash_finding(&case, result, &self.results.origin));
+        if let Some(again) = self.again.get(&result.label.id) {
+            found.extend(self.against(&case, (entry, result), again));
+        }
+        found
+    }
+
+    /// The differences of an entry from its case solved again.
+    fn against(&self, case: &Case, (entry, result): (&Json, &CaseResult), again: &CaseResult) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut at_stored_values = None;
+        // Searches of two processors choose values that differ by rounding: the stored ones are solved again.
+        if self.agreement != Agreement::Bits && result.label.parameters != again.label.parameters {
+            let parameters = |case: &CaseResult| json!({ "parameters": case.label.parameters });
+            if !self.agreement.differences(&parameters(result), &parameters(again)).is_empty() {
+                found.push("the search does not try this case".into());
+            }
+            at_stored_values = Some(solve_case(case));
+        }
+        match serde_json::to_value(at_stored_values.as_ref().unwrap_or(again)) {
+            Ok(again) => found.extend(self.agreement.differences(entry, &again)),
+            Err(why) => found.push(why.to_string()),
         }
         found
     }
@@ -90,9 +110,18 @@ impl<'a> StoredCheck<'a> {
     }
 }
 
+/// Finds a hash that is not that of the case in results of this origin. Older results have another hash.
+pub fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<String> {
+    let fine = origin.format == 0 || case.hash_in(origin) == result.label.case_hash;
+    (!fine).then(|| "case_hash is not that of the case".into())
+}
+
 /// What stands beside the cases.
-fn study_findings(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
+fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -> Vec<(usize, String)> {
     let mut wrong = Vec::new();
+    if results.origin.format > FORMAT {
+        wrong.push((0, format!("format {}; this program reads format {FORMAT} and older", results.origin.format)));
+    }
     if results.study != study.name {
         wrong.push((0, format!("results of \"{}\", study \"{}\"", results.study, study.name)));
     }
@@ -104,10 +133,10 @@ fn study_findings(study: &Study, results: &StudyResults) -> Vec<(usize, String)>
             return wrong;
         }
     };
-    if own.comparison != results.comparison {
+    if !agreement.same(&results.comparison, &own.comparison) {
         wrong.push((0, "the comparison is not that of the cases".into()));
     }
-    if own.other != results.own {
+    if !agreement.same(&results.own, &own.other) {
         wrong.push((0, format!("what kind = \"{}\" adds is not that of the cases", study.kind)));
     }
     wrong

@@ -13,6 +13,7 @@ macro_rules! register {
                 summary: $summary,
                 parameters: $options,
                 file: file!(),
+                package: voussoir_core::package!(),
                 page: $page,
                 ..voussoir_core::plugin::Card::BLANK
             }

@@ -27,12 +27,14 @@ impl Writer for ResultsJson {
 
 /// Writes results.json; where it was written to.
 pub fn write_results<W: Write>(out: W, results: &StudyResults) -> io::Result<W> {
-    let StudyResults { study, version, date, only_cases, cases, comparison, own } = results;
+    let StudyResults { study, version, origin, date, only_cases, files, cases, comparison, own } = results;
     let head = ResultsHead {
         study: study.clone(),
         version: version.clone(),
+        origin: origin.clone(),
         date: date.clone(),
         only_cases: only_cases.clone(),
+        files: files.clone(),
     };
     let mut text = ResultsText::begin(out, &head)?;
     let (threads, mut left) = (threads(), cases.as_slice());

@@ -2,7 +2,7 @@
 //!
 //! The layout is that of `serde_json::to_string_pretty`. Cases can be made into text side by side and need not be held.
 
-use crate::results::{CaseResult, Comparison};
+use crate::results::{CaseResult, Comparison, Origin};
 use serde::Serialize;
 use serde_json::ser::{Formatter, Serializer};
 use serde_json::{Map, Value as Json};
@@ -15,10 +15,14 @@ pub struct ResultsHead {
     pub study: String,
     /// Version of the program.
     pub version: String,
+    /// What they come from.
+    pub origin: Origin,
     /// The day of the run.
     pub date: Option<String>,
     /// Ids of the cases, where the run was asked for some of them only.
     pub only_cases: Option<Vec<usize>>,
+    /// Names of the files beside results.json and resolved.toml.
+    pub files: Vec<String>,
 }
 
 /// results.json while it is written.
@@ -44,12 +48,16 @@ impl<W: Write> ResultsText<W> {
         out.write_all(b"{")?;
         entry(&mut out, b"\n", "study", &head.study)?;
         entry(&mut out, b",\n", "version", &head.version)?;
+        if let Json::Object(origin) = serde_json::to_value(&head.origin)? {
+            origin.iter().try_for_each(|(key, value)| entry(&mut out, b",\n", key, value))?;
+        }
         if let Some(date) = &head.date {
             entry(&mut out, b",\n", "date", date)?;
         }
         if let Some(only) = &head.only_cases {
             entry(&mut out, b",\n", "only_cases", only)?;
         }
+        entry(&mut out, b",\n", "files", &head.files)?;
         out.write_all(b",\n  \"cases\": [")?;
         Ok(ResultsText { out, cases: 0 })
     }
@@ -172,7 +180,7 @@ impl Formatter for Indented {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::StudyResults;
+    use crate::results::{StudyResults, this_program};
     use crate::side_by_side::side_by_side;
     use crate::writers::results_json::write_results;
     use serde_json::json;
@@ -192,14 +200,16 @@ mod tests {
             let results = StudyResults {
                 study: "s {".into(),
                 version: "1".into(),
+                origin: if full { this_program().clone() } else { Origin::default() },
                 date: full.then(|| "today".into()),
+                files: if full { vec!["results.csv".into()] } else { Vec::new() },
                 only_cases: full.then(|| vec![0, 2]),
                 cases: (0..cases).map(case).collect(),
                 comparison: full.then(|| serde_json::from_value(compared.clone()).expect("a comparison")),
                 own: if full { Map::from_iter([("o".to_string(), deep.clone())]) } else { Map::new() },
             };
-            let StudyResults { study, version, date, only_cases, .. } = results.clone();
-            let head = ResultsHead { study, version, date, only_cases };
+            let StudyResults { study, version, origin, date, only_cases, files, .. } = results.clone();
+            let head = ResultsHead { study, version, origin, date, only_cases, files };
             let mut text = ResultsText::begin(Vec::new(), &head).expect("written");
             results.cases.iter().try_for_each(|case| text.add(&case_text(case)?)).expect("written");
             let text = text.finish(results.comparison.as_ref(), &results.own).expect("written");

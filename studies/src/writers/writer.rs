@@ -30,11 +30,11 @@ pub fn writers() -> Vec<&'static WriterEntry> {
     all
 }
 
-/// Writes what the study's `[output]` asks for: all writers, or those that it lists; and, if `results`, results.json, from
-/// which results are verified.
-pub fn written(study: &StudyOutput, results: bool) -> Vec<(String, Vec<u8>)> {
+/// Writes what the study's `[output]` asks for beside results.json: all writers, or those that it lists.
+pub fn written(study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
     let wanted = |tag: &str| match (tag, &study.output.writers) {
-        ("results_json", _) => results,
+        // It names the other files, so it comes last.
+        ("results_json", _) => false,
         (_, Some(tags)) => tags.iter().any(|wanted| wanted == tag),
         (_, None) => true,
     };

@@ -56,6 +56,7 @@ inventory::submit! {
             Parameter::number("lean", Quantity::Length, Range::ANY, "step to the right from block to block").default("0.0"),
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `tower`\n\nA stack that leans.\n",
         ..Card::BLANK
     }
@@ -82,6 +83,7 @@ inventory::submit! {
         summary: "a share of all weights, to the right",
         parameters: &[Parameter::number("share", Quantity::Ratio, Range::ANY, "of the weight")],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `quake`\n\nA share of all weights, to the right.\n",
         ..Card::BLANK
     }
@@ -114,6 +116,7 @@ inventory::submit! {
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(0),
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `counted_conic`\n\nAs `limit_conic`.\n",
         ..Card::BLANK
     }
@@ -150,6 +153,7 @@ inventory::submit! {
         summary: "movement plus load factor",
         parameters: &[Parameter::number("first_step", Quantity::Ratio, Range::POSITIVE, "first step").default("0.1")],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `taxicab`\n\nMovement plus load factor.\n",
         ..Card::BLANK
     }

@@ -4,6 +4,7 @@
 //! The short form takes a fixed sample of each result; `FORGERY=all cargo test -p voussoir-tests --release --test files
 //! forgery` tries every entry.
 
+use super::forged_claims::FREE;
 use serde_json::{Value, json};
 use voussoir::kinds::read_study;
 use voussoir::results::CaseResult;
@@ -13,11 +14,8 @@ use voussoir::verify::case::verify_case;
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, changed, crushing, first_case, friction};
 
-/// What is not a claim about the structure.
-const FREE: [&str; 3] = ["/counters", "/seconds", "/version"];
-
 /// Words that stand in results, by what they mean: any other of the same row is a forgery.
-const WORDS: [&[&str]; 6] = [
+pub const WORDS: [&[&str]; 6] = [
     &["collapse", "stands", "unbounded", "no_equilibrium", "limit_point", "stalled"],
     &["three_hinge", "four_hinge", "five_hinge", "rocking", "sliding", "crushing", "mixed"],
     &["intrados", "extrados"],
@@ -293,30 +291,36 @@ fn compare_results() {
     forged("compare", &text);
 }
 
+/// A bridge whose fill weighs, spreads and resists, with partial factors.
+pub const BRIDGE: &str = "name = \"bridge\"\n[scene]\nscene = \"bridge\"\nwidth = 3.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
+    spans = [{ profile = { shape = \"segmental\", span = 3.0, rise = 0.75 }, thickness = 0.25, voussoirs = 9 }]\n\
+    [scene.fill]\ncover = 0.3\ndensity = 1800.0\nfriction_angle = 30.0\n\
+    dispersion = { law = \"boussinesq\", angle = 30.0 }\nresistance = { law = \"fill_pressure\" }\n\
+    [materials.stone]\nlaw = \"rigid\"\ndensity = 2200.0\n[joints.dry]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\n\
+    compressive_strength = 3e6\n[factors]\ncompressive_strength = 1.5\nloads = { live = 1.3 }\n\
+    [[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
+    loads = [{ kind = \"vehicle\", vehicle = \"cs454_single\", at = 0.8 }]\n";
+
 /// A bridge whose fill weighs, spreads and resists, with partial factors: alone, and as the worst of all places.
 #[test]
 fn bridge_and_envelope_results() {
-    let bridge = "name = \"bridge\"\n[scene]\nscene = \"bridge\"\nwidth = 3.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
-        spans = [{ profile = { shape = \"segmental\", span = 3.0, rise = 0.75 }, thickness = 0.25, voussoirs = 9 }]\n\
-        [scene.fill]\ncover = 0.3\ndensity = 1800.0\nfriction_angle = 30.0\n\
-        dispersion = { law = \"boussinesq\", angle = 30.0 }\nresistance = { law = \"fill_pressure\" }\n\
-        [materials.stone]\nlaw = \"rigid\"\ndensity = 2200.0\n[joints.dry]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\n\
-        compressive_strength = 3e6\n[factors]\ncompressive_strength = 1.5\nloads = { live = 1.3 }\n\
-        [[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
-        loads = [{ kind = \"vehicle\", vehicle = \"cs454_single\", at = 0.8 }]\n";
-    forged("bridge", bridge);
+    forged("bridge", BRIDGE);
     let moved = "kind = \"envelope\"\nenvelope = { parameter = \"stages.1.loads.0.at\", from = 0.3, to = 1.5, scan = 3, \
                  tolerance = 0.3, directions = \"forward\" }\n";
-    forged("envelope", &format!("{moved}{bridge}"));
+    forged("envelope", &format!("{moved}{BRIDGE}"));
+}
+
+/// The friction that carries most.
+pub fn optimum() -> String {
+    format!(
+        "kind = \"optimise\"\noptimise = {{ parameter = \"joints.dry.friction\", from = 0.3, to = 0.6, goal = \"maximise\", \
+         scan = 3, tolerance = 0.3 }}\n{}",
+        Arch { joint: friction(0.6), ..Arch::default() }.study()
+    )
 }
 
 /// The best value of a parameter.
 #[test]
 fn optimise_results() {
-    let text = format!(
-        "kind = \"optimise\"\noptimise = {{ parameter = \"joints.dry.friction\", from = 0.3, to = 0.6, goal = \"maximise\", \
-         scan = 3, tolerance = 0.3 }}\n{}",
-        Arch { joint: friction(0.6), ..Arch::default() }.study()
-    );
-    forged("optimise", &text);
+    forged("optimise", &optimum());
 }

@@ -1,6 +1,7 @@
 //! Studies and results as files: read back unchanged, and every changed number found.
 
 mod figures;
+mod forged_claims;
 mod forged_estimates;
 mod forged_tables;
 mod forgery;
@@ -14,4 +15,5 @@ mod round_trip;
 mod streamed;
 mod survey;
 mod tampering;
+mod tolerances;
 mod units;

@@ -46,6 +46,7 @@ voussoir_core::inventory::submit! {
         cost: Some(20),
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Dantzig 1963, Linear Programming and Extensions"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("limit_chain.md"),
         ..Card::BLANK
     }

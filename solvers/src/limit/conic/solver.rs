@@ -68,6 +68,7 @@ voussoir_core::inventory::submit! {
         cost: Some(30),
         sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("limit_conic.md"),
         ..Card::BLANK
     }

@@ -97,6 +97,7 @@ voussoir_core::inventory::submit! {
             "Eckstein & Bertsekas 1992, Math. Programming 55",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("limit_least.md"),
         ..Card::BLANK
     }

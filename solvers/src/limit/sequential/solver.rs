@@ -24,6 +24,7 @@ voussoir_core::inventory::submit! {
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("limit_sequential.md"),
         ..Card::BLANK
     }

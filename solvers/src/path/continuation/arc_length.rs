@@ -74,6 +74,7 @@ voussoir_core::inventory::submit! {
         ],
         sources: &["Riks 1979, Int. J. Solids Struct. 15, 529-551", "Crisfield 1981, Computers & Structures 13, 55-62"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("arc_length.md"),
         ..Card::BLANK
     }

@@ -95,6 +95,7 @@ voussoir_core::inventory::submit! {
         ],
         sources: &["de Borst 1987, Computers & Structures 25, 211-224", "Rots & de Borst 1987, J. Engng Mech. 113, 1739-1758"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("crack_opening.md"),
         ..Card::BLANK
     }

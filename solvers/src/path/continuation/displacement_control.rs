@@ -55,6 +55,7 @@ voussoir_core::inventory::submit! {
         parameters: &[FIRST_STEP, LARGEST_STEP],
         sources: &["Batoz & Dhatt 1979, Int. J. Numer. Meth. Engng 14, 1262-1267"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("displacement_control.md"),
         ..Card::BLANK
     }

@@ -78,6 +78,7 @@ voussoir_core::inventory::submit! {
             "Verhoosel, Remmers & Gutierrez 2009, Int. J. Numer. Meth. Engng 77, 1290-1321",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("dissipation.md"),
         ..Card::BLANK
     }

@@ -39,6 +39,7 @@ voussoir_core::inventory::submit! {
         parameters: &[],
         sources: &["Cocchetti & Maier 2003, Int. J. Numer. Meth. Engng 58 (piecewise linear paths as rate complementarity problems)"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("exact_events.md"),
         ..Card::BLANK
     }

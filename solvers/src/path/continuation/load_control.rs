@@ -52,6 +52,7 @@ voussoir_core::inventory::submit! {
         parameters: &[FIRST_STEP, LARGEST_STEP],
         sources: &["Crisfield 1991, Non-linear Finite Element Analysis of Solids and Structures 1, section 1.2"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("load_control.md"),
         ..Card::BLANK
     }

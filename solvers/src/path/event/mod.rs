@@ -74,6 +74,7 @@ voussoir_core::inventory::submit! {
             "Lemke 1965, Management Science 11, 681-689",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("event_path.md"),
         ..Card::BLANK
     }

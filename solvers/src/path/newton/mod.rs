@@ -139,6 +139,7 @@ voussoir_core::inventory::submit! {
             "Grippo, Lampariello & Lucidi 1986, SIAM J. Numer. Anal. 23, 707-716",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("newton_path.md"),
         ..Card::BLANK
     }

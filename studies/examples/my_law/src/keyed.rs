@@ -60,6 +60,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["where the equations come from: author, year, equation"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("keyed.md"),
         ..Card::BLANK
     }

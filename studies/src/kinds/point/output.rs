@@ -9,9 +9,10 @@ use crate::figures::format::{format_number, format_value};
 use crate::figures::series::Series;
 use crate::kinds::case_study::remarks;
 use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification};
+use crate::results::{head, without_origin};
 use crate::solve::Observer;
 use crate::study::SweptKeys;
-use crate::verify::repeat::differences;
+use crate::verify::Agreement;
 use crate::writers::csv_table::csv_table;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::Value as Json;
@@ -74,25 +75,31 @@ impl LoadedStudy for PointStudy {
         let wanted = self.cases.iter().filter(|case| only.as_ref().is_none_or(|ids| ids.contains(&case.id)));
         let driven: Vec<PointResult> = wanted.map(drive_point).collect();
         let version = json["version"].as_str().unwrap_or_default();
-        let (mut stored_rest, mut again) = (json.clone(), results_json(self, &driven, version));
+        let agreement = json.as_object().map_or(Agreement::Program, |head| Agreement::of_head(head, &self.resolved));
+        let stored_rest = without_origin(json.clone());
+        let (mut stored_rest, mut again) = (stored_rest, without_origin(results_json(self, &driven, version)));
+        if json.get("format").is_none() {
+            again.as_object_mut().map(|older| older.shift_remove("files"));
+        }
         let mut findings = Vec::new();
         if entries.len() != driven.len() || entries.is_empty() {
             findings.push((0, format!("there are {} cases, the study asks for {}", entries.len(), driven.len())));
         }
         for (entry, result) in entries.iter().zip(&driven) {
             let again = serde_json::to_value(result).map_err(|error| error.to_string())?;
-            findings.extend(differences(entry, &again).into_iter().map(|why| (result.id, why)));
+            findings.extend(agreement.differences(entry, &again).into_iter().map(|why| (result.id, why)));
         }
         for value in [&mut stored_rest, &mut again] {
             value["cases"] = Json::Null;
         }
-        findings.extend(differences(&stored_rest, &again).into_iter().map(|why| (0, why)));
+        findings.extend(agreement.differences(&stored_rest, &again).into_iter().map(|why| (0, why)));
         let made = files(self, &driven, version);
         Ok(Verification {
             cases: entries.len(),
             stalled: driven.iter().filter(|result| result.status == PathStatus::Stalled).count(),
             findings,
-            files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes()))),
+            files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes())), agreement),
+            agreement,
             made: made.into_iter().map(|(name, _)| name).collect(),
             own: driven.len(),
             of: self.cases.len(),
@@ -110,7 +117,8 @@ fn stored_ids(results: &Json) -> Vec<usize> {
 
 /// results.json.
 fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> Json {
-    let mut whole = serde_json::json!({ "study": study.name, "version": version, "kind": "point" });
+    let mut whole = Json::Object(head((&study.name, &study.resolved), version, &file_names(study)));
+    whole["kind"] = "point".into();
     if results.len() < study.cases.len() {
         whole["only_cases"] = results.iter().map(|result| result.id).collect();
     }
@@ -118,13 +126,22 @@ fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> J
     whole
 }
 
+/// Names of the files beside results.json, sorted.
+fn file_names(study: &PointStudy) -> Vec<String> {
+    let figure = study.figures.then(|| FIGURE.to_string());
+    figure.into_iter().chain(["results.csv".into()]).collect()
+}
+
+/// The figure of all paths.
+const FIGURE: &str = "figures/path.svg";
+
 /// (name, text) of every file.
 pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
     let whole = results_json(study, results, version);
     let mut out =
         vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(study, results))];
     if study.figures {
-        out.push(("figures/path.svg".into(), figure(study, results)));
+        out.push((FIGURE.into(), figure(study, results)));
     }
     out
 }

@@ -14,9 +14,10 @@ use crate::config::document::Node;
 use crate::config::origin::Origin;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, StoredResults, Verification};
 use crate::kinds::read::read_source;
+use crate::results::{head, without_origin};
 use crate::solve::Observer;
 use crate::study::{DiagnosticList, Drawn, ReadFile, StudyError, StudySource};
-use crate::verify::repeat::differences;
+use crate::verify::Agreement;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
@@ -73,7 +74,16 @@ impl ReportStudy {
             .collect();
         let named = |name: &str| series.get(name).cloned();
         let answers: Vec<Answer> = self.contents.claims.iter().map(|claim| claim.answer(&named)).collect();
-        let mut whole = json!({ "study": self.name, "version": version });
+        let mut files = Vec::new();
+        if self.contents.figures {
+            let chart =
+                |chart: &Chart| (format!("figures/chart-{}.svg", chart.name), chart.svg(&self.contents.series, &parts));
+            files.extend(self.contents.charts.iter().map(chart));
+        }
+        files.push(("report.html".into(), results_page(&self.name, &self.contents, &parts, &answers, (version, date))));
+        let mut names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
+        names.sort();
+        let mut whole = Json::Object(head((&self.name, &self.resolved), version, &names));
         if let Some(date) = date {
             whole["date"] = date.into();
         }
@@ -81,13 +91,7 @@ impl ReportStudy {
         whole["cases"] = json!([]);
         whole["parts"] = parts.entries();
         whole["claims"] = answers.iter().map(Answer::entry).collect();
-        let mut files = vec![("results.json".to_string(), format!("{whole:#}\n"))];
-        if self.contents.figures {
-            let chart =
-                |chart: &Chart| (format!("figures/chart-{}.svg", chart.name), chart.svg(&self.contents.series, &parts));
-            files.extend(self.contents.charts.iter().map(chart));
-        }
-        files.push(("report.html".into(), results_page(&self.name, &self.contents, &parts, &answers, (version, date))));
+        files.insert(0, ("results.json".to_string(), format!("{whole:#}\n")));
         RunOutput {
             files: files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect(),
             table: table(&answers, &parts),
@@ -191,12 +195,19 @@ impl LoadedStudy for ReportStudy {
         };
         let again = made.files.iter().find(|(name, _)| name == "results.json");
         let again: Json = again.and_then(|(_, bytes)| serde_json::from_slice(bytes).ok()).unwrap_or_default();
-        let findings = differences(&json, &again).into_iter().map(|why| (0, why)).collect();
+        let agreement = json.as_object().map_or(Agreement::Program, |head| Agreement::of_head(head, &self.resolved));
+        let mut again = without_origin(again);
+        if json.get("format").is_none() {
+            again.as_object_mut().map(|older| older.shift_remove("files"));
+        }
+        let findings = agreement.differences(&without_origin(json), &again);
+        let findings = findings.into_iter().map(|why| (0, why)).collect();
         Ok(Verification {
             cases: self.contents.claims.len(),
             stalled: 0,
             findings,
-            files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))),
+            files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())), agreement),
+            agreement,
             made: made.files.into_iter().map(|(name, _)| name).collect(),
             own: self.contents.claims.len(),
             of: self.contents.claims.len(),

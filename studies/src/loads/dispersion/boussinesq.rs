@@ -82,6 +82,7 @@ voussoir_core::inventory::submit! {
             "Poulos & Davis 1974, Elastic Solutions for Soil and Rock Mechanics, 3.2.1 (strip load)",
         ],
         file: file!(),
+        package: voussoir_core::package!(),
         page: include_str!("boussinesq.md"),
         ..Card::BLANK
     }

@@ -22,6 +22,7 @@ voussoir_core::inventory::submit! {
         tag: "none",
         summary: "a load reaches the extrados as it stands",
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `none`\n\nThe load acts on the extrados where it stands, as where `dispersion` is not given.\n",
         ..Card::BLANK
     }

@@ -42,6 +42,7 @@ voussoir_core::inventory::submit! {
         ],
         sources: &["Highways Agency 2001, BD 21/01, The Assessment of Highway Bridges and Structures"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `uniform`\n\nA load that stands between two x reaches the extrados evenly between these x widened by depth × tan(angle) \
                on both sides; the force stays. In the fill of a bridge the depth is that of the straight extrados chord under the \
                load's centre, the same for the whole patch; layers may have angles of their own. Elsewhere it is given.\n",

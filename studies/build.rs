@@ -1,0 +1,71 @@
+//! Tells the program where it comes from: target, commit, and a hash of its sources. Results store them, see `results::Origin`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+/// Folders and files of the workspace that decide the numbers of a result.
+const SOURCES: [&str; 5] = ["Cargo.lock", "core/src", "laws", "solvers/src", "studies/src"];
+
+fn main() {
+    let studies = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
+    println!("cargo::rerun-if-changed=build.rs");
+    set("TARGET", &env::var("TARGET").unwrap_or_else(|_| "unknown".into()));
+    set("COMMIT", &commit(&studies).unwrap_or_else(|| "unknown".into()));
+    set("SOURCES", &studies.parent().and_then(sources).unwrap_or_else(|| "unknown".into()));
+}
+
+fn set(name: &str, value: &str) {
+    println!("cargo::rustc-env=VOUSSOIR_{name}={value}");
+}
+
+/// The output of a git command in a folder.
+fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").arg("-C").arg(folder).args(arguments).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_string())
+}
+
+/// The commit of the repository that this file belongs to; `None` without git, and in a foreign repository.
+fn commit(studies: &Path) -> Option<String> {
+    git(studies, &["ls-files", "--error-unmatch", "build.rs"])?;
+    // The log of HEAD grows with each commit and each change of the branch.
+    for name in ["HEAD", "logs/HEAD"] {
+        let file = studies.join(git(studies, &["rev-parse", "--git-path", name])?);
+        if file.exists() {
+            println!("cargo::rerun-if-changed={}", file.display());
+        }
+    }
+    git(studies, &["rev-parse", "HEAD"])
+}
+
+/// A hash of all sources; `None` where the crates of the workspace are not beside each other.
+fn sources(workspace: &Path) -> Option<String> {
+    let mut files = Vec::new();
+    for name in SOURCES {
+        let path = workspace.join(name);
+        println!("cargo::rerun-if-changed={}", path.display());
+        collect(&path, &mut files)?;
+    }
+    files.sort();
+    // FNV-1a of 64 bits: it finds a difference, not a forger.
+    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+    let mut add =
+        |bytes: &[u8]| bytes.iter().for_each(|byte| hash = (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3));
+    for file in files {
+        add(file.strip_prefix(workspace).ok()?.to_str()?.as_bytes());
+        add(&fs::read(&file).ok()?);
+    }
+    Some(format!("{hash:016x}"))
+}
+
+/// The file, or all files below the folder.
+fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Option<()> {
+    if path.is_file() {
+        files.push(path.into());
+        return Some(());
+    }
+    for entry in fs::read_dir(path).ok()? {
+        collect(&entry.ok()?.path(), files)?;
+    }
+    Some(())
+}
