@@ -15,3 +15,33 @@ mod optimise;
 pub mod path;
 pub mod point;
 mod rate;
+
+/// Tags of the solvers and continuation strategies of this crate. Two plug-ins with one tag are refused at start-up, so a
+/// tag in this list cannot belong to anyone else.
+pub const TAGS: &[&str] = &[
+    "arc_length",
+    "crack_opening",
+    "displacement_control",
+    "dissipation",
+    "event_path",
+    "exact_events",
+    "limit_chain",
+    "limit_conic",
+    "limit_least",
+    "limit_sequential",
+    "load_control",
+    "newton_path",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::TAGS;
+    use voussoir_core::plugin::cards;
+
+    #[test]
+    fn the_list_of_tags_is_that_of_the_cards_of_this_crate() {
+        let mut tags: Vec<&str> = cards().iter().map(|card| card.tag).collect();
+        tags.sort_unstable();
+        assert_eq!(tags, TAGS);
+    }
+}

@@ -4,7 +4,7 @@
 use voussoir::results::CaseResult;
 
 /// Residuals of limit analysis that should be rounding.
-const ROUNDING: [&str; 8] = [
+const ROUNDING: [&str; 10] = [
     "equilibrium",
     "strength",
     "fill",
@@ -13,6 +13,8 @@ const ROUNDING: [&str; 8] = [
     "ray_strength",
     "complementarity",
     "associated_flow",
+    "associated_equilibrium",
+    "associated_strength",
 ];
 /// Differences of factors, which the tolerance of the study bounds.
 const FACTORS: [&str; 4] = ["gap", "above_associated", "associated_gap", "interval_gap"];

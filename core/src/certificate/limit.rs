@@ -10,8 +10,9 @@
 use super::mechanism::{CentroidVelocity, Jump, jumps_about, velocity_at};
 use super::products::proved;
 use super::rounding::{ROUNDED, jump_rounding, lie};
+use crate::law::is_associated;
 use crate::law::{Facet, FacetMode, YieldPolygon};
-use crate::limit::{LowerProof, LowerProofKind, Status};
+use crate::limit::{Greatest, LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
 use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, Wrenches, add_force};
 use serde::{Deserialize, Serialize};
@@ -39,11 +40,13 @@ pub struct ContactForce {
     pub force: [f64; 2],
 }
 
-/// What an answer claims.
+/// What an answer claims, with the evidence for it.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'a> {
-    /// How the last stage ends.
-    pub status: Status,
+    /// The status in the solver's answer: the proof that is tried first.
+    pub hint: Status,
+    /// The factor to which the stage goes; infinite for a search for collapse without an end.
+    pub target: f64,
     /// The collapse factor.
     pub factor: Option<f64>,
     /// The factor at which the field is in equilibrium.
@@ -56,14 +59,29 @@ pub struct Claim<'a> {
     pub fill: &'a [f64],
     /// Velocity of every body.
     pub motion: Option<&'a [CentroidVelocity]>,
-    /// Contact forces that balance the varying load alone, or nothing where `supports` are told.
+    /// Contact forces that balance the varying load alone; with `supports`, forces that balance without any load.
     pub ray: Option<&'a [ContactForce]>,
-    /// Motion of every held block, `None` of free ones, where the claim is that no motion of the free ones goes with it.
+    /// Motion of every held block (`None` for free blocks). If given, the claim is that no motion of the free blocks is
+    /// compatible with it.
     pub supports: Option<&'a [Option<CentroidVelocity>]>,
-    /// Whether some factor is feasible where the start is not, and the interval.
+    /// All feasible factors, if the start is not among them.
     pub feasible_interval: Option<[f64; 2]>,
-    /// Set where field and motion are claimed to obey the laws' own flow.
+    /// Given if field and motion are claimed to obey the laws' own flow.
     pub non_associated: Option<NonAssociatedClaim<'a>>,
+}
+
+/// What a claim proves.
+#[derive(Debug, Clone)]
+pub struct Verdict {
+    /// Residuals; `passed` if the question is answered.
+    pub certificate: Certificate,
+    /// The status that is proved.
+    pub status: Status,
+    /// Proved ends of the load factor, lower and upper. Associated flow: from the field and from the motion. The laws' own
+    /// flow: ends of the least load. Both `None` if there is no such number.
+    pub bounds: [Option<f64>; 2],
+    /// How well the greatest (own flow: the least) factor is known.
+    pub greatest: Greatest,
 }
 
 /// What is claimed besides where joints flow as their laws say.
@@ -71,17 +89,23 @@ pub struct Claim<'a> {
 pub struct NonAssociatedClaim<'a> {
     /// No such factor is less.
     pub proved_lower: Option<f64>,
-    /// What that rests on. Multipliers of products are checked; of an exhaustive search, which is no
-    /// certificate, only the order.
+    /// The proof of it. Multipliers of products are checked. An exhaustive search leaves nothing that could be checked.
     pub lower_proof: Option<&'a LowerProof>,
+    /// Set if the solver belongs to this project, so that its exhaustive search is believed.
+    pub search_is_trusted: bool,
     /// The greatest factor of associated flow.
     pub associated_factor: Option<f64>,
-    /// The motion that proves it.
+    /// The motion that bounds it from above.
     pub associated_motion: Option<&'a [CentroidVelocity]>,
+    /// The field that bounds it from below and the forces of the fill that belong to it; results do not store it.
+    pub associated_field: Option<(&'a [ContactForce], &'a [f64])>,
 }
 
 /// Tolerance of residuals that should be rounding.
 pub const ROUNDING: f64 = 1e-10;
+
+/// Relative distance from the target of a stage up to which a field counts as being at the target.
+const REACHED: f64 = 1e-12;
 
 /// A lower bound by products may lose so much of the factor to rounding.
 const PRODUCTS: f64 = 1e-6;
@@ -92,6 +116,9 @@ const EXCESS: f64 = 1e-13;
 /// Errors of a ray that refutes a settlement, relative to its work on the settlement: about the settlement over the least
 /// motion that might go with it after all.
 const REFUTED: f64 = 1e-6;
+
+/// Relative width up to which the two ends of a least load count as one.
+const CLOSED: f64 = 1e-6;
 
 /// Which forces of a joint count as admitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,12 +155,14 @@ struct Check<'a> {
     size: f64,
     /// Sum of the sizes of the fixed and of the varying loads on free bodies \[N\].
     sizes: [f64; 2],
+    /// Set if the laws of all joints have associated flow.
+    associated: bool,
     certificate: Certificate,
 }
 
-/// Checks a claim about the stage with these loads: the certificate, and the bounds \[lower, upper\]
-/// that field and motion prove where both exist.
-pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64) -> (Certificate, Option<[f64; 2]>) {
+/// Checks a claim about the stage with these loads and returns the status that its evidence proves. The hint is tried
+/// first; if it fails, every other statement that the evidence could prove is tried.
+pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64) -> Verdict {
     let joined = |law: usize| assembly.joints.iter().any(|joint| joint.bond == Bond::Law(law));
     let unread = assembly
         .catalogue
@@ -142,8 +171,10 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
         .enumerate()
         .find_map(|(index, (name, law))| (joined(index) && law.facets().is_none()).then_some(name));
     if let Some(name) = unread {
-        let failures = vec![format!("joint law \"{name}\" is not given by facets: its strength cannot be checked")];
-        return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
+        return Verdict::nothing(format!("joint law \"{name}\" has no facets: its strength cannot be checked"));
+    }
+    if let Some(why) = claim.misfit(assembly) {
+        return Verdict::nothing(why);
     }
     if !claim.in_range() {
         let failures = vec!["a force or velocity is not finite, or too great to be checked".into()];
@@ -154,49 +185,175 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
     let mut check = Check {
         groups: assembly.rigid_groups().0,
         polygons: facets.iter().map(|facets| YieldPolygon::of(facets)).collect(),
-        facets,
         centroids: assembly.centroids(),
         size: assembly.size(),
         sizes: [0.0; 2],
+        associated: (0..facets.len()).all(|law| !joined(law) || is_associated(&facets[law])),
+        facets,
         assembly,
         loads,
-        certificate: Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() },
+        certificate: Certificate::blank(),
     };
     let size = |wrenches: &Wrenches| check.free_bodies().map(|b| wrenches[b][0].hypot(wrenches[b][1])).sum();
     check.sizes = [size(&loads.fixed), size(&loads.varying)];
-    let mut bounds = None;
-    match claim.status {
-        Status::Stands => {
-            check.field(claim);
+    check.decide(claim, gap)
+}
+
+impl Verdict {
+    /// The same with the residuals that belong to it; it passes if the question is answered.
+    fn with(self, mut certificate: Certificate) -> Self {
+        if !self.status.is_answer() {
+            certificate.passed = false;
+            certificate.failures.push("no lower end of the least load is proved beyond the start of the stage".into());
         }
-        Status::Collapse if claim.non_associated.is_some() => bounds = check.non_associated(claim, gap),
-        Status::Collapse => {
-            let lower = check.field(claim).then_some(claim.field_factor);
-            let upper = check.upper_bound(claim);
-            match (lower, upper, claim.factor) {
-                (Some(lower), Some((upper, uncertain)), Some(factor)) => {
-                    let scale = lower.abs().max(upper.abs()).max(check.factor_scale());
-                    let spread = (upper - lower).abs().max((factor - lower).abs()) / scale;
-                    check.residual("gap", spread, gap.max(uncertain / scale));
-                    bounds = Some([lower.min(upper), upper.max(lower)]);
-                }
-                _ => check.fail("a collapse needs a factor, an admissible field and a mechanism"),
-            }
-        }
-        Status::Unbounded => {
-            check.field(claim);
-            check.ray(claim);
-        }
-        Status::NoEquilibrium => match claim.supports {
-            Some(supports) => check.blocked(claim, supports),
-            None => check.refutation(claim, gap),
-        },
-        Status::LimitPoint | Status::Stalled => check.fail("not proven"),
+        Verdict { certificate, ..self }
     }
-    (check.certificate, bounds)
+
+    /// Nothing is proved.
+    fn nothing(why: String) -> Self {
+        Verdict {
+            certificate: Certificate { passed: false, residuals: BTreeMap::new(), failures: vec![why] },
+            status: Status::Stalled,
+            bounds: [None; 2],
+            greatest: Greatest::Open,
+        }
+    }
+}
+
+impl Certificate {
+    /// No residual and no failure yet.
+    fn blank() -> Self {
+        Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() }
+    }
+}
+
+impl Claim<'_> {
+    /// The reason why the evidence does not fit the assembly.
+    fn misfit(&self, assembly: &Assembly) -> Option<String> {
+        let own = self.non_associated;
+        let fields = [self.field, self.ray, own.and_then(|own| own.associated_field).map(|(field, _)| field)];
+        if fields.into_iter().flatten().flatten().any(|contact| contact.joint >= assembly.joints.len()) {
+            return Some("a contact force acts on a joint that does not exist".into());
+        }
+        let motions = [self.motion, own.and_then(|own| own.associated_motion)];
+        let fits = |motion: &[CentroidVelocity]| motion.len() == assembly.bodies.len();
+        (!motions.into_iter().flatten().all(fits)).then(|| "the motion does not have one velocity for each body".into())
+    }
+
+    /// Returns true if the field is at the factor to which the stage goes.
+    fn reaches_target(&self, idle: bool) -> bool {
+        let near = (self.field_factor - self.target).abs() <= REACHED * self.target.abs();
+        self.target.is_finite() && (idle || near)
+    }
 }
 
 impl Check<'_> {
+    /// Tries the hint, then every other statement, and returns the first that is proved.
+    fn decide(&mut self, claim: &Claim, gap: f64) -> Verdict {
+        let all = [Status::Stands, Status::Collapse, Status::Unbounded, Status::NoEquilibrium];
+        let mut first: Option<Certificate> = None;
+        let others = all.into_iter().filter(|status| *status != claim.hint);
+        for status in std::iter::once(claim.hint).filter(|hint| all.contains(hint)).chain(others) {
+            self.certificate = Certificate::blank();
+            let bounds = self.proves(status, claim, gap);
+            let certificate = std::mem::replace(&mut self.certificate, Certificate::blank());
+            match bounds {
+                Some(proved) if certificate.passed => return proved.with(certificate),
+                _ if status == claim.hint => first = Some(certificate),
+                _ => {}
+            }
+        }
+        let (bounds, greatest) = (self.proved_ends(claim), Greatest::Open);
+        let status = if bounds == [None; 2] { Status::Stalled } else { Status::Open };
+        let mut certificate = first.unwrap_or_else(Certificate::blank);
+        certificate.passed = false;
+        if certificate.failures.is_empty() {
+            certificate.failures.push("not proven".into());
+        }
+        Verdict { certificate, status, bounds, greatest }
+    }
+
+    /// Checks the evidence for one status. `None` if a part of the evidence is missing or fails.
+    fn proves(&mut self, status: Status, claim: &Claim, gap: f64) -> Option<Verdict> {
+        let idle = self.sizes[1] == 0.0;
+        let verdict = |bounds, greatest| {
+            let certificate = Certificate::blank();
+            Some(Verdict { certificate, status, bounds, greatest })
+        };
+        match status {
+            Status::Stands => {
+                if !claim.reaches_target(idle) {
+                    let (at, target) = (claim.field_factor, claim.target);
+                    self.fail(format!("the field is at the factor {at}, not at the target {target} of the stage"));
+                    return None;
+                }
+                self.field(claim);
+                verdict([None; 2], Greatest::Open)
+            }
+            Status::Collapse if claim.non_associated.is_some() => {
+                let [lower, factor] = self.non_associated(claim, gap)?;
+                let met = factor - lower <= CLOSED * factor.abs().max(self.factor_scale());
+                // An end at the start proves nothing, unless the ends meet there.
+                let lower = Some(lower).filter(|lower| met || *lower > claim.start);
+                let greatest = match lower {
+                    Some(_) if met => Greatest::ProvedOptimal,
+                    Some(_) => Greatest::Bracketed,
+                    None => Greatest::Open,
+                };
+                let least = claim.non_associated.is_some_and(|own| own.lower_proof.is_some());
+                let status = if least && lower.is_none() { Status::Open } else { status };
+                Some(Verdict { certificate: Certificate::blank(), status, bounds: [lower, Some(factor)], greatest })
+            }
+            Status::Collapse => {
+                let lower = self.field(claim).then_some(claim.field_factor);
+                let upper = self.upper_bound(claim);
+                let (Some(lower), Some((upper, uncertain))) = (lower, upper) else {
+                    self.fail("a collapse needs a factor, an admissible field and a mechanism");
+                    return None;
+                };
+                let factor = claim.factor.unwrap_or(lower);
+                let scale = lower.abs().max(upper.abs()).max(self.factor_scale());
+                let spread = (upper - lower).abs().max((factor - lower).abs()) / scale;
+                self.residual("gap", spread, gap.max(uncertain / scale));
+                if lower > claim.target && claim.target >= claim.start {
+                    self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
+                }
+                verdict([Some(lower.min(upper)), Some(upper.max(lower))], Greatest::ProvedOptimal)
+            }
+            Status::Unbounded => {
+                self.field(claim);
+                self.ray(claim);
+                verdict([None; 2], Greatest::ProvedOptimal)
+            }
+            Status::NoEquilibrium => {
+                match claim.supports {
+                    Some(supports) => self.blocked(claim, supports),
+                    None => self.refutation(claim, gap),
+                }
+                verdict([None; 2], Greatest::ProvedOptimal)
+            }
+            Status::LimitPoint | Status::Open | Status::Stalled => None,
+        }
+    }
+
+    /// The ends of the load factor that field and motion prove by themselves with associated flow. An end at the start
+    /// is missing: it says nothing. The laws' own flow only has an upper end: no state lies above the associated load.
+    fn proved_ends(&mut self, claim: &Claim) -> [Option<f64>; 2] {
+        if claim.supports.is_some() {
+            return [None; 2];
+        }
+        let reads_associated = self.associated || claim.non_associated.is_none();
+        self.certificate = Certificate::blank();
+        let carried = reads_associated && claim.field.is_some() && self.field(claim);
+        let lower = (carried && claim.field_factor > claim.start).then_some(claim.field_factor);
+        self.certificate = Certificate::blank();
+        let bounded = claim.motion.is_some() && self.upper_bound(claim).is_some() && self.certificate.passed;
+        let upper = if bounded { self.upper_bound(claim).map(|(upper, _)| upper) } else { None };
+        self.certificate = Certificate::blank();
+        let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
+        if consistent { [lower, upper] } else { [None; 2] }
+    }
+
     fn fail(&mut self, why: impl Into<String>) {
         self.certificate.passed = false;
         self.certificate.failures.push(why.into());
@@ -491,17 +648,25 @@ impl Check<'_> {
             self.residual("associated_motion_scale", (varying - 1.0).abs(), 1e-9);
             let spread = ((dissipated - fixed) / varying - greatest).abs() / unit;
             self.residual("associated_gap", spread, gap.max(uncertain / varying.abs() / unit));
+            if let Some((field, fill)) = own.associated_field {
+                self.associated_field(greatest, field, fill);
+            }
         }
-        let mut lower = own.proved_lower.unwrap_or(claim.start);
+        // Without a proof there is no lower bound beyond the start.
+        let claimed = own.proved_lower.filter(|_| own.lower_proof.is_some());
+        let mut lower = claimed.unwrap_or(claim.start);
         if !(claim.start <= lower && lower <= factor) {
             self.fail(format!("the lower bound {lower} does not lie between the start and the factor"));
         }
         if let Some(proof) = own.lower_proof {
             let strongest = field.iter().map(|c| c.force[0].abs().max(c.force[1].abs())).fold(0.0, f64::max);
             let shown = match proof.by {
-                LowerProofKind::Search => Ok((f64::INFINITY, 0.0)),
+                LowerProofKind::Search if own.search_is_trusted => Ok((f64::INFINITY, 0.0)),
+                LowerProofKind::Search => Err("an exhaustive search leaves nothing that could be checked".into()),
                 LowerProofKind::Start => Ok((claim.start, 0.0)),
-                LowerProofKind::Associated => Ok((own.associated_factor.unwrap_or(claim.start), 0.0)),
+                // The state itself is then one of associated flow: its factor is the greatest and the only one.
+                LowerProofKind::Associated if self.associated => Ok((factor, 0.0)),
+                LowerProofKind::Associated => Err("the flow of some law is not associated".into()),
                 LowerProofKind::Products => {
                     proved(self.assembly, self.loads, &proof.steps, [claim.start, factor], [largest, strongest])
                 }
@@ -518,6 +683,13 @@ impl Check<'_> {
             }
         }
         (admissible && scaled && flows && complementary).then_some([lower, factor])
+    }
+
+    /// The field that bounds the associated factor from below.
+    fn associated_field(&mut self, at: f64, field: &[ContactForce], fill: &[f64]) {
+        let scale = self.residual_scale(at);
+        self.residual("associated_equilibrium", self.imbalance(field, fill, 1.0, at) / scale, ROUNDING);
+        self.residual("associated_strength", self.violation(field, Admitted::Strength) / scale, ROUNDING);
     }
 
     /// The factor that the motion proves, and by how much rounding of its jumps can change it where

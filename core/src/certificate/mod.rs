@@ -9,7 +9,7 @@ mod rounding;
 mod settlement;
 
 pub use self::limit::{
-    Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, certify, largest_jump, motion_size,
+    Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, Verdict, certify, largest_jump, motion_size,
 };
 pub use self::magnitude::{GREATEST_NUMBER, in_range};
 pub use self::mechanism::{

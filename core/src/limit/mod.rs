@@ -7,4 +7,6 @@ mod well_formed;
 
 pub use self::lower_proof::{BracketPoint, BracketWork, FIRST, LAST, LowerProof, LowerProofKind, ProductStep};
 pub use self::problem::{JointForce, LimitJoint, LimitProblem, Velocity};
-pub use self::solver::{Counters, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer, Status};
+pub use self::solver::{
+    Counters, Greatest, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer, Status,
+};

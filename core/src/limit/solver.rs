@@ -22,22 +22,46 @@ pub enum LimitQuestion {
     },
 }
 
-/// How a stage ends.
+/// How a stage ends. The certificate decides it; the status in a solver's answer is a hint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It reached its factor; an admissible field proves it.
+    /// The structure carries the target of the stage: an admissible state at the target proves it.
     Stands,
-    /// It collapses at a factor that both bounds enclose.
+    /// The structure collapses at a factor that both bounds enclose.
     Collapse,
-    /// It carries any factor: a ray proves it.
+    /// The structure carries any factor: a ray proves it.
     Unbounded,
     /// The loads present before the stage begins cannot be carried: a motion proves it.
     NoEquilibrium,
-    /// No rate of solution with growing factor.
+    /// A proved maximum of the stage's parameter, at which the path ends.
     LimitPoint,
-    /// Not proven; the notes say why.
+    /// A number is proved, but not the statement that was asked for: `bounds` holds the proved ends.
+    Open,
+    /// Nothing is proved; the notes give the reason.
     Stalled,
+}
+
+impl Status {
+    /// Returns true if the question was answered: neither open nor stalled.
+    pub fn is_answer(self) -> bool {
+        !matches!(self, Status::Open | Status::Stalled)
+    }
+}
+
+/// How well the greatest factor of the last stage is known (the least one if joints have their own flow).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Greatest {
+    /// A lower and an upper bound meet, or a proof shows that there is no such factor.
+    ProvedOptimal,
+    /// Both bounds of a least load are proved and differ.
+    Bracketed,
+    /// It is the greatest factor of a path within the range that was followed.
+    ProvedOnThePath,
+    /// At least one end is not proved.
+    #[default]
+    Open,
 }
 
 /// Counts of work done.
@@ -84,8 +108,10 @@ pub struct NonAssociated {
     pub bracket: Vec<BracketPoint>,
     /// The greatest factor of associated flow, above which nothing can be.
     pub associated_factor: Option<f64>,
-    /// Its mechanism, scaled as `motion`, which proves it.
+    /// Its mechanism, scaled as `motion`, which bounds it from above.
     pub associated_motion: Option<Vec<Velocity>>,
+    /// Its field, one entry per joint of the problem, which bounds it from below.
+    pub associated_field: Option<Vec<JointForce>>,
 }
 
 /// How rigid blocks follow supports that move.

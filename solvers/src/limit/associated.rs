@@ -31,5 +31,6 @@ pub fn associated_bound(answer: &LimitAnswer) -> NonAssociated {
         bracket: Vec::new(),
         associated_factor: answer.factor.filter(|_| collapse),
         associated_motion: answer.motion.clone().filter(|_| collapse),
+        associated_field: answer.field.clone().filter(|_| collapse),
     }
 }

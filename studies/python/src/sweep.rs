@@ -115,8 +115,8 @@ impl Rows {
         self.variant.push(case.label.variant);
         self.status.push(text(case.status));
         self.load_factor.push(number(case.load_factor));
-        self.lower.push(number(case.bounds.map(|bounds| bounds[0])));
-        self.upper.push(number(case.bounds.map(|bounds| bounds[1])));
+        self.lower.push(number(case.bounds.and_then(|bounds| bounds[0])));
+        self.upper.push(number(case.bounds.and_then(|bounds| bounds[1])));
         self.first_limit_point.push(number(case.path.first_limit_point));
         self.mechanism.push(mechanism.and_then(|mechanism| text(mechanism.kind)));
         self.hinge_count.push(number(mechanism.map(|mechanism| mechanism.hinge_count as f64)));

@@ -29,7 +29,9 @@ pub fn chart(
     notes: &[String],
     style: &ChartStyle,
 ) -> String {
-    let abscissas = series.iter().flat_map(|s| s.points.iter().chain(&s.open_points).map(|p| p.0));
+    let abscissas = series
+        .iter()
+        .flat_map(|s| s.points.iter().chain(&s.open_points).map(|p| p.0).chain(s.ends.iter().map(|end| end.0)));
     let Some(horizontal) = range(abscissas, style.log[0]) else {
         let mut canvas = Canvas::default();
         canvas.text([10.0, 35.0], "no chart: no finite point", 14.0, "start");
@@ -84,7 +86,10 @@ fn unbroken(series: &Series) -> Vec<Vec<(f64, f64)>> {
 
 /// Least and greatest ordinate of the axis, and whether it does not begin at zero.
 fn vertical_range(series: &[Series], log: bool) -> ([f64; 2], bool) {
-    let ordinates = series.iter().flat_map(|s| s.points.iter().map(|p| p.1));
+    let ordinates = series.iter().flat_map(|s| {
+        let ends = s.ends.iter().flat_map(|end| [end.1, end.2]).flatten();
+        s.points.iter().map(|p| p.1).chain(ends)
+    });
     let [low, high] = range(ordinates, log).unwrap_or([if log { 1.0 } else { 0.0 }, if log { 10.0 } else { 1.0 }]);
     let open = series.iter().any(|s| !s.open_points.is_empty());
     if log {
@@ -164,7 +169,14 @@ impl Frame {
             let beside = with_open.iter().position(|&j| j == i).unwrap_or(0) as f64;
             let beside = 15.0 * beside - 7.5 * (with_open.len() as f64 - 1.0);
             for &(x, _) in own.open_points.iter().filter(|(x, _)| self.x.at(*x).is_finite()) {
-                arrow(canvas, i, [self.x.at(x) + beside, self.top + 2.0]);
+                arrow(canvas, i, [self.x.at(x) + beside, self.top + 2.0], 1.0);
+            }
+            for &(x, lower, upper) in &own.ends {
+                // An arrow starts at its end and points to where the value lies.
+                for (end, sense) in [(lower, 1.0), (upper, -1.0)] {
+                    let Some([x, y]) = end.and_then(|end| self.place((x, end))) else { continue };
+                    arrow(canvas, i, [x, y - ARROW * sense], sense);
+                }
             }
             for spot in own.spots.iter().flatten() {
                 let Some([x, y]) = self.place(spot.at) else { continue };
@@ -198,9 +210,9 @@ impl Frame {
 }
 
 /// The mark of an unbounded case, from its tip.
-fn arrow(canvas: &mut Canvas, index: usize, [x, y]: Place) {
-    let corners = [[0.0, 0.0], [7.0, 9.0], [3.0, 9.0], [3.0, 19.0], [-3.0, 19.0], [-3.0, 9.0], [-7.0, 9.0]];
-    let spots: Vec<Place> = corners.iter().map(|c| [x + c[0], y + c[1]]).collect();
+fn arrow(canvas: &mut Canvas, index: usize, [x, y]: Place, sense: f64) {
+    let corners = [[0.0, 0.0], [7.0, 9.0], [3.0, 9.0], [3.0, ARROW], [-3.0, ARROW], [-3.0, 9.0], [-7.0, 9.0]];
+    let spots: Vec<Place> = corners.iter().map(|c| [x + c[0], y + sense * c[1]]).collect();
     canvas.filled(&spots, COLOURS[index % COLOURS.len()]);
 }
 
@@ -220,10 +232,14 @@ fn symbol(canvas: &mut Canvas, [x, y]: Place, marker: Marker, colour: &str) {
     }
 }
 
+/// Length of an arrow [px].
+const ARROW: f64 = 19.0;
+
 /// What an entry of the legend explains.
 enum Entry {
     Line(usize),
     Open(usize),
+    End(usize),
     Kind(Marker),
 }
 
@@ -247,10 +263,14 @@ impl Legend {
         let open = series.iter().enumerate().filter(|(_, s)| !s.open_points.is_empty()).map(|(i, s)| {
             (Entry::Open(i), if series.len() > 1 { format!("{}: unbounded", s.name) } else { "unbounded".into() })
         });
+        let ends = series.iter().enumerate().filter(|(_, s)| !s.ends.is_empty()).map(|(i, s)| {
+            let words = "open: only an end is proved";
+            (Entry::End(i), if series.len() > 1 { format!("{}: {words}", s.name) } else { words.into() })
+        });
         let spots = kinds.into_iter().map(|(words, marker)| (Entry::Kind(marker), words.to_string()));
         let (mut x, mut row) = (70.0, 0.0);
         let mut entries = Vec::new();
-        for (entry, words) in lines.chain(open).chain(spots) {
+        for (entry, words) in lines.chain(open).chain(ends).chain(spots) {
             let width = 46.0 + text_width(&words, 14.0) + 24.0;
             if x > 70.0 && x + width > WIDTH - 20.0 {
                 (x, row) = (70.0, row + 1.0);
@@ -266,7 +286,7 @@ impl Legend {
             let y = base + row * ROW;
             match entry {
                 Entry::Kind(marker) => symbol(canvas, [x + 26.0, y], *marker, INK),
-                Entry::Open(i) => arrow(canvas, *i, [x + 16.0, y - 10.0]),
+                Entry::Open(i) | Entry::End(i) => arrow(canvas, *i, [x + 16.0, y - 10.0], 1.0),
                 Entry::Line(i) => {
                     let own = &series[*i];
                     if !own.unjoined {

@@ -79,6 +79,7 @@ pub fn status_word(status: Status) -> &'static str {
         Status::Unbounded => "unbounded",
         Status::NoEquilibrium => "no_equilibrium",
         Status::LimitPoint => "limit_point",
+        Status::Open => "open",
         Status::Stalled => "stalled",
     }
 }
@@ -93,7 +94,8 @@ pub fn status_meaning(status: Status) -> &'static str {
             "cannot carry the loads present before the stage begins, or cannot follow its supports"
         }
         Status::LimitPoint => "no equilibrium path with a growing load factor",
-        Status::Stalled => "not proven; the notes say why",
+        Status::Open => "a bound of the load factor is proved, its end is not",
+        Status::Stalled => "nothing is proved; the notes give the reason",
     }
 }
 
@@ -145,7 +147,18 @@ pub fn open_bounds(result: &CaseResult) -> Option<[f64; 2]> {
     // With associated flow the certificate has compared them, on the scale of the loads: of a factor of zero what lies between
     // is rounding.
     let met = result.certificate.passed && result.certificate.residuals.contains_key("gap");
-    result.bounds.filter(|[low, high]| !met && (high - low).abs() > OPEN * high.abs().max(low.abs()))
+    result.both_bounds().filter(|[low, high]| !met && (high - low).abs() > OPEN * high.abs().max(low.abs()))
+}
+
+/// The proved ends of an open result: `≥ a`, `≤ b` or `[a, b]`. `None` if no end is proved.
+pub fn proved_interval(result: &CaseResult) -> Option<String> {
+    let digits = |x: f64| format_number(x, 7);
+    match result.bounds? {
+        [Some(lower), None] => Some(format!("≥ {}", digits(lower))),
+        [None, Some(upper)] => Some(format!("≤ {}", digits(upper))),
+        [Some(lower), Some(upper)] => Some(format!("[{}, {}]", digits(lower), digits(upper))),
+        [None, None] => None,
+    }
 }
 
 /// What a case came to, in one line: `collapse, λ = 698.0 (load 698.0 kN)`.
@@ -157,6 +170,9 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
     match (result.status, result.load_factor) {
         (Status::Collapse, Some(found)) if let Some([proved, _]) = open_bounds(result) => {
             format!("carries at least {}: proved; a collapse was found at {}", load(proved), load(found))
+        }
+        (Status::Open, _) if let Some(interval) = proved_interval(result) => {
+            format!("open: proved for the load factor: {interval}")
         }
         (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
         _ if result.supports_cannot_move() => {

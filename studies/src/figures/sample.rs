@@ -225,7 +225,7 @@ pub fn arch_answer(assembly: &Assembly, stages: &[Stage]) -> CaseResult {
     let (motion, mechanism) = hinges.motion(assembly);
     CaseResult {
         load_factor: Some(thrust.1),
-        bounds: Some([thrust.1; 2]),
+        bounds: Some([Some(thrust.1); 2]),
         mechanism: Some(mechanism),
         proof: ProofFields { motion: Some(motion), ..hinges.fields(assembly, thrust) },
         ..blank(0, Status::Collapse)
@@ -367,7 +367,7 @@ fn wall_answer(assembly: &Assembly, top: f64, pole: Vec2) -> CaseResult {
     };
     CaseResult {
         load_factor: Some(1.234567890),
-        bounds: Some([1.2345678, 1.2345679]),
+        bounds: Some([Some(1.2345678), Some(1.2345679)]),
         mechanism: Some(mechanism),
         proof: ProofFields { motion: Some(motion.collect()), field: Some(field), ..ProofFields::default() },
         notes: vec!["read as associated: \"a < b\" & so on".into()],

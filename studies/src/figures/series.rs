@@ -9,6 +9,8 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// Points without an ordinate (unbounded), shown at the top edge; only abscissas count.
     pub open_points: Vec<(f64, f64)>,
+    /// Proved ends of values that are not known: abscissa, lower end, upper end. Arrows point to where the value lies.
+    pub ends: Vec<(f64, Option<f64>, Option<f64>)>,
     /// Marked places; where there are some, only those are marked unless `dots` says so, and the line is drawn in the
     /// order of its points.
     pub spots: Option<Vec<Spot>>,

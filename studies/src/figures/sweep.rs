@@ -100,10 +100,16 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
     let mut notes = Vec::new();
     for variant in variants {
         let mine = || cases.iter().filter(|(case, x)| case.label.variant.as_deref() == variant && x.is_finite());
-        let value =
-            |case: &CaseResult| case.load_factor.map(|factor| factor * unit_load.map_or(1.0, |unit| unit / 1e3));
+        let scale = unit_load.map_or(1.0, |unit| unit / 1e3);
+        let value = |case: &CaseResult| case.load_factor.map(|factor| factor * scale);
+        let answered = mine().filter(|(case, _)| case.status != Status::Open);
         let mut found: Vec<(f64, f64, &CaseResult)> =
-            mine().filter_map(|&(case, x)| Some((x, value(case)?, case))).collect();
+            answered.filter_map(|&(case, x)| Some((x, value(case)?, case))).collect();
+        let ends = mine().filter(|(case, _)| case.status == Status::Open).filter_map(|&(case, x)| {
+            let [lower, upper] = case.bounds?.map(|end| end.map(|end| end * scale));
+            Some((x, lower, upper))
+        });
+        let ends = ends.collect();
         let unbounded = mine().filter(|(case, _)| case.status == Status::Unbounded);
         let mut open_points: Vec<(f64, f64)> = unbounded.map(|&(_, x)| (x, f64::INFINITY)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -127,10 +133,11 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
             dots: true,
             cases: found.iter().map(|(_, _, case)| case.label.id).collect(),
             open_points,
+            ends,
             ..Series::default()
         });
     }
-    if series.iter().all(|s| s.points.is_empty() && s.open_points.is_empty()) {
+    if series.iter().all(|s| s.points.is_empty() && s.open_points.is_empty() && s.ends.is_empty()) {
         return None;
     }
     let y_label = if unit_load.is_some() { "load at collapse [kN]" } else { "load factor at collapse [-]" };

@@ -9,7 +9,7 @@ use super::sensitivity::SensitivityEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
-use voussoir_core::limit::{BracketPoint, Counters, LowerProof, Status};
+use voussoir_core::limit::{BracketPoint, Counters, Greatest, LowerProof, Status};
 
 /// Which case of its study it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -135,8 +135,12 @@ pub struct CaseResult {
     /// On request: how far the factor may be off.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_factor_error: Option<LoadFactorError>,
-    /// \[lower, upper\], from the field and from the mechanism.
-    pub bounds: Option<[f64; 2]>,
+    /// Proved ends of the load factor, \[lower, upper\]: from the field and from the mechanism. An end that nothing proves is
+    /// `null`.
+    pub bounds: Option<[Option<f64>; 2]>,
+    /// How well the greatest load factor is known; with the laws' own flow in limit analysis, the least one.
+    #[serde(default)]
+    pub greatest: Greatest,
     /// What a non-associated answer says besides.
     #[serde(flatten)]
     pub non_associated: NonAssociatedAnswer,
@@ -184,6 +188,12 @@ impl CaseResult {
         CaseResult { notes: vec![why.into()], ..CaseResult::empty() }
     }
 
+    /// Both ends of the load factor, if both are proved.
+    pub fn both_bounds(&self) -> Option<[f64; 2]> {
+        let [lower, upper] = self.bounds?;
+        Some([lower?, upper?])
+    }
+
     /// The load factor, where it is a certified collapse or limit point.
     pub fn collapse_load(&self) -> Option<f64> {
         let ends = matches!(self.status, Status::Collapse | Status::LimitPoint);
@@ -219,6 +229,7 @@ impl CaseResult {
             load_factor: None,
             load_factor_error: None,
             bounds: None,
+            greatest: Greatest::Open,
             non_associated: NonAssociatedAnswer::default(),
             feasible_interval: None,
             flow_read_as: None,

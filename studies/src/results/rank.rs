@@ -10,6 +10,8 @@ pub fn load_rank(case: &CaseResult) -> Option<f64> {
         Status::NoEquilibrium => Some(f64::NEG_INFINITY),
         Status::Unbounded | Status::Stands => Some(f64::INFINITY),
         Status::Collapse | Status::LimitPoint => case.load_factor,
+        // The proved lower end is what it carries in any case; without one it may carry as little as its upper end.
+        Status::Open => case.bounds.and_then(|[lower, upper]| lower.or(upper)),
         Status::Stalled => None,
     }
 }

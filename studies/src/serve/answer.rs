@@ -2,7 +2,7 @@
 
 use super::handles::handles;
 use crate::config::document::Node;
-use crate::figures::format::{format_number, headline, hinge_list, kind_words};
+use crate::figures::format::{format_number, headline, hinge_list, kind_words, proved_interval};
 use crate::results::CaseResult;
 use crate::study::Case;
 use crate::writers::live::case_data;
@@ -28,7 +28,7 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String
         "status": result.status,
         "load_factor": result.load_factor,
         "solver": result.solver,
-        "certified": result.certificate.passed && result.status != Status::Stalled,
+        "certified": result.certificate.passed && result.status.is_answer(),
         "proof": proof(result),
         "mechanism": mechanism,
         "hinges": result.mechanism.iter().flat_map(|own| &own.hinges).map(|hinge| json!(hinge.point)).collect::<Json>(),
@@ -42,7 +42,7 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String
 
 /// What proves the answer, in one sentence.
 fn proof(result: &CaseResult) -> String {
-    let bounds = result.bounds.map(|[low, high]| {
+    let bounds = result.both_bounds().filter(|_| result.status.is_answer()).map(|[low, high]| {
         format!(
             "an admissible field carries λ = {}, a mechanism bounds it at {}",
             format_number(low, 7),
@@ -51,6 +51,7 @@ fn proof(result: &CaseResult) -> String {
     });
     let words = match (result.status, bounds) {
         (Status::Stalled, _) => "not proven".into(),
+        (Status::Open, _) => format!("proved: {}", proved_interval(result).unwrap_or_default()),
         (_, Some(bounds)) => bounds,
         (Status::Unbounded, _) => "weightless struts carry the load alone".into(),
         _ if result.supports_cannot_move() => {

@@ -32,7 +32,7 @@ pub type Solve<'a> = &'a dyn Fn(&CaseInput) -> CaseResult;
 pub fn estimate(case: &Case, result: &CaseResult, solve: Solve) -> Result<LoadFactorError, String> {
     let factor = result.collapse_load().ok_or("there is no proved collapse load")?;
     let path = card(PluginKind::PathSolver, &result.solver);
-    let solution = match (path, result.bounds) {
+    let solution = match (path, result.both_bounds()) {
         (Some(_), _) => case.solver.settings.tolerance * factor.abs(),
         (None, Some([lower, upper])) => (factor - lower).abs().max((upper - factor).abs()),
         (None, None) => return Err("the answer has no bounds".into()),

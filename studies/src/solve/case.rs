@@ -14,7 +14,7 @@ use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
-use voussoir_core::limit::Status;
+use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
 use voussoir_core::plugin::{PluginKind, card};
 
@@ -102,7 +102,8 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
         return;
     }
     result.status = Status::Stalled;
-    (result.load_factor, result.proved_by) = (None, None);
+    result.greatest = Greatest::Open;
+    (result.load_factor, result.bounds, result.proved_by) = (None, None, None);
     if let Some(last) = result.stages.last_mut() {
         (last.status, last.factor) = (Status::Stalled, None);
     }
@@ -136,7 +137,7 @@ pub fn solve_unless_cancelled(case: &Case, observer: &dyn Observer) -> Option<Ca
     }
     let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
     // A path that was cut short is stalled; one that came to its end in the same moment is answered.
-    (result.status != Status::Stalled || !observer.cancelled()).then_some(result)
+    (result.status.is_answer() || !observer.cancelled()).then_some(result)
 }
 
 /// Tells an observer of a study how far the path of a case has come.

@@ -49,7 +49,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
         }
         let (mut result, hinges) = match LimitProblem::new(assembly, &loads[index]) {
             Ok(problem) => {
-                let mut result = solve_stage(input, index, &problem, &loads[index]);
+                let mut result = solve_stage(input, index, &problem, &loads);
                 let hinges = settled_hinges(input, index, (&problem, &loads[index]), &mut result);
                 // How blocks have followed their supports may take back that the flow was read otherwise.
                 result.notes.extend(readings(assembly, &problem, &result));
@@ -90,7 +90,7 @@ fn record_stages(
         done.push(stage(earlier, status, carried.then_some(factor), Vec::new()));
     }
     let reached = match (result.status, stages[index].target) {
-        (Status::Collapse, _) => result.load_factor,
+        (Status::Collapse | Status::Open, _) => result.load_factor,
         (Status::Stands, Target::Factor(factor)) => Some(factor),
         (Status::Stands, Target::Collapse) => result.proof.field_factor,
         _ => None,
@@ -125,16 +125,51 @@ fn read(
     stage: &Stage,
     (problem, loads): (&LimitProblem, &StageLoads),
     asked: LimitQuestion,
-    solved: LimitAnswer,
+    (tag, solved): (&str, LimitAnswer),
 ) -> CaseResult {
     match solved.check_form(problem) {
-        Ok(()) => certified(input, stage, (problem, loads), asked, solved),
+        Ok(()) => certified(input, stage, (problem, loads), asked, (tag, solved)),
         Err(why) => CaseResult::stalled(why),
     }
 }
 
-/// The first certified answer of the solvers to try; without one the stage is stalled.
-fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &StageLoads) -> CaseResult {
+/// The first certified answer of the solvers to try, or the best that is proved without one.
+fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, all_loads: &[StageLoads]) -> CaseResult {
+    let loads = &all_loads[index];
+    let stage = &input.stages[index];
+    let asked = ask(stage, problem);
+    let result = asked_of_solvers(input, index, (problem, loads), asked);
+    if let LimitQuestion::Collapse { start, .. } = asked
+        && matches!(result.status, Status::Collapse | Status::Unbounded | Status::Open)
+        && !start_is_proved(input.stages, index, all_loads, start)
+    {
+        let mut at_start = asked_of_solvers(input, index, (problem, loads), LimitQuestion::Admissible(start));
+        if at_start.status != Status::Stands {
+            at_start.notes.push(format!(
+                "a load factor was found, but nothing proves that the loads at the start of the stage, at the factor {start}, \
+                 are carried"
+            ));
+            return at_start;
+        }
+    }
+    result
+}
+
+/// Returns true if the state at the start of a stage is proved: nothing acts there, or the stage before it was asked and
+/// ended with the same loads.
+fn start_is_proved(stages: &[Stage], index: usize, loads: &[StageLoads], start: f64) -> bool {
+    let unloaded = start == 0.0 && loads[index].fixed.iter().all(|wrench| *wrench == [0.0; 3]);
+    let continues = index > 0 && start == 0.0 && stages[index].gravity.is_none() && !covered(stages, loads, index - 1);
+    unloaded || continues
+}
+
+/// Puts a question to the solvers to try, one after the other.
+pub(super) fn asked_of_solvers(
+    input: &CaseInput,
+    index: usize,
+    (problem, loads): (&LimitProblem, &StageLoads),
+    asked: LimitQuestion,
+) -> CaseResult {
     let stage = &input.stages[index];
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let mut notes = Vec::new();
@@ -146,36 +181,31 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, loads: &
             notes.push(format!("{tag}: {why}"));
             continue;
         }
-        let asked = ask(stage, problem);
-        let solved = solver.solve(problem, asked);
-        let mut result = read(input, stage, (problem, loads), asked, solved);
-        if !result.certificate.passed {
+        let solve =
+            |posed: &LimitProblem| read(input, stage, (problem, loads), asked, (tag, solver.solve(posed, asked)));
+        let mut result = solve(problem);
+        let bracketed = result.bounds.is_some() && result.non_associated.lower_proof.is_some();
+        if !result.certificate.passed && !bracketed {
             // Numbers of very unlike sizes are what solvers fail on; the certificate reads the laws as they are.
             let within = problem.within_reach();
             let bounded = within.as_ref().unwrap_or(problem).with_bounded_shear();
-            let solve =
-                |easier: LimitProblem| read(input, stage, (problem, loads), asked, solver.solve(&easier, asked));
-            let easier = [within, bounded].into_iter().flatten();
-            result = easier.map(solve).find(|again| again.certificate.passed).unwrap_or(result);
+            let mut easier = [within, bounded].into_iter().flatten();
+            result = easier
+                .find_map(|easier| Some(solve(&easier)).filter(|again| again.certificate.passed))
+                .unwrap_or(result);
         }
         result.solver = tag.to_string();
         if result.certificate.passed {
-            best = Some(result);
-            break;
+            return result;
         }
         notes.push(format!("{tag}: {}", result.certificate.failures.join("; ")));
         notes.append(&mut result.notes);
-        best.get_or_insert(result);
+        if best.as_ref().is_none_or(|best| best.status == Status::Stalled && result.status == Status::Open) {
+            best = Some(result);
+        }
     }
-    let mut result = best.unwrap_or_else(|| CaseResult::stalled("no solver takes this scene"));
-    if !result.certificate.passed {
-        // An answer without proof is no answer.
-        result.status = Status::Stalled;
-        result.load_factor = None;
-        result.bounds = None;
-        result.notes = notes;
-    }
-    result
+    let best = best.unwrap_or_else(|| CaseResult::stalled("no solver takes this scene"));
+    CaseResult { notes, ..best }
 }
 
 /// Notes on how limit analysis reads a scene that says more.

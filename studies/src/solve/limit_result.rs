@@ -1,12 +1,13 @@
 //! A limit solver's answer in the form of a result, with its certificate.
 
 use super::case_input::CaseInput;
+use super::ours::is_ours;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::load_entries::fill_entries;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields};
 use voussoir_core::certificate::{
-    CentroidVelocity, Claim, ContactForce, NonAssociatedClaim, certify, jumps, mechanism, motion_size,
+    CentroidVelocity, Claim, ContactForce, NonAssociatedClaim, Verdict, certify, jumps, mechanism, motion_size,
 };
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status, Velocity};
@@ -19,7 +20,7 @@ pub(super) fn certified(
     stage: &Stage,
     (problem, loads): (&LimitProblem, &StageLoads),
     asked: LimitQuestion,
-    solved: LimitAnswer,
+    (tag, solved): (&str, LimitAnswer),
 ) -> CaseResult {
     let assembly = input.assembly;
     let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
@@ -31,14 +32,26 @@ pub(super) fn certified(
     let associated_motion =
         own.and_then(|own| own.associated_motion.as_ref()).map(|motion| body_velocities(assembly, problem, motion));
     let reading = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
+    let (start, max) = match asked {
+        LimitQuestion::Admissible(factor) => (factor, factor),
+        LimitQuestion::Collapse { start, max } => (start, max),
+    };
+    let associated_fill;
+    let associated_contacts;
+    let associated_field = match own.and_then(|own| own.associated_field.as_ref()) {
+        Some(forces) => {
+            associated_contacts = contact_forces(problem, forces);
+            associated_fill = problem.fill_forces(forces, &loads.fill_bounds);
+            Some((&associated_contacts[..], &associated_fill[..]))
+        }
+        None => None,
+    };
     let claim = Claim {
-        status: solved.status,
+        hint: solved.status,
+        target: max,
         factor: solved.factor,
         field_factor: solved.field_factor,
-        start: match asked {
-            LimitQuestion::Admissible(factor) => factor,
-            LimitQuestion::Collapse { start, .. } => start,
-        },
+        start,
         field: field.as_deref(),
         fill: &fill,
         motion: motion.as_deref(),
@@ -48,22 +61,39 @@ pub(super) fn certified(
         non_associated: own.map(|own| NonAssociatedClaim {
             proved_lower: own.proved_lower,
             lower_proof: own.lower_proof.as_ref(),
+            search_is_trusted: is_ours(tag),
             associated_factor: own.associated_factor,
             associated_motion: associated_motion.as_deref(),
+            associated_field,
         }),
     };
-    let (certificate, bounds) = certify(assembly, loads, &claim, input.settings.tolerance);
+    let Verdict { certificate, status, bounds, greatest } = certify(assembly, loads, &claim, input.settings.tolerance);
+    // Only the evidence of what is proved goes into the result.
+    let shows = |statuses: &[Status]| statuses.contains(&status);
+    let field = field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
+    let motion = motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
+    let ray = ray.filter(|_| shows(&[Status::Unbounded]));
     let finite = |x: f64| x.is_finite().then_some(x);
     let mut notes = solved.notes;
-    if solved.status == Status::Stands && stage.target == Target::Collapse {
+    if status == Status::Stands && stage.target == Target::Collapse {
         notes.push(format!("no collapse up to factor_max = {}", stage.factor_max));
     }
+    let [lower, upper] = bounds;
+    let found = solved.factor.filter(|factor| own.is_some() && upper == Some(*factor));
     CaseResult {
-        status: solved.status,
-        load_factor: solved.factor,
-        bounds,
+        status,
+        load_factor: match status {
+            Status::Collapse => solved.factor.or(lower),
+            Status::Open => lower.or(found),
+            _ => None,
+        },
+        bounds: (bounds != [None; 2]).then_some(bounds),
+        greatest,
         flow_read_as: (problem.non_associated && own.is_none()).then(|| "associated".into()),
-        feasible_interval: solved.feasible_interval.map(|ends| ends.map(finite)),
+        feasible_interval: solved
+            .feasible_interval
+            .filter(|_| status == Status::NoEquilibrium)
+            .map(|ends| ends.map(finite)),
         mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, reading)),
         proof: ProofFields {
             field_factor: field.is_some().then_some(solved.field_factor),

@@ -4,6 +4,7 @@
 //! would be solved. Checking a result without a solver is [`mod@crate::verify`].
 
 pub mod accuracy;
+pub(crate) mod associated_load;
 pub mod auto;
 mod case;
 mod case_input;
@@ -14,11 +15,13 @@ pub mod knobs;
 mod limit;
 mod limit_result;
 mod observer;
+pub(crate) mod ours;
 mod path;
 mod path_result;
+pub(crate) mod path_status;
 mod recorded;
 pub(crate) mod restated;
-mod safe_theorem;
+pub(crate) mod safe_theorem;
 pub mod sensitivity;
 mod settlement;
 mod statics;

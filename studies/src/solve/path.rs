@@ -3,10 +3,10 @@
 use super::auto::{TaggedPathSolver, willing};
 use super::case_input::CaseInput;
 use super::path_result::{Seen, path_result};
+use super::path_status::Progress;
 use super::recorded::Recorder;
 use crate::results::{CaseResult, LimitPointEntry};
-use voussoir_core::certificate::PathChecker;
-use voussoir_core::limit::Status;
+use voussoir_core::certificate::{PathChecker, tolerance};
 use voussoir_core::path::{PathObserver, PathProblem, PathState};
 
 /// Relative difference of two strategies' limit points that are one.
@@ -20,6 +20,7 @@ struct Watched<'a> {
     ended: bool,
     /// The last state of each stage, by index.
     ends: Vec<Option<PathState>>,
+    progress: Progress,
     recorder: Recorder<'a>,
     /// The first state that cannot be read, in words.
     malformed: Result<(), String>,
@@ -32,6 +33,7 @@ impl PathObserver for Watched<'_> {
             return false;
         }
         self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
+        self.progress.add(problem, state);
         self.recorder.state(problem, state);
         self.ended |= !self.observer.state(problem, state);
         self.checker.state(problem, state) && !self.ended
@@ -54,7 +56,7 @@ pub(super) fn solve_by_path(
     };
     let (mut result, mut ended) = by_strategies(input, &problem, first, observer);
     for next in others {
-        if ended || result.status != Status::Stalled {
+        if ended || result.status.is_answer() {
             break;
         }
         let CaseResult { solver: tag, notes, .. } = result;
@@ -73,7 +75,7 @@ fn by_strategies(
     observer: &mut dyn PathObserver,
 ) -> (CaseResult, bool) {
     let (mut own, mut ended) = traced(input, problem, solver, observer);
-    if own.status != Status::Stalled {
+    if own.status.is_answer() {
         return (own, ended);
     }
     let own_why = why(&own);
@@ -87,8 +89,8 @@ fn by_strategies(
         let settings = input.settings.followed_by(strategy);
         let (mut other, stopped) = traced(&CaseInput { settings: &settings, ..*input }, problem, solver, observer);
         ended = stopped;
-        let missed = missed_peak(&own, &other).filter(|_| other.status != Status::Stalled);
-        if other.status != Status::Stalled && missed.is_none() {
+        let missed = missed_peak(&own, &other).filter(|_| other.status.is_answer());
+        if other.status.is_answer() && missed.is_none() {
             other.notes.push(format!("followed by {name}: {whose} stalled ({own_why})"));
             return (other, ended);
         }
@@ -129,15 +131,24 @@ fn traced(
         Err(why) => return (failed(tag, why), false),
     };
     let recorder = Recorder::new(input);
-    let mut watched =
-        Watched { checker, observer, ended: false, ends: vec![None; input.stages.len()], recorder, malformed: Ok(()) };
+    let mut watched = Watched {
+        checker,
+        observer,
+        ended: false,
+        ends: vec![None; input.stages.len()],
+        progress: Progress::default(),
+        recorder,
+        malformed: Ok(()),
+    };
     let solved = solver.trace(problem, input.settings, &mut watched);
-    let energy = solver.energy_tolerance();
-    let Watched { checker, ended, ends, recorder, malformed, .. } = watched;
+    // A solver may ask for less, never for more.
+    let energy = solver.energy_tolerance().min(tolerance("path_energy").result);
+    let Watched { checker, ended, ends, progress, recorder, malformed, .. } = watched;
     if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
         return (failed(tag, format!("{tag}: {why}")), ended);
     }
-    (path_result(input, tag, problem, solved, Seen { checker, ends, energy, states: recorder.chosen() }), ended)
+    let seen = Seen { checker, ends, progress, energy, states: recorder.chosen() };
+    (path_result(input, tag, problem, solved, seen), ended)
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

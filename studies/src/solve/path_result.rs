@@ -1,7 +1,11 @@
 //! A path solver's answer in the form of a result, with its certificate.
 
+use super::associated_load::associated_load;
 use super::case_input::CaseInput;
 use super::coarse_joints::coarse_joints;
+use super::ours::path_is_ours;
+use super::path_status::{Evidence, PathVerdict, Progress};
+use super::safe_theorem::safe_theorem_holds;
 use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
@@ -27,6 +31,8 @@ pub(super) struct Seen {
     pub checker: PathChecker,
     /// The last state of each stage, by index.
     pub ends: Vec<Option<PathState>>,
+    /// How far the states have come.
+    pub progress: Progress,
     /// How much of the energy of a stage its steps may lose.
     pub energy: f64,
     /// States that are kept.
@@ -39,21 +45,36 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    Seen { checker, ends, energy, states }: Seen,
+    Seen { checker, ends, progress, energy, states }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     prefer_symmetric(assembly, &checker, finite, &mut solved);
-    let certificate = certificate(&solved, &checker, finite, energy);
-    let (mut status, mut notes) = (solved.status, solved.notes.clone());
+    let mut certificate = certificate(&solved, &checker, finite, energy);
+    let ours = path_is_ours(tag, input.settings);
+    let evidence = Evidence {
+        problem,
+        progress: &progress,
+        hint: (solved.status, solved.load_step, solved.factor),
+        certificate: &certificate,
+        ours,
+        field_is_proof: !finite && safe_theorem_holds(assembly),
+        associated: associated_load(input),
+    };
+    let PathVerdict { status, greatest, bounds, failures } = evidence.decide();
+    let mut notes = solved.notes.clone();
     notes.extend(coarse_note(problem, assembly));
-    if !certificate.passed && status != Status::Stalled {
-        // An answer without proof is no answer.
-        notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
-        status = Status::Stalled;
+    if !status.is_answer() {
+        certificate.passed = false;
+        certificate.failures.extend(failures);
+        if solved.status.is_answer() {
+            notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
+        }
+        keep_proved(&mut solved, &progress, problem, (status, ours));
     }
     let load_step = &problem.load_steps[solved.load_step];
     let load_factor = match status {
         Status::Collapse | Status::LimitPoint if !load_step.gravity => solved.factor,
+        Status::Open => bounds[0],
         _ => None,
     };
     let rates = scaled_rates(assembly, problem, &solved);
@@ -84,6 +105,8 @@ pub(super) fn path_result(
     CaseResult {
         status,
         load_factor,
+        bounds: (bounds != [None; 2]).then_some(bounds),
+        greatest,
         proved_by: (status == Status::Stands).then_some(Proof::Path),
         solver: tag.into(),
         mechanism,
@@ -104,6 +127,28 @@ pub(super) fn path_result(
         notes,
         path: PathRecord { states, ..path_record(input, problem, solved, checker) },
         ..CaseResult::empty()
+    }
+}
+
+/// Leaves of an answer only what its states prove: the state with the greatest factor, without a mechanism; of solvers
+/// from elsewhere no event and no limit point.
+fn keep_proved(solved: &mut PathAnswer, progress: &Progress, problem: &PathProblem, (status, ours): (Status, bool)) {
+    (solved.motion, solved.ray, solved.unique) = (None, None, None);
+    if !ours {
+        solved.limit_points.clear();
+        solved.branchings.clear();
+        solved.stability.clear();
+        solved.events.clear();
+    }
+    let last = problem.load_steps.len() - 1;
+    match progress.greatest_of(last) {
+        Some(state) if status == Status::Open => {
+            (solved.load_step, solved.factor, solved.state) = (last, Some(state.factor), state.clone());
+        }
+        _ => {
+            solved.load_step = solved.load_step.min(last);
+            solved.factor = None;
+        }
     }
 }
 
@@ -147,7 +192,7 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
 fn first_limit_point(solved: &PathAnswer) -> Option<f64> {
     let ends = matches!(solved.status, Status::Collapse | Status::LimitPoint);
     let first = solved.limit_points.iter().find(|peak| peak.load_step == solved.load_step);
-    first.map(|peak| peak.factor).or(solved.factor).filter(|_| ends)
+    first.map(|peak| peak.factor).or(solved.factor.filter(|_| ends))
 }
 
 fn limit_point(stages: &[Stage], problem: &PathProblem, peak: &ProvenPeak) -> LimitPointEntry {
@@ -207,10 +252,6 @@ fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy:
             certificate.passed = false;
             certificate.failures.push(format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
         }
-    }
-    if solved.status == Status::Stalled {
-        certificate.passed = false;
-        certificate.failures.push("not proven".into());
     }
     certificate
 }

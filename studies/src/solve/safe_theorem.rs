@@ -12,7 +12,7 @@ pub(super) fn is_without_softening(assembly: &Assembly) -> bool {
 }
 
 /// Whether an admissible field proves that a structure stands: associated flow, and nothing softens or yields in blocks.
-pub(super) fn safe_theorem_holds(assembly: &Assembly) -> bool {
+pub(crate) fn safe_theorem_holds(assembly: &Assembly) -> bool {
     is_without_softening(assembly) && facets_of_joints(assembly).flatten().all(|facets| is_associated(&facets))
 }
 

@@ -9,11 +9,11 @@ use crate::results::convert::field_entries;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, DisplacementEntry, ProofFields};
 use voussoir_core::certificate::{
-    CentroidVelocity, Claim, ContactForce, Hinge, certify, jumps, largest_jump, mechanism, settlement_residuals,
-    support_motions,
+    CentroidVelocity, Claim, ContactForce, Hinge, Verdict, certify, jumps, largest_jump, mechanism,
+    settlement_residuals, support_motions,
 };
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{LimitProblem, LimitSolver, SettlementAnswer, Status};
+use voussoir_core::limit::{Greatest, LimitProblem, LimitSolver, SettlementAnswer, Status};
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, StageLoads};
 
@@ -75,7 +75,8 @@ fn blocked(
     result: &mut CaseResult,
 ) -> Result<(), String> {
     let claim = Claim {
-        status: Status::NoEquilibrium,
+        hint: Status::NoEquilibrium,
+        target: asked.factor,
         factor: None,
         field_factor: asked.factor,
         start: asked.factor,
@@ -87,11 +88,12 @@ fn blocked(
         feasible_interval: None,
         non_associated: None,
     };
-    let (certificate, _) = certify(input.assembly, asked.loads, &claim, input.settings.tolerance);
-    if !certificate.passed {
+    let Verdict { certificate, status, .. } = certify(input.assembly, asked.loads, &claim, input.settings.tolerance);
+    if status != Status::NoEquilibrium {
         return Err(certificate.failures.join("; "));
     }
-    result.status = Status::NoEquilibrium;
+    result.status = status;
+    result.greatest = Greatest::Open;
     result.certificate = certificate;
     result.proof = ProofFields { ray: Some(field_entries(ray)), ..ProofFields::default() };
     result.notes.push(
@@ -123,7 +125,8 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
     let free = body_velocities(assembly, problem, &motion);
     let motion: Vec<CentroidVelocity> = supports.iter().zip(free).map(|(held, free)| held.unwrap_or(free)).collect();
     let claim = Claim {
-        status: Status::Stands,
+        hint: Status::Stands,
+        target: asked.factor,
         factor: None,
         field_factor: asked.factor,
         start: asked.factor,
@@ -135,8 +138,8 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
         feasible_interval: None,
         non_associated: None,
     };
-    let (certificate, _) = certify(assembly, asked.loads, &claim, input.settings.tolerance);
-    if !certificate.passed {
+    let Verdict { certificate, status, .. } = certify(assembly, asked.loads, &claim, input.settings.tolerance);
+    if status != Status::Stands {
         return Err(certificate.failures.join("; "));
     }
     result.certificate.residuals.extend(certificate.residuals);

@@ -39,7 +39,7 @@ pub(super) fn stands_by_statics(input: &CaseInput) -> Option<CaseResult> {
 /// What limit analysis says of a case whose path `auto` has not found and whose friction is not associated: that it
 /// stands, where it proves that nothing moves below the loads, or, read with associated flow, where a field carries them.
 pub(super) fn stands_without_a_path(input: &CaseInput, path: &CaseResult) -> Option<CaseResult> {
-    if path.status != Status::Stalled || !asks_whether_it_stands(input) || !is_without_softening(input.assembly) {
+    if path.status.is_answer() || !asks_whether_it_stands(input) || !is_without_softening(input.assembly) {
         return None;
     }
     let mut result = solve_by_limit_analysis(input);
@@ -94,7 +94,7 @@ pub(super) fn falls_by_statics(input: &CaseInput) -> Option<CaseResult> {
 }
 
 /// Whether what the joints admit is a cone: friction and nothing else.
-fn resists_by_friction_alone(assembly: &Assembly) -> bool {
+pub(super) fn resists_by_friction_alone(assembly: &Assembly) -> bool {
     assembly.joints.iter().all(|joint| match joint.bond {
         Bond::Bonded => true,
         Bond::Law(law) => {

@@ -61,7 +61,7 @@ fn verify_stages(case: &Case, result: &CaseResult, last: usize, findings: &mut F
     findings.expect(result.stages[last].status == result.status, "status is not that of the last stage");
     let earlier_stand = result.stages[..last].iter().all(|s| s.status == Status::Stands);
     findings.expect(
-        earlier_stand || result.status == Status::NoEquilibrium || result.status == Status::Stalled,
+        earlier_stand || matches!(result.status, Status::NoEquilibrium | Status::Stalled),
         "an earlier stage did not stand",
     );
     for (done, stage) in result.stages[..last].iter().zip(&case.stages) {

@@ -8,9 +8,10 @@ use crate::results::load_entries::fill_entries;
 use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, FillEntry};
+use crate::solve::ours::is_ours;
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, Claim, ContactForce, Hinge, NonAssociatedClaim, certify, mechanism, support_motions,
+    CentroidVelocity, Claim, ContactForce, Hinge, NonAssociatedClaim, Verdict, certify, mechanism, support_motions,
 };
 use voussoir_core::law::{FlowRule, is_associated};
 use voussoir_core::limit::Status;
@@ -71,7 +72,11 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let supports = blocked.then(|| support_motions(assembly, &case.stages, last)).transpose()?;
     let infinite = [f64::NEG_INFINITY, f64::INFINITY];
     let claim = Claim {
-        status: result.status,
+        hint: result.status,
+        target: match stage.target {
+            Target::Factor(factor) => factor,
+            Target::Collapse => stage.factor_max,
+        },
         factor: result.load_factor,
         field_factor: result.proof.field_factor.unwrap_or(start),
         start,
@@ -82,22 +87,24 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         supports: supports.as_deref(),
         feasible_interval: result.feasible_interval.map(|ends| [0, 1].map(|i| ends[i].unwrap_or(infinite[i]))),
         non_associated: own.then_some(NonAssociatedClaim {
-            proved_lower: result.bounds.map(|b| b[0]),
+            proved_lower: result.bounds.and_then(|bounds| bounds[0]),
             lower_proof: result.non_associated.lower_proof.as_ref(),
             associated_factor,
             associated_motion: stored.associated_motion.as_deref(),
+            search_is_trusted: is_ours(&result.solver),
+            associated_field: None,
         }),
     };
-    let (certificate, bounds) = certify(assembly, loads, &claim, case.solver.settings.tolerance);
-    verify_certificate(result, &certificate, bounds, findings);
+    let verdict = certify(assembly, loads, &claim, case.solver.settings.tolerance);
+    verify_verdict(result, &verdict, findings);
     verify_factors(result, (stage, loads), &claim, last, findings);
     verify_bracket(result, findings);
     let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
     verify_mechanism(assembly, result, &stored, reading, last, findings);
     let fits = result.flow_read_as.as_deref().is_none_or(|word| word == "associated" && non_associated);
     findings.expect(fits, "flow_read_as does not fit the laws");
-    if !certificate.passed {
-        findings.0.extend(certificate.failures);
+    if verdict.status != result.status {
+        findings.0.extend(verdict.certificate.failures);
     }
     Ok(())
 }
@@ -110,26 +117,28 @@ fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
     stored.iter().map(words).eq(expected.iter().map(words)) && GEOMETRY.same_rows(&numbers(stored), &numbers(expected))
 }
 
-/// The stored certificate and bounds against the recomputed ones.
-fn verify_certificate(
-    result: &CaseResult,
-    certificate: &Certificate,
-    bounds: Option<[f64; 2]>,
-    findings: &mut Findings,
-) {
-    let verdict = certificate.passed == result.certificate.passed;
-    findings.expect(verdict, "the stored verdict is not the recomputed one");
+/// The stored status, certificate and bounds against those that the stored evidence proves.
+fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Findings) {
+    let Verdict { certificate, status, bounds, greatest } = verdict;
+    findings.expect(*status == result.status, "the stored evidence does not prove the stored status");
+    findings.expect(*greatest == result.greatest, "greatest does not fit the bounds");
+    findings.expect(certificate.passed == result.certificate.passed, "the stored verdict is not the recomputed one");
     let same = certificate.residuals.iter().all(|(name, value)| {
         result.certificate.residuals.get(name).is_some_and(|stored| (stored - value).abs() <= EQUAL)
     });
     findings.expect(same, "stored residuals are not the recomputed ones");
-    let collapse = result.status == Status::Collapse;
-    findings.expect(result.load_factor.is_some() == collapse, "only a collapse has a load factor");
-    let bounds_match = match (result.bounds, bounds) {
-        (Some(a), Some(b)) => close(a[0], b[0]) && close(a[1], b[1]),
+    let fits = match result.status {
+        Status::Collapse => result.load_factor.is_some(),
+        Status::Open => true,
+        _ => result.load_factor.is_none(),
+    };
+    findings.expect(fits, "only a collapse or an open result has a load factor");
+    let stored = result.bounds.unwrap_or_default();
+    let bounds_match = (0..2).all(|end| match (stored[end], bounds[end]) {
+        (Some(a), Some(b)) => close(a, b),
         (None, None) => true,
         _ => false,
-    };
+    });
     findings.expect(bounds_match, "bounds are not those of field and mechanism");
 }
 
@@ -146,6 +155,7 @@ fn verify_bracket(result: &CaseResult, findings: &mut Findings) {
     });
     let ends = curve.last().is_none_or(|end| {
         let (Some([lower, _]), Some(factor)) = (result.bounds, result.load_factor) else { return false };
+        let lower = lower.unwrap_or(end.lower);
         // What rounding of multipliers may cost is taken off the bound: up to 1e-6 of the factor.
         let near = 2e-6 * factor.abs();
         (end.lower - lower).abs() <= near && end.found.is_some_and(|found| (found - factor).abs() <= near)
@@ -167,10 +177,11 @@ fn verify_factors(
         findings.expect(apart, "the feasible interval holds the start");
     }
     if let (Some(reached), Target::Factor(factor)) = (result.stages[last].factor, stage.target) {
-        let expected = if result.status == Status::Collapse { result.load_factor.unwrap_or(f64::NAN) } else { factor };
+        let found = matches!(result.status, Status::Collapse | Status::Open);
+        let expected = if found { result.load_factor.unwrap_or(f64::NAN) } else { factor };
         findings.expect(close(reached, expected), "the factor of the last stage is not the load factor");
     }
-    if let (Status::Collapse, Target::Collapse) = (result.status, stage.target) {
+    if let (Status::Collapse | Status::Open, Target::Collapse) = (result.status, stage.target) {
         let same = result.stages[last].factor == result.load_factor;
         findings.expect(same, "the factor of the last stage is not the load factor");
     }

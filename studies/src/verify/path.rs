@@ -1,19 +1,24 @@
 //! What a path's result claims. The history (slip before the end) is not stored; equilibrium, strength, contact
 //! and mechanism of the state are recomputed.
 
-use super::fields::{path_forces, path_motion, velocities};
+use super::fields::{close, path_forces, path_motion, velocities};
 use super::findings::Findings;
 use crate::results::CaseResult;
 use crate::results::inelastic_state;
 use crate::results::path_state::{mechanism_of, small};
+use crate::solve::CaseInput;
+use crate::solve::associated_load::associated_load;
+use crate::solve::ours::path_is_ours;
+use crate::solve::path_status::{ELSEWHERE, ordered};
+use crate::solve::safe_theorem::safe_theorem_holds;
 use crate::study::Case;
 use voussoir_core::certificate::{
     CentroidVelocity, Displaced, Mechanism, PathChecker, flow_residual, path_structure, power_residual, ray_residual,
 };
-use voussoir_core::limit::Status;
+use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::{PathObserver, PathProblem, PathState};
+use voussoir_core::path::{LoadStepEnd, PathObserver, PathProblem, PathState};
 
 /// Checks the result of a case that a path solver answered.
 pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
@@ -31,6 +36,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
         let same = result.load_factor == result.proof.field_factor;
         findings.expect(same, "the load factor is not that of the field");
     }
+    verify_status(case, &problem, &state, result, findings);
     // At a peak of finite displacements forces change with every motion: there may be none to report.
     if result.status == Status::Collapse && !finite {
         findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
@@ -45,6 +51,45 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
         findings.expect(small("path_ray", residual), "the ray does not carry the load");
     }
     Ok(())
+}
+
+/// What the status needs besides the state: the target of the stage, bounds, and a solver that is believed.
+fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: &CaseResult, findings: &mut Findings) {
+    let input = CaseInput::of(case);
+    let field_is_proof = !input.settings.finite && safe_theorem_holds(&case.assembly);
+    let stands_by_field = result.status == Status::Stands && field_is_proof;
+    if result.status.is_answer() {
+        let believed = path_is_ours(&result.solver, input.settings) || stands_by_field;
+        findings.expect(believed, ELSEWHERE);
+        findings.expect(result.bounds.is_none(), "only an open path has bounds");
+    }
+    match result.status {
+        Status::Stands => {
+            let at_target = problem.load_steps.last().is_some_and(|step| match step.end {
+                LoadStepEnd::Factor(end) => close(state.factor, end),
+                LoadStepEnd::Collapse(end) => end.is_finite() && (state.factor >= end || close(state.factor, end)),
+            });
+            findings.expect(at_target, "the state is not at the target of the last stage");
+        }
+        Status::Open => {
+            let upper = associated_load(&input).map(|load| load.factor);
+            let lower = Some(state.factor).filter(|_| result.load_factor.is_some());
+            let stored = result.bounds.unwrap_or_default();
+            let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
+                (Some(a), Some(b)) => close(a, b),
+                (a, b) => a == b,
+            };
+            let [lower, upper] = ordered(lower, upper);
+            findings.expect(
+                same(stored[0], lower) && same(result.load_factor, lower),
+                "the state does not prove the lower end",
+            );
+            findings.expect(same(stored[1], upper), "limit analysis does not prove the upper end");
+        }
+        _ => {}
+    }
+    let greatest = if result.status == Status::Open { Greatest::Open } else { Greatest::ProvedOnThePath };
+    findings.expect(result.greatest == greatest, "greatest does not fit the status");
 }
 
 /// The state that a result ends at, from its entries.

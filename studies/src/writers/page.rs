@@ -9,8 +9,15 @@ use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 
 /// Order of statuses in the summary.
-pub(crate) const STATUSES: [Status; 6] =
-    [Status::Collapse, Status::Stands, Status::Unbounded, Status::NoEquilibrium, Status::LimitPoint, Status::Stalled];
+pub(crate) const STATUSES: [Status; 7] = [
+    Status::Collapse,
+    Status::Stands,
+    Status::Unbounded,
+    Status::NoEquilibrium,
+    Status::LimitPoint,
+    Status::Open,
+    Status::Stalled,
+];
 
 /// The page's style sheet.
 const STYLE: &str = include_str!("page/style.css");

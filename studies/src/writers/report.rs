@@ -12,7 +12,7 @@ use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
-    open_bounds, status_meaning, status_word, unit_load,
+    open_bounds, proved_interval, status_meaning, status_word, unit_load,
 };
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
@@ -223,9 +223,7 @@ fn case_table(study: &StudyOutput) -> String {
         }));
         let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
         row.extend(with_load.then_some(force));
-        row.push(
-            case.bounds.map_or(String::new(), |[a, b]| format!("{} … {}", format_number(a, 7), format_number(b, 7))),
-        );
+        row.push(proved_interval(case).unwrap_or_default());
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| {
             format!("{}{}", kind_words(m.kind), if m.unique == Some(false) { ", not unique" } else { "" })
         }));

@@ -2,7 +2,7 @@
 
 use super::study_output::StudyOutput;
 use crate::figures::format::{
-    format_number, format_short, format_value, hinge_list, kind_word, open_bounds, status_word,
+    format_number, format_short, format_value, hinge_list, kind_word, open_bounds, proved_interval, status_word,
 };
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -76,6 +76,7 @@ pub fn results_table(study: &StudyOutput) -> String {
 fn factor(case: &CaseResult) -> String {
     match (case.status, case.load_factor) {
         (Status::Unbounded, _) => "unbounded".into(),
+        (Status::Open, _) => proved_interval(case).unwrap_or_else(|| "-".into()),
         (_, Some(factor)) => {
             let first = case.path.first_limit_point.filter(|first| (first - factor).abs() > 1e-9 * factor.abs());
             match (open_bounds(case), first) {

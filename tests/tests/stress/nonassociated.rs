@@ -54,7 +54,7 @@ fn check(walls: &[Value], most_open: usize) -> usize {
         let expected = number(wall, "least");
         let scale = expected.abs().max(1e-3);
         assert!((least - expected).abs() <= 2e-7 * scale, "{wall}: {least}, {:?}", result.bounds);
-        let [low, _] = result.bounds.expect("a bracket");
+        let [low, _] = result.both_bounds().expect("a bracket");
         assert!(low <= expected + 2e-7 * scale, "{wall}: {least}, {:?}", result.bounds);
         open += usize::from(low < least * (1.0 - 1e-6));
         assert!(low >= least * (1.0 - 1e-3) - 1e-9, "{wall}: [{low}, {least}]");
@@ -109,7 +109,7 @@ fn products_alone_bound_the_least_loads() {
     let mut closed = 0;
     for wall in &small {
         let result = answer_with(wall, "coulomb", "solver = \"limit_least\"\nsearch_limit = 0.0");
-        let [low, _] = result.bounds.expect("a bracket");
+        let [low, _] = result.both_bounds().expect("a bracket");
         let expected = number(wall, "least");
         assert!(low <= expected + 2e-7 * expected.abs().max(1e-3), "{wall}: {low}");
         closed += usize::from(low >= expected * (1.0 - 1e-6));
@@ -127,7 +127,7 @@ fn split_products_bound_the_least_loads() {
         let limits = "solver = \"limit_least\"\nsearch_limit = 0.0\nproduct_rows = 0\nproduct_limit = 1.0";
         let result = answer_with(wall, "coulomb", limits);
         assert!(result.certificate.passed, "{wall} {:?}", result.certificate);
-        let [low, _] = result.bounds.expect("a bracket");
+        let [low, _] = result.both_bounds().expect("a bracket");
         let expected = number(wall, "least");
         println!("{low} of {expected}, {:?}", result.counters.get("product_multiplications"));
         assert!(low <= expected + 2e-7 * expected.abs().max(1e-3), "{wall}: {low}");

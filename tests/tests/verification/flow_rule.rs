@@ -32,7 +32,7 @@ fn least_of(number: usize) {
     let (found, result) = collapse(&wall(bricks, COULOMB, &solver));
     assert_close(found, least, 2e-8);
     assert_close(result.non_associated.associated_load_factor.expect("an upper bound"), associated, 2e-8);
-    let [low, high] = result.bounds.expect("a bracket");
+    let [low, high] = result.both_bounds().expect("a bracket");
     assert!(0.0 <= low && low <= least * (1.0 + 2e-8) && high == found);
     println!("wall {number}: [{low:.8}, {high:.8}] in {:.1} s, {:?}", result.seconds, result.counters);
     let end = result.non_associated.bracket.last().expect("a curve");
@@ -166,7 +166,7 @@ fn a_flat_arch_closes() {
         let mut cases = study.cases.iter().filter(|case| case.variant.as_deref() == Some("least"));
         let case = cases.find(|case| case.scene.as_deref() == Some(name)).expect("a scene of the study");
         let result = solve_case(case);
-        let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
+        let ([low, _], found) = (result.both_bounds().expect("a bracket"), result.load_factor.expect("a factor"));
         assert!(low >= found * (1.0 - 2e-6), "{name}: [{low}, {found}] {:?}", result.notes);
     }
 }
@@ -179,7 +179,7 @@ fn two_rings_feel_the_flow_rule() {
     let mut ratios = Vec::new();
     for case in study.cases.iter().filter(|case| case.variant.as_deref() == Some("least")) {
         let result = solve_case(case);
-        let ([low, _], found) = (result.bounds.expect("a bracket"), result.load_factor.expect("a factor"));
+        let ([low, _], found) = (result.both_bounds().expect("a bracket"), result.load_factor.expect("a factor"));
         assert!(result.certificate.passed && low >= found * (1.0 - 2e-6), "[{low}, {found}] {:?}", result.notes);
         ratios.push(found / result.non_associated.associated_load_factor.expect("an upper bound"));
     }
@@ -221,7 +221,7 @@ fn a_single_ring_hardly_feels_the_flow_rule() {
         assert_eq!(result.solver, "limit_least");
         println!("friction {friction}: {:?} in {:.3} s {:?}", result.bounds, result.seconds, result.counters);
         assert_close(least, expected, 1e-9);
-        assert_close(result.bounds.expect("a bracket")[0], expected, 3e-8);
+        assert_close(result.both_bounds().expect("a bracket")[0], expected, 3e-8);
         assert_close(result.non_associated.associated_load_factor.expect("an upper bound"), expected, 1e-11);
     }
 }

@@ -217,14 +217,10 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     }
     run.events += 1;
     if run.events > run.most_events {
-        return Err(lost(
-            follower,
-            format!(
-                "{} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them",
-                run.most_events
-            ),
-            run.sense,
-        ));
+        return Err(End::Stalled(format!(
+            "{} events without an end: the path turns in small loops, as friction without dilatancy can; newton_path steps over them",
+            run.most_events
+        )));
     }
     let by_chain = follower.trace.log.counts.by_force_method;
     let direction = direction(follower, run)?;
@@ -313,7 +309,9 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
 fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
     let factor = follower.trace.state.factor;
     let excluded = "every combination of the contact points of the active set is excluded";
-    let (direction, note) = match next_direction(&mut follower.trace, &run.load) {
+    let next = next_direction(&mut follower.trace, &run.load);
+    let undecided = matches!(next, Next::NoneRises);
+    let (direction, note) = match next {
         Next::Go(direction) => {
             follower.limits.falling &= direction.factor <= 0.0;
             return Ok(direction);
@@ -336,7 +334,7 @@ fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
                 "at λ = {factor:.12} no rate of solution has λ rising: {excluded}; whether a rate goes on with λ standing still or falling is not decided"
             ),
         ),
-        Next::Lost(why) => return Err(lost(follower, why, run.sense)),
+        Next::Lost(why) => return Err(End::Stalled(why)),
     };
     if direction.is_none() || follower.limits.greatest.is_none() {
         follower.trace.log.notes.push(note);
@@ -344,17 +342,11 @@ fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
     if !follower.limits.falling && (direction.is_some() || follower.limits.greatest.is_some()) {
         follower.limits.add(follower.trace.present(), run.sense);
     }
-    direction.ok_or(End::LimitPoint)
-}
-
-/// The path cannot be followed further: an answer where a limit point is proven already.
-fn lost(follower: &mut Follower, why: String, sense: f64) -> End {
-    let rises = follower.limits.below(follower.trace.state.factor, sense);
-    if rises {
-        return End::Stalled(why);
+    match direction {
+        Some(direction) => Ok(direction),
+        None if undecided => Err(End::Stalled("the path was not followed beyond its limit point".into())),
+        None => Err(End::LimitPoint),
     }
-    follower.trace.log.notes.push(format!("the branch beyond the limit point was not followed to an end: {why}"));
-    End::LimitPoint
 }
 
 /// The answer of an end.

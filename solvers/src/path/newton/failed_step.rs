@@ -191,7 +191,7 @@ fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failur
         if no_peak && tracer.limit.peak.is_some() {
             note_peak(tracer, &following.branch.tangent, following.direction);
         }
-        end_path(tracer, Status::LimitPoint, why)
+        end_path(tracer, Status::Stalled, why)
     } else {
         no_step(tracer, failure, &following.branch.tangent, following.direction)
     })

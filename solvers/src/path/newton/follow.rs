@@ -501,7 +501,7 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
 fn out_of_work(tracer: &mut Tracer, following: &Following, work: &str) -> LoadStepEnding {
     if following.limits.linear && !above_all(tracer, following.direction) && tracer.limit.unproven.is_none() {
         let why = not_followed(tracer, &format!("{work} were not enough"));
-        return end_path(tracer, Status::LimitPoint, why);
+        return end_path(tracer, Status::Stalled, why);
     }
     // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
     let factor = tracer.state.factor;

@@ -147,7 +147,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         tracer.limit.peak = None;
         end_path(&mut tracer, Status::Stalled, format!("the limit point on the path is not proven: {why}"));
     }
-    if let (Status::LimitPoint, Some(factor)) = (tracer.ending.status, tracer.limit.proven) {
+    if let (Status::LimitPoint | Status::Stalled, Some(factor)) = (tracer.ending.status, tracer.limit.proven) {
         tracer.record.notes.push(format!(
             "at factor {factor} no rate of solution has a factor that grows: all modes of the active contact points are excluded"
         ));

@@ -130,7 +130,7 @@ impl Chart {
         let dots = !path && selection.points.is_none();
         let all_points = selection.points.is_some();
         let spots = (path || !spots.is_empty()).then_some(spots);
-        Series { name, points, open_points, spots, dots, unjoined: all_points, cases: Vec::new() }
+        Series { name, points, open_points, spots, dots, unjoined: all_points, ..Series::default() }
     }
 
     /// Where the kind of mechanism changes along a line: the first point of the new kind.

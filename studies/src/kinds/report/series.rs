@@ -158,6 +158,7 @@ fn result(entry: &Json, path: &str) -> Value {
         match (status, entry[path].as_f64()) {
             ("unbounded", _) if path != "value" => return Value::Number(f64::INFINITY),
             ("unbounded", _) => return Value::none("unbounded"),
+            ("open", _) => return Value::unknown("a case is open"),
             (_, Some(number)) => return Value::Number(number),
             ("stalled", _) => return Value::unknown("a case stalled"),
             ("no_equilibrium", _) => return Value::none("no equilibrium"),
@@ -171,7 +172,7 @@ fn result(entry: &Json, path: &str) -> Value {
     let names: Vec<&str> = path.split('.').collect();
     if names[0] == "mechanism"
         && entry["mechanism"].is_null()
-        && ["collapse", "limit_point", "stalled"].contains(&status)
+        && ["collapse", "limit_point", "open", "stalled"].contains(&status)
     {
         return Value::unknown("no mechanism was found");
     }

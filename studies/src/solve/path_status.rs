@@ -1,0 +1,187 @@
+//! The status that the states of a path prove; the status in the solver's answer is a hint.
+
+use super::associated_load::AssociatedLoad;
+use voussoir_core::certificate::Certificate;
+use voussoir_core::limit::{Greatest, Status};
+use voussoir_core::path::{LoadStep, LoadStepEnd, PathProblem, PathState};
+
+/// Relative distance from the end of a load step up to which a state counts as being there.
+const REACHED: f64 = 1e-12;
+
+/// Relative difference of the loads of a path and of limit analysis up to which they agree.
+const SAME_LOAD: f64 = 1e-6;
+
+/// States of a path, in the order in which its solver reported them.
+#[derive(Debug, Default)]
+pub(super) struct Progress {
+    /// The last state.
+    last: Option<PathState>,
+    /// The state with the greatest factor of the last load step, if it is not the last state.
+    greatest: Option<PathState>,
+    /// Number of load steps whose end a state has reached, one after the other.
+    completed: usize,
+}
+
+impl Progress {
+    /// Takes the next state over.
+    pub fn add(&mut self, problem: &PathProblem, state: &PathState) {
+        if let Some(before) = self.last.replace(state.clone()) {
+            let turns = before.load_step == state.load_step && state.factor < before.factor;
+            let of_step = self.greatest.as_ref().filter(|greatest| greatest.load_step == state.load_step);
+            let exceeds = of_step.is_none_or(|greatest| before.factor > greatest.factor);
+            if turns && exceeds {
+                self.greatest = Some(before);
+            }
+        }
+        while let Some(step) = problem.load_steps.get(self.completed) {
+            let here = self.completed == state.load_step && is_complete(step, state.factor);
+            if !here && !moves_nothing(step) {
+                break;
+            }
+            self.completed += 1;
+        }
+    }
+
+    /// The state with the greatest factor of a load step.
+    pub fn greatest_of(&self, load_step: usize) -> Option<&PathState> {
+        let of_step = self.greatest.iter().chain(&self.last).filter(|state| state.load_step == load_step);
+        of_step.max_by(|a, b| a.factor.total_cmp(&b.factor))
+    }
+
+    /// Returns true if states have reached the end of every load step before this one.
+    pub fn arrives_at(&self, load_step: usize) -> bool {
+        self.completed >= load_step
+    }
+}
+
+/// Returns true if a factor is at the end of a load step, or beyond a bound of its search.
+fn is_complete(step: &LoadStep, factor: f64) -> bool {
+    match step.end {
+        LoadStepEnd::Factor(end) => (factor - end).abs() <= REACHED * end.abs(),
+        LoadStepEnd::Collapse(end) => end.is_finite() && factor >= end * (1.0 - REACHED * end.signum()),
+    }
+}
+
+/// Returns true if a load step ends where it starts.
+fn moves_nothing(step: &LoadStep) -> bool {
+    matches!(step.end, LoadStepEnd::Factor(end) if end == step.start)
+}
+
+/// What is known of a path when its status is decided.
+pub(super) struct Evidence<'a> {
+    pub problem: &'a PathProblem,
+    pub progress: &'a Progress,
+    /// The status, the load step and the factor in the solver's answer.
+    pub hint: (Status, usize, Option<f64>),
+    /// Residuals of all states.
+    pub certificate: &'a Certificate,
+    /// Set if solver and strategies belong to this project: the proof of a limit point rests on them.
+    pub ours: bool,
+    /// Set if a static field at the target is proof enough: small displacements and associated flow, without softening.
+    pub field_is_proof: bool,
+    /// The load of limit analysis with associated flow, if no state of the path can lie above it.
+    pub associated: Option<AssociatedLoad>,
+}
+
+/// What a path proves.
+pub(super) struct PathVerdict {
+    pub status: Status,
+    pub greatest: Greatest,
+    /// Proved ends of the load factor of an open result.
+    pub bounds: [Option<f64>; 2],
+    /// Reasons why the hint is not believed.
+    pub failures: Vec<String>,
+}
+
+impl Evidence<'_> {
+    /// The status that is proved.
+    pub fn decide(&self) -> PathVerdict {
+        if !self.certificate.passed {
+            return PathVerdict { failures: Vec::new(), ..PathVerdict::nothing() };
+        }
+        let (status, load_step, _) = self.hint;
+        let Some(step) = self.problem.load_steps.get(load_step) else {
+            return PathVerdict {
+                failures: vec!["the path ends in a load step that does not exist".into()],
+                ..PathVerdict::nothing()
+            };
+        };
+        let mut failures = Vec::new();
+        if !self.progress.arrives_at(load_step) {
+            failures.push("no state reaches the end of an earlier load step".to_string());
+        }
+        match status {
+            Status::Stands if !self.progress.arrives_at(self.problem.load_steps.len()) => {
+                failures.push("no state of the path is at the target of the last stage".into());
+            }
+            Status::Stands if !self.ours && !self.field_is_proof => failures.push(ELSEWHERE.into()),
+            Status::Collapse | Status::LimitPoint | Status::Unbounded | Status::NoEquilibrium if !self.ours => {
+                failures.push(ELSEWHERE.into());
+            }
+            Status::Open | Status::Stalled => failures.push("the end of the path is not proved".into()),
+            _ => {}
+        }
+        failures.extend(self.contradiction(step));
+        if failures.is_empty() {
+            return PathVerdict { status, greatest: Greatest::ProvedOnThePath, bounds: [None; 2], failures };
+        }
+        let bounds = self.proved_ends();
+        let status = if bounds == [None; 2] { Status::Stalled } else { Status::Open };
+        PathVerdict { status, greatest: Greatest::Open, bounds, failures }
+    }
+
+    /// The reason why limit analysis contradicts the claim: the path ends above the associated load, or below it although
+    /// flow is associated, or it goes past it.
+    fn contradiction(&self, step: &LoadStep) -> Option<String> {
+        let AssociatedLoad { factor: limit, unit, associated } = self.associated?;
+        let (status, load_step, factor) = self.hint;
+        if load_step + 1 != self.problem.load_steps.len() || step.gravity {
+            return None;
+        }
+        let reached = match status {
+            Status::Collapse | Status::LimitPoint => factor?,
+            Status::Stands => self.progress.greatest_of(load_step)?.factor,
+            _ => return None,
+        };
+        let margin = SAME_LOAD * limit.abs().max(1e-3 * unit);
+        let ends = matches!((status, step.end), (Status::Collapse | Status::LimitPoint, LoadStepEnd::Collapse(_)));
+        if reached > limit + margin {
+            Some(format!(
+                "the path reaches the factor {reached}; limit analysis proves that none above {limit} is carried"
+            ))
+        } else if associated && ends && reached < limit - margin {
+            Some(format!("the path ends at the factor {reached}; with associated flow limit analysis finds {limit}"))
+        } else {
+            None
+        }
+    }
+
+    /// Proved ends of the load factor: the greatest state of the last load step and the associated load.
+    fn proved_ends(&self) -> [Option<f64>; 2] {
+        let last = self.problem.load_steps.len() - 1;
+        let step = &self.problem.load_steps[last];
+        if step.gravity || !self.progress.arrives_at(last) {
+            return [None; 2];
+        }
+        let upper = self.associated.map(|load| load.factor);
+        let lower = self.progress.greatest_of(last).map(|state| state.factor).filter(|factor| *factor > step.start);
+        ordered(lower, upper)
+    }
+}
+
+/// A lower and an upper end in their order. The state of a path may lie above the associated load by its tolerance; a state
+/// that lies further above proves nothing.
+pub(crate) fn ordered(lower: Option<f64>, upper: Option<f64>) -> [Option<f64>; 2] {
+    let Some((low, high)) = lower.zip(upper) else { return [lower, upper] };
+    [(low <= high + SAME_LOAD * high.abs()).then_some(low.min(high)), upper]
+}
+
+/// The reason why a path from elsewhere proves no more than its states.
+pub(crate) const ELSEWHERE: &str =
+    "the end of a path by a solver or strategy from outside this project is not proved, only its states";
+
+impl PathVerdict {
+    fn nothing() -> Self {
+        PathVerdict { status: Status::Stalled, greatest: Greatest::Open, bounds: [None; 2], failures: Vec::new() }
+    }
+}
