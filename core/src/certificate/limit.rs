@@ -10,8 +10,7 @@
 use super::mechanism::{CentroidVelocity, Jump, jumps_about, velocity_at};
 use super::products::proved;
 use super::rounding::{ROUNDED, jump_rounding, lie};
-use crate::law::is_associated;
-use crate::law::{Facet, FacetMode, YieldPolygon};
+use crate::law::{Facet, FacetMode, YieldPolygon, is_associated};
 use crate::limit::{Greatest, LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
 use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, Wrenches, add_force};
@@ -176,10 +175,6 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
     if let Some(why) = claim.misfit(assembly) {
         return Verdict::nothing(why);
     }
-    if !claim.in_range() {
-        let failures = vec!["a force or velocity is not finite, or too great to be checked".into()];
-        return (Certificate { passed: false, residuals: BTreeMap::new(), failures }, None);
-    }
     let facets: Vec<Vec<Facet>> =
         assembly.catalogue.laws.iter().map(|(_, law)| law.facets().unwrap_or_default()).collect();
     let mut check = Check {
@@ -230,6 +225,9 @@ impl Certificate {
 impl Claim<'_> {
     /// The reason why the evidence does not fit the assembly.
     fn misfit(&self, assembly: &Assembly) -> Option<String> {
+        if !self.in_range() {
+            return Some("a force or velocity is not finite, or too great to be checked".into());
+        }
         let own = self.non_associated;
         let fields = [self.field, self.ray, own.and_then(|own| own.associated_field).map(|(field, _)| field)];
         if fields.into_iter().flatten().flatten().any(|contact| contact.joint >= assembly.joints.len()) {

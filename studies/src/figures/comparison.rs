@@ -17,7 +17,9 @@ fn telling_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
 
 /// The bracket of a cell, where it is open.
 pub fn open_bracket(cell: &ComparisonCell) -> Option<[f64; 2]> {
-    cell.bounds.filter(|[low, high]| (high - low).abs() > OPEN * high.abs().max(low.abs()))
+    let [lower, upper] = cell.bounds?;
+    let ends = lower.zip(upper).map(|(low, high)| [low, high]);
+    ends.filter(|[low, high]| (high - low).abs() > OPEN * high.abs().max(low.abs()))
 }
 
 /// The name of a row: its scene and its swept values.

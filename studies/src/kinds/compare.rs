@@ -85,7 +85,7 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
                 case: id,
                 status: case.map(|case| case.status),
                 load_factor: case.and_then(|case| case.load_factor),
-                bounds: case.and_then(CaseResult::both_bounds),
+                bounds: case.and_then(|case| case.bounds),
                 ratio,
                 mechanism: case.and_then(|case| case.mechanism.as_ref()).map(|mechanism| mechanism.kind),
                 flow_read_as: case.and_then(|case| case.flow_read_as.clone()),

@@ -41,7 +41,7 @@ pub struct ComparisonCell {
     /// The collapse factor.
     pub load_factor: Option<f64>,
     /// \[proved lower, found upper\].
-    pub bounds: Option<[f64; 2]>,
+    pub bounds: Option<[Option<f64>; 2]>,
     /// The factor over that of the reference; `null` where one of them is missing or the reference is 0.
     pub ratio: Option<f64>,
     /// Kind of the mechanism.

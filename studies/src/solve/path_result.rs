@@ -140,13 +140,12 @@ fn keep_proved(solved: &mut PathAnswer, progress: &Progress, problem: &PathProbl
         solved.stability.clear();
         solved.events.clear();
     }
-    let last = problem.load_steps.len() - 1;
-    match progress.greatest_of(last) {
+    match progress.load_step().and_then(|at| progress.greatest_of(at)) {
         Some(state) if status == Status::Open => {
-            (solved.load_step, solved.factor, solved.state) = (last, Some(state.factor), state.clone());
+            (solved.load_step, solved.factor, solved.state) = (state.load_step, Some(state.factor), state.clone());
         }
         _ => {
-            solved.load_step = solved.load_step.min(last);
+            solved.load_step = solved.load_step.min(problem.load_steps.len() - 1);
             solved.factor = None;
         }
     }

@@ -35,11 +35,16 @@ impl Progress {
         }
         while let Some(step) = problem.load_steps.get(self.completed) {
             let here = self.completed == state.load_step && is_complete(step, state.factor);
-            if !here && !moves_nothing(step) {
+            if !here && !changes_nothing(problem, step) {
                 break;
             }
             self.completed += 1;
         }
+    }
+
+    /// The load step of the last state.
+    pub fn load_step(&self) -> Option<usize> {
+        self.last.as_ref().map(|state| state.load_step)
     }
 
     /// The state with the greatest factor of a load step.
@@ -62,9 +67,11 @@ fn is_complete(step: &LoadStep, factor: f64) -> bool {
     }
 }
 
-/// Returns true if a load step ends where it starts.
-fn moves_nothing(step: &LoadStep) -> bool {
-    matches!(step.end, LoadStepEnd::Factor(end) if end == step.start)
+/// Returns true if a load step ends where it starts, or has no load and no settlement: solvers may pass over it.
+fn changes_nothing(problem: &PathProblem, step: &LoadStep) -> bool {
+    let LoadStepEnd::Factor(end) = step.end else { return false };
+    let unloaded = || problem.wrenches(&step.loading).iter().all(|wrench| *wrench == [0.0; 3]);
+    end == step.start || (step.loading.settlements.is_empty() && unloaded())
 }
 
 /// What is known of a path when its status is decided.
@@ -156,15 +163,17 @@ impl Evidence<'_> {
         }
     }
 
-    /// Proved ends of the load factor: the greatest state of the last load step and the associated load.
+    /// Proved ends of the load factor of the stage at which the path breaks off: its greatest state and, of the last stage,
+    /// the associated load.
     fn proved_ends(&self) -> [Option<f64>; 2] {
-        let last = self.problem.load_steps.len() - 1;
-        let step = &self.problem.load_steps[last];
-        if step.gravity || !self.progress.arrives_at(last) {
+        let Some(at) = self.progress.load_step() else { return [None; 2] };
+        let step = &self.problem.load_steps[at];
+        if step.gravity || !self.progress.arrives_at(at) {
             return [None; 2];
         }
-        let upper = self.associated.map(|load| load.factor);
-        let lower = self.progress.greatest_of(last).map(|state| state.factor).filter(|factor| *factor > step.start);
+        let is_last = at + 1 == self.problem.load_steps.len();
+        let upper = self.associated.filter(|_| is_last).map(|load| load.factor);
+        let lower = self.progress.greatest_of(at).map(|state| state.factor).filter(|factor| *factor > step.start);
         ordered(lower, upper)
     }
 }

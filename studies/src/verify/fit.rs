@@ -34,7 +34,7 @@ fn summary(result: &CaseResult) -> Vec<f64> {
         result.non_associated.associated_load_factor,
     ];
     let interval = result.feasible_interval.into_iter().flatten().flatten();
-    factors.into_iter().flatten().chain(result.bounds.into_iter().flatten()).chain(interval).collect()
+    factors.into_iter().flatten().chain(result.bounds.into_iter().flatten().flatten()).chain(interval).collect()
 }
 
 /// Collects what does not fit.

@@ -72,7 +72,8 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
             findings.expect(at_target, "the state is not at the target of the last stage");
         }
         Status::Open => {
-            let upper = associated_load(&input).map(|load| load.factor);
+            let is_last = state.load_step + 1 == problem.load_steps.len();
+            let upper = associated_load(&input).filter(|_| is_last).map(|load| load.factor);
             let lower = Some(state.factor).filter(|_| result.load_factor.is_some());
             let stored = result.bounds.unwrap_or_default();
             let same = |a: Option<f64>, b: Option<f64>| match (a, b) {

@@ -65,8 +65,8 @@ pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
             cells.extend([
                 cell.status.map_or("not answered", status_word).to_string(),
                 number(cell.load_factor),
-                number(cell.bounds.map(|b| b[0])),
-                number(cell.bounds.map(|b| b[1])),
+                number(cell.bounds.and_then(|bounds| bounds[0])),
+                number(cell.bounds.and_then(|bounds| bounds[1])),
                 number(cell.ratio),
                 cell.mechanism.map_or(String::new(), |kind| kind_word(kind).into()),
                 cell.case.to_string(),
