@@ -13,7 +13,7 @@ use voussoir_core::certificate::{
     settlement_residuals, support_motions,
 };
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{Greatest, LimitProblem, LimitSolver, SettlementAnswer, Status};
+use voussoir_core::limit::{LimitProblem, LimitSolver, SettlementAnswer, Status};
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, StageLoads};
 
@@ -88,12 +88,13 @@ fn blocked(
         feasible_interval: None,
         non_associated: None,
     };
-    let Verdict { certificate, status, .. } = certify(input.assembly, asked.loads, &claim, input.settings.tolerance);
+    let Verdict { certificate, status, greatest, .. } =
+        certify(input.assembly, asked.loads, &claim, input.settings.tolerance);
     if status != Status::NoEquilibrium {
         return Err(certificate.failures.join("; "));
     }
     result.status = status;
-    result.greatest = Greatest::Open;
+    result.greatest = greatest;
     result.certificate = certificate;
     result.proof = ProofFields { ray: Some(field_entries(ray)), ..ProofFields::default() };
     result.notes.push(

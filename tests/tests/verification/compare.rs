@@ -222,7 +222,7 @@ set = {{ "joints.dry.law" = "coulomb_associated" }}
         (map.x_label.as_str(), map.contours.as_str(), map.regions.as_str()),
         ("friction [-]", "associated", "own")
     );
-    assert_eq!(map.y_label, "length and height of a brick, number 2");
+    assert_eq!(map.y_label, "length and height of a brick, height [m]");
     for (place, row) in comparison.rows.iter().enumerate() {
         assert_eq!(row.parameters["joints.dry.friction"].as_f64(), Some(map.x_values[place / 2]));
         assert_close(row.cells[0].load_factor.expect("a factor"), map.x_values[place / 2], 1e-9);

@@ -51,7 +51,8 @@ impl Lying {
 impl LimitSolver for Lying {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
         let mut answer = self.honest().solve(problem, question);
-        if let Some(lie) = self.lie {
+        // The lies are about the answer to the stage, not about the state at its start.
+        if let (Some(lie), LimitQuestion::Collapse { .. }) = (self.lie, question) {
             lie(&mut answer);
         }
         answer
@@ -79,7 +80,7 @@ fn said_of_a_lie(text: &str, lie: Option<Lie>, follow: Option<FollowLie>) -> Str
     let lying = Lying { honest: Some(solver.clone()), lie, follow };
     case.solver.solver = SelectedSolver::Limit(tag.clone(), Arc::new(lying));
     let result = solve_case(&case);
-    assert_eq!((result.status, result.certificate.passed), (Status::Stalled, false), "{:?}", result.notes);
+    assert!(!result.status.is_answer() && !result.certificate.passed, "{:?} {:?}", result.status, result.notes);
     result.notes.join("\n")
 }
 
