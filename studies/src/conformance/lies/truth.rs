@@ -108,9 +108,13 @@ impl Truth {
                 wrong.push(format!("{what} {value}, true {truth}"));
             }
         };
-        if let Some([lower, upper]) = result.bounds {
-            // The lower bound of a non-associated answer is a bound of the least factor.
-            check("lower bound", lower, self.below(lower, least), &least);
+        let [lower, upper] = result.bounds.unwrap_or_default();
+        if let Some(lower) = lower {
+            // With a proof it bounds the least factor, else it is a factor that is carried.
+            let most = if result.non_associated.lower_proof.is_some() { least } else { greatest };
+            check("lower bound", lower, self.below(lower, most), &most);
+        }
+        if let Some(upper) = upper {
             check("upper bound", upper, self.below(least, upper), &least);
         }
         if let Some(factor) = result.load_factor {
