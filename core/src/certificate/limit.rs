@@ -290,6 +290,9 @@ impl Check<'_> {
             }
             Status::Collapse if claim.non_associated.is_some() => {
                 let [lower, factor] = self.non_associated(claim, gap)?;
+                if factor > claim.target && claim.target >= claim.start {
+                    self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
+                }
                 let met = factor - lower <= CLOSED * factor.abs().max(self.factor_scale());
                 // An end at the start proves nothing, unless the ends meet there.
                 let lower = Some(lower).filter(|lower| met || *lower > claim.start);

@@ -70,7 +70,9 @@ pub(super) fn certified(
     let Verdict { certificate, status, bounds, greatest } = certify(assembly, loads, &claim, input.settings.tolerance);
     // Only the evidence of what is proved goes into the result.
     let shows = |statuses: &[Status]| statuses.contains(&status);
+    let believed = certificate.passed || is_ours(tag);
     let field = field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
+    let field = field.filter(|_| believed || bounds[0] == Some(solved.field_factor));
     let motion = motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
     let ray = ray.filter(|_| shows(&[Status::Unbounded]));
     let finite = |x: f64| x.is_finite().then_some(x);
@@ -79,7 +81,9 @@ pub(super) fn certified(
         notes.push(format!("no collapse up to factor_max = {}", stage.factor_max));
     }
     let [lower, upper] = bounds;
-    let found = solved.factor.filter(|factor| own.is_some() && upper == Some(*factor));
+    let found = solved.factor.filter(|factor| own.is_some() && upper == Some(*factor) && believed);
+    // No check proves that a mechanism is the only one.
+    let unique = solved.unique.filter(|unique| !unique || is_ours(tag));
     CaseResult {
         status,
         load_factor: match status {
@@ -94,7 +98,7 @@ pub(super) fn certified(
             .feasible_interval
             .filter(|_| status == Status::NoEquilibrium)
             .map(|ends| ends.map(finite)),
-        mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, solved.unique, reading)),
+        mechanism: motion.as_ref().and_then(|motion| mechanism(assembly, motion, unique, reading)),
         proof: ProofFields {
             field_factor: field.is_some().then_some(solved.field_factor),
             thrust_line: field.as_ref().and_then(|field| thrust_line(assembly, field)),
@@ -104,7 +108,7 @@ pub(super) fn certified(
             motion: motion.map(|motion| motion_entries(assembly, motion)),
         },
         non_associated: NonAssociatedAnswer {
-            associated_load_factor: own.and_then(|own| own.associated_factor),
+            associated_load_factor: own.and_then(|own| own.associated_factor).filter(|_| believed),
             associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
             bracket: own.map(|own| own.bracket.clone()).unwrap_or_default(),
             lower_proof: solved.non_associated.and_then(|own| own.lower_proof),

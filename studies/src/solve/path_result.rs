@@ -51,6 +51,9 @@ pub(super) fn path_result(
     prefer_symmetric(assembly, &checker, finite, &mut solved);
     let mut certificate = certificate(&solved, &checker, finite, energy);
     let ours = path_is_ours(tag, input.settings);
+    if !ours {
+        leave_out_unproved(&mut solved);
+    }
     let evidence = Evidence {
         problem,
         progress: &progress,
@@ -69,8 +72,9 @@ pub(super) fn path_result(
         if solved.status.is_answer() {
             notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
         }
-        keep_proved(&mut solved, &progress, problem, (status, ours));
+        keep_proved(&mut solved, &progress, problem, status);
     }
+    solved.status = status;
     let load_step = &problem.load_steps[solved.load_step];
     let load_factor = match status {
         Status::Collapse | Status::LimitPoint if !load_step.gravity => solved.factor,
@@ -130,16 +134,18 @@ pub(super) fn path_result(
     }
 }
 
-/// Leaves of an answer only what its states prove: the state with the greatest factor, without a mechanism; of solvers
-/// from elsewhere no event and no limit point.
-fn keep_proved(solved: &mut PathAnswer, progress: &Progress, problem: &PathProblem, (status, ours): (Status, bool)) {
+/// Removes the parts of an answer that no check proves: those of a solver from elsewhere are not believed.
+fn leave_out_unproved(solved: &mut PathAnswer) {
+    solved.limit_points.clear();
+    solved.branchings.clear();
+    solved.stability.clear();
+    solved.events.clear();
+    solved.unique = solved.unique.filter(|unique| !unique);
+}
+
+/// Keeps only the part of an answer that its states prove: the state with the greatest factor, without a mechanism.
+fn keep_proved(solved: &mut PathAnswer, progress: &Progress, problem: &PathProblem, status: Status) {
     (solved.motion, solved.ray, solved.unique) = (None, None, None);
-    if !ours {
-        solved.limit_points.clear();
-        solved.branchings.clear();
-        solved.stability.clear();
-        solved.events.clear();
-    }
     match progress.load_step().and_then(|at| progress.greatest_of(at)) {
         Some(state) if status == Status::Open => {
             (solved.load_step, solved.factor, solved.state) = (state.load_step, Some(state.factor), state.clone());

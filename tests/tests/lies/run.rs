@@ -34,32 +34,7 @@ pub fn liar(kind: PluginKind, of: &str, lie: &str) -> String {
 }
 
 /// Lies that are still believed.
-const BELIEVED: &[&str] = &[
-    "called_unique",
-    "displacement_doubled",
-    "forged_events",
-    "forged_limit_point",
-    "greater_limit_point",
-    "limit_point_early_without_a_peak",
-    "no_factor",
-    "stands_after_the_peak",
-    "stands_early",
-    "unstable_everywhere",
-    "collapse_beyond_the_target",
-    "forged_feasible_interval",
-    "stands_for_collapse",
-    "stands_for_unbounded",
-    "stands_with_a_field_before_the_target",
-    "forces_locked_in_called_the_least_load",
-    "collapse_early",
-    "falling_state_as_the_peak",
-    "limit_point_early",
-    "limit_points_twice",
-    "no_equilibrium_early",
-    "peak_before_its_last_rise",
-    "retraced_as_collapse",
-    "retraced_as_limit_point",
-];
+const BELIEVED: &[&str] = &[];
 
 /// The result of a scene by a liar, and the statements in it that are false. `None` if its solver refuses the scene.
 fn told_in(
