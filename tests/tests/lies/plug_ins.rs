@@ -52,7 +52,7 @@ impl LyingLimit {
         let honest: Box<dyn LimitSolver> = serde_json::from_value(json!({ "solver": self.of })).expect("a solver");
         let lie = lie_of(PluginKind::LimitSolver, &self.lie);
         let lie = lie.map(|lie| if let Lie::Limit(lie) = lie { lie } else { unreachable!("a lie of limit solvers") });
-        DishonestLimit { honest: Some(Arc::from(honest)), lie, told: Arc::default() }
+        DishonestLimit { honest: Some(Arc::from(honest)), lie, ..Default::default() }
     }
 }
 
@@ -86,7 +86,7 @@ impl LyingPath {
         let honest: Box<dyn PathSolver> = serde_json::from_value(json!({ "solver": self.of })).expect("a solver");
         let lie = lie_of(PluginKind::PathSolver, &self.lie);
         let lie = lie.map(|lie| if let Lie::Path(lie) = lie { lie } else { unreachable!("a lie of path solvers") });
-        DishonestPath { honest: Some(Arc::from(honest)), lie, told: Arc::default() }
+        DishonestPath { honest: Some(Arc::from(honest)), lie, ..Default::default() }
     }
 }
 

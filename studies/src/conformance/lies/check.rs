@@ -1,5 +1,6 @@
 //! The check of a solver or strategy by `voussoir conform`.
 
+use super::heard::false_statement;
 use super::suite::{Lie, answered_within, reference, scenes, solver_keys};
 use crate::conformance::findings::Recorder;
 use std::sync::atomic::Ordering;
@@ -37,6 +38,8 @@ pub fn check(recorder: &mut Recorder, card: &Card) {
         recorder.hold("panic", panicked.is_none(), || format!("{}: {}", scene.name, result.notes.join("; ")));
         let wrong = scene.truth.contradictions(&result, known.as_ref());
         recorder.hold("truth", wrong.is_empty(), || format!("{}: {}", scene.name, wrong.join("; ")));
+        let own = false_statement(case.clone(), &scene.truth, TIME_LIMIT);
+        recorder.hold("own_answer", own.is_none(), || format!("{}: {}", scene.name, own.clone().unwrap_or_default()));
         for lie in Lie::of(card.kind) {
             let mut case = case.clone();
             let Some(told) = lie.put_into(&mut case) else { continue };

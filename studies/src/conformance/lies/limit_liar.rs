@@ -1,5 +1,6 @@
 //! Dishonest limit solvers: the list, and the solver that tells one of the lies.
 
+use super::heard::Heard;
 use super::limit_lie::{LimitAsked, LimitLie};
 use super::{limit_fields, limit_status, limit_substitutes};
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,9 @@ pub struct DishonestLimit {
     /// The number of times that the solver has lied.
     #[serde(skip)]
     pub told: Arc<AtomicUsize>,
+    /// Status and factor of the last answer to a search for collapse.
+    #[serde(skip)]
+    pub heard: Heard,
 }
 
 #[typetag::serde(name = "dishonest_limit")]
@@ -32,13 +36,17 @@ impl LimitSolver for DishonestLimit {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
         let honest = self.honest.as_deref().expect("refused without a solver");
         let asked = LimitAsked { honest, problem, question };
-        match self.lie.and_then(|lie| (lie.tell)(&asked)) {
+        let answer = match self.lie.and_then(|lie| (lie.tell)(&asked)) {
             Some(answer) => {
                 self.told.fetch_add(1, Ordering::Relaxed);
                 answer
             }
             None => asked.answer(),
+        };
+        if matches!(question, LimitQuestion::Collapse { .. }) {
+            self.heard.note(answer.status, answer.factor);
         }
+        answer
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {

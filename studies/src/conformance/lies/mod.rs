@@ -4,6 +4,7 @@
 //! criterion: which claims of a result are false. Statements that are true are allowed, however they were found.
 
 mod check;
+mod heard;
 mod limit_fields;
 mod limit_liar;
 mod limit_lie;
@@ -20,6 +21,7 @@ mod suite;
 mod truth;
 
 pub(super) use check::check;
+pub use heard::Heard;
 pub use limit_liar::{DishonestLimit, limit_lies};
 pub use limit_lie::{LimitAsked, LimitLie};
 pub use path_liar::{DishonestPath, path_lies};

@@ -1,5 +1,6 @@
 //! Dishonest path solvers: the list, and the solver that tells one of the lies.
 
+use super::heard::Heard;
 use super::path_lie::{PathAsked, PathLie};
 use super::{path_answers, path_endings, path_states};
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,9 @@ pub struct DishonestPath {
     /// The number of times that the solver has lied.
     #[serde(skip)]
     pub told: Arc<AtomicUsize>,
+    /// Status and factor of the last answer.
+    #[serde(skip)]
+    pub heard: Heard,
 }
 
 #[typetag::serde(name = "dishonest_path")]
@@ -42,6 +46,7 @@ impl PathSolver for DishonestPath {
                 break;
             }
         }
+        self.heard.note(story.answer.status, story.answer.factor);
         story.answer
     }
 

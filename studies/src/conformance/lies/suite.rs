@@ -57,11 +57,12 @@ impl Lie {
         let choice = &mut case.solver;
         match (self, &choice.solver, &choice.settings.continuation) {
             (Lie::Limit(lie), SelectedSolver::Limit(_, honest), _) => {
-                let solver = DishonestLimit { honest: Some(honest.clone()), lie: Some(lie), told };
+                let solver =
+                    DishonestLimit { honest: Some(honest.clone()), lie: Some(lie), told, ..Default::default() };
                 choice.solver = SelectedSolver::Limit("dishonest_limit".into(), Arc::new(solver));
             }
             (Lie::Path(lie), SelectedSolver::Path(_, honest), _) => {
-                let solver = DishonestPath { honest: Some(honest.clone()), lie: Some(lie), told };
+                let solver = DishonestPath { honest: Some(honest.clone()), lie: Some(lie), told, ..Default::default() };
                 choice.solver = SelectedSolver::Path("dishonest_path".into(), Arc::new(solver));
             }
             (Lie::Strategy(lie), _, Some(honest)) => {

@@ -66,6 +66,20 @@ impl Truth {
         wrong
     }
 
+    /// The false statement in a solver's own answer: a status that is not true, or a factor at which nothing ends.
+    pub fn contradicts(&self, status: Status, factor: Option<f64>) -> Option<String> {
+        if !status.is_answer() {
+            return None;
+        }
+        if !self.endings.contains(&status) {
+            return Some(format!("the solver answers {status:?}, true are {:?}", self.endings));
+        }
+        let ends = matches!(status, Status::Collapse | Status::LimitPoint);
+        let factor = factor.filter(|_| ends)?;
+        let fits = self.below(self.collapse[0], factor) && self.below(factor, self.collapse[1]);
+        (!fits).then(|| format!("the solver answers the load factor {factor}, true {:?}", self.collapse))
+    }
+
     fn same(&self, a: f64, b: f64) -> bool {
         a == b || (a - b).abs() <= self.tolerance * b.abs().max(1e-3)
     }
