@@ -1,4 +1,4 @@
-//! Tells the program where it comes from: target, commit, and a hash of its sources. Results store them, see `results::Origin`.
+//! Compiles its origin into the program: target, commit, and a hash of its sources. Results store them, see `results::Origin`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

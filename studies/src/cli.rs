@@ -148,7 +148,7 @@ enum Command {
     },
     /// Check that a law, solver or strategy keeps the promises of its card and its trait
     Conform {
-        /// Tags of laws, solvers or strategies; all laws if there are none
+        /// Tags of laws, solvers or strategies; without tags all laws
         tags: Vec<String>,
         /// Folder for studies that show what was found
         #[arg(long)]

@@ -82,7 +82,7 @@ fn resumed_cases_belong_to_the_study() {
     std::fs::write(out.join("unfinished.jsonl"), lines(&first)).expect("written");
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--resume", "--quiet"], &at)), 0);
     assert_eq!(timeless(&out), timeless(&fresh));
-    // A journal in which one case is forged under a checksum of its own, and one line is damaged.
+    // A journal in which one case is forged under a new checksum, and one line is damaged.
     let (cases, whole) = (timeless(&fresh), lines(&timeless(&fresh)));
     let factor = cases["cases"][1]["load_factor"].to_string();
     let forged = cases["cases"][1].to_string().replacen(&factor, "9.5", 1);

@@ -1,4 +1,4 @@
-//! A process without the token can neither end `voussoir serve` nor make it deaf, slow or large.
+//! A process without the token can neither end `voussoir serve`, nor block it, nor slow it down, nor use up its memory.
 
 mod served;
 
@@ -57,7 +57,7 @@ fn codes(answer: &str) -> Vec<u16> {
     answer.split("HTTP/1.1 ").skip(1).filter_map(code).collect()
 }
 
-/// Greatest memory that the server has used \[KiB\]; `None` if the system does not tell it.
+/// Greatest memory that the server has used \[KiB\]; `None` if the system does not report it.
 fn memory(served: &Served) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/status", served.program.id())).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -133,10 +133,10 @@ fn idle_connections_make_room() {
         received(stream);
     }
     assert!(start.elapsed() < Duration::from_secs(10), "closed after {:?}", start.elapsed());
-    // Readers that never read what they asked for.
+    // Readers that never read their answers.
     let whole = format!("{half}\r\n");
     let _unread: Vec<TcpStream> = (0..80).map(|_| sent(&served, whole.as_bytes())).collect();
-    let after = assert_answers(&mut served, "80 answers that nobody reads");
+    let after = assert_answers(&mut served, "80 answers without a reader");
     assert!(before.zip(after).is_none_or(|(before, after)| after < before + MAX_GROWTH), "{before:?} {after:?}");
 }
 

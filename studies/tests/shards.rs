@@ -136,7 +136,7 @@ fn parts_that_do_not_fit_are_refused() {
     let lines: Vec<&str> = whole.lines().collect();
     change(&format!("{}\n{}\n", lines[0], lines[lines.len() - 1]));
     refused(&["merge", "parts"], &["holds 0 cases and says"]);
-    // A changed case is damage, and with a checksum of its own it does not prove itself.
+    // A changed case is damage, and with a new checksum its fields still do not prove it.
     change(&whole.replacen("\"collapse\"", "\"stalled\"", 1));
     refused(&["merge", "parts"], &["1 lines of", "are damaged"]);
     let mut case = serde_json::from_str::<Value>(lines[1]).expect("a line")["case"].take();

@@ -39,7 +39,7 @@ pub struct ContactForce {
     pub force: [f64; 2],
 }
 
-/// What an answer claims, with the evidence for it.
+/// The statement of an answer, with its evidence.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'a> {
     /// The status in the solver's answer: the proof that is tried first.
@@ -69,17 +69,17 @@ pub struct Claim<'a> {
     pub non_associated: Option<NonAssociatedClaim<'a>>,
 }
 
-/// What a claim proves.
+/// The result of checking a claim.
 #[derive(Debug, Clone)]
 pub struct Verdict {
-    /// Residuals; `passed` if the question is answered.
+    /// Residuals; `passed` if the status is neither open nor stalled.
     pub certificate: Certificate,
     /// The status that is proved.
     pub status: Status,
     /// Proved ends of the load factor, lower and upper. Associated flow: from the field and from the motion. The laws' own
     /// flow: ends of the least load. Both `None` if there is no such number.
     pub bounds: [Option<f64>; 2],
-    /// How well the greatest (own flow: the least) factor is known.
+    /// The proof of the greatest factor; with the laws' own flow, of the least one.
     pub greatest: Greatest,
 }
 
@@ -195,7 +195,7 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
 }
 
 impl Verdict {
-    /// The same with the residuals that belong to it; it passes if the question is answered.
+    /// Adds the residuals of the proof. The certificate fails if the status is open or stalled.
     fn with(self, mut certificate: Certificate) -> Self {
         if !self.status.is_answer() {
             certificate.passed = false;
@@ -204,7 +204,7 @@ impl Verdict {
         Verdict { certificate, ..self }
     }
 
-    /// Nothing is proved.
+    /// A verdict that proves nothing, with the reason.
     fn nothing(why: String) -> Self {
         Verdict {
             certificate: Certificate { passed: false, residuals: BTreeMap::new(), failures: vec![why] },
@@ -337,8 +337,9 @@ impl Check<'_> {
         }
     }
 
-    /// The ends of the load factor that field and motion prove by themselves with associated flow. An end at the start
-    /// is missing: it says nothing. The laws' own flow only has an upper end: no state lies above the associated load.
+    /// The ends of the load factor that field and motion prove by themselves with associated flow. An end at the
+    /// start of the stage proves nothing and is left out. The laws' own flow only has an upper end: no state lies above the
+    /// associated load.
     fn proved_ends(&mut self, claim: &Claim) -> [Option<f64>; 2] {
         if claim.supports.is_some() {
             return [None; 2];

@@ -22,7 +22,7 @@ pub enum LimitQuestion {
     },
 }
 
-/// How a stage ends. The certificate decides it; the status in a solver's answer is a hint.
+/// The end of a stage. The certificate decides it; the status in a solver's answer is a hint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
@@ -38,18 +38,18 @@ pub enum Status {
     LimitPoint,
     /// A number is proved, but not the statement that was asked for: `bounds` holds the proved ends.
     Open,
-    /// Nothing is proved; the notes give the reason.
+    /// No claim is proved; the notes give the reason.
     Stalled,
 }
 
 impl Status {
-    /// Returns true if the question was answered: neither open nor stalled.
+    /// Returns true if the status is neither open nor stalled.
     pub fn is_answer(self) -> bool {
         !matches!(self, Status::Open | Status::Stalled)
     }
 }
 
-/// How well the greatest factor of the last stage is known (the least one if joints have their own flow).
+/// The proof of the greatest factor of the last stage (of the least one if joints have their own flow).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Greatest {

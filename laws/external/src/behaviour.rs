@@ -324,7 +324,7 @@ impl Behaviour {
                 external_variables: at(&external),
             },
         };
-        // SAFETY: every pointer is to as many numbers as the library has said that it has (`load`), alive until after the call,
+        // SAFETY: every pointer is to as many numbers as the description of the library gives (`load`), alive until after the call,
         // in memory of this call only; the library reads the start and writes the end of the step, as its interface says.
         let code = unsafe { (self.integrate)(&raw mut data) };
         if let Some(why) = buffers.misused() {

@@ -93,7 +93,7 @@ pub fn damaged_lines(count: usize) -> String {
     format!("{count} lines of the journal are damaged; their cases are solved again")
 }
 
-/// Keeps the lines of cases that hold by their own proof; says how many, and how many are solved again.
+/// Keeps the lines of cases that hold by their own proof. Prints their number and the number of cases that are solved again.
 fn keep_proved(
     cases: &CasesOf<'_>,
     lines: &mut CaseLines,

@@ -32,7 +32,7 @@ pub struct Certified {
     pub passed: bool,
 }
 
-/// Where the text of a case is.
+/// The place of the text of a case.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     id: usize,

@@ -26,7 +26,7 @@ fn refused(path: &Path, why: impl std::fmt::Display) -> u8 {
     NO_ACCESS
 }
 
-/// Refuses a symbolic link, a pipe and a device; what does not exist is none.
+/// Refuses a symbolic link, a pipe and a device. A path that does not exist passes.
 fn no_link(path: &Path) -> Result<(), u8> {
     match fs::symlink_metadata(path) {
         Ok(found) if !found.is_file() && !found.is_dir() && !found.file_type().is_symlink() => {
@@ -102,7 +102,7 @@ impl ResultFolder {
         &self.path
     }
 
-    /// The text of a file in it, empty if there is none or it is no text.
+    /// The text of a file in it; empty if the file does not exist or is not text.
     pub fn read(&self, name: &str) -> String {
         let mut text = String::new();
         let read =

@@ -8,7 +8,7 @@ const BEFORE: &[u8] = b"{\"checksum\":\"";
 const BETWEEN: &[u8] = b"\",\"case\":";
 /// Digits of a checksum.
 const DIGITS: usize = 16;
-/// Where the text of a case begins in its line.
+/// Index of the first byte of a case in its line.
 const CASE: usize = BEFORE.len() + DIGITS + BETWEEN.len();
 
 /// 64 bits of FNV-1a in hexadecimal.
@@ -37,7 +37,7 @@ pub fn sealed_text(case: &[u8]) -> Vec<u8> {
     [BEFORE, checksum(case).as_bytes(), BETWEEN, case, b"}\n"].concat()
 }
 
-/// Where the text of the case is in a line, if its checksum is right.
+/// The range of the case in a line; `None` if its checksum is wrong.
 pub fn case_in(line: &[u8]) -> Option<Range<usize>> {
     let end = line.trim_ascii_end().len().checked_sub(1)?;
     let (head, case) = (line.get(..CASE)?, line.get(CASE..end)?);

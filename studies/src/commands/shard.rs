@@ -85,7 +85,7 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
             }
             return Ok(FINE);
         }
-        // What holds of a damaged part is kept.
+        // The undamaged cases of a part are kept.
         folder.part_becomes_journal(PART);
     }
     folder.remove(PART);

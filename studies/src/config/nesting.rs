@@ -1,4 +1,4 @@
-//! How deep a TOML document is nested, measured before its tree is built: building and dropping a deep tree both recurse.
+//! The depth of a TOML document, measured before its tree is built: building and dropping a deep tree both recurse.
 
 use crate::config::limits::MAX_DEPTH;
 use toml_parser::parser::{EventReceiver, parse_document};
@@ -63,7 +63,7 @@ impl EventReceiver for Depth {
         self.header += 1;
     }
 
-    /// The parser recurses into what is allowed.
+    /// Returns true if the parser may recurse into the table.
     fn inline_table_open(&mut self, _: Span, _: &mut dyn ErrorSink) -> bool {
         self.open.push(self.value);
         self.segments = 0;

@@ -1,4 +1,4 @@
-//! What a stored case proves by itself before it is taken into other results.
+//! The check of a stored case by itself, before it is copied into other results.
 
 use super::kind::CasesOf;
 use crate::caught::caught;
@@ -9,7 +9,7 @@ use std::fmt;
 use voussoir_core::limit::{LowerProofKind, Status};
 use voussoir_core::plugin::{PluginKind, card};
 
-/// How far the stored fields of a case prove it.
+/// The extent to which the stored fields of a case prove it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Backing {
     /// Forces and motion, or a ray, prove every claim.
@@ -17,14 +17,14 @@ pub enum Backing {
     /// The last state of a path, or one end of a bracket; the history of the path, or the search for the other end, is
     /// taken on trust.
     Partly,
-    /// Nothing is stored that could prove it.
+    /// No field is stored, so nothing proves it.
     OnTrust,
     /// It claims nothing.
     Stalled,
 }
 
 impl CasesOf<'_> {
-    /// Checks a stored case: it must be one of this study as it is now, and what it stores must prove it.
+    /// Checks a stored case: it must belong to this study as it is now, and its stored fields must prove it.
     ///
     /// # Errors
     ///
@@ -55,7 +55,7 @@ fn backing_of(case: &Case, result: &CaseResult) -> Backing {
     }
 }
 
-/// How many stored cases were proved, and how far.
+/// The number of stored cases that are proved, proved in part, or on trust.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BackingCount {
     proved: usize,
@@ -90,7 +90,7 @@ impl fmt::Display for BackingCount {
     }
 }
 
-/// Lines about cases that were taken from an earlier run, and about those that were not.
+/// Lines about stored cases that are kept, and about stored cases that are refused.
 pub fn resumed(kept: usize, count: BackingCount, refused: usize) -> Vec<String> {
     let kept = (kept > 0).then(|| format!("{kept} finished cases are kept: {count}"));
     let refused = (refused > 0).then(|| {

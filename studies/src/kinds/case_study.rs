@@ -211,7 +211,7 @@ impl LoadedStudy for Study {
         let mut files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())), agreement);
         files.extend(unmade);
         if format > 0 && !made.is_empty() && listed != names(&made) {
-            files.push(format!("files of {RESULTS} are not those of the study"));
+            files.push(format!("the list of files in {RESULTS} does not match the study"));
         }
         Ok(Verification {
             cases: count,

@@ -275,7 +275,7 @@ pub struct Verification {
     pub own: usize,
     /// Number of cases of the study.
     pub of: usize,
-    /// How results were compared with a second run.
+    /// The comparison with a second run.
     pub agreement: Agreement,
     /// What was checked how.
     pub how: &'static str,

@@ -5,7 +5,8 @@ use serde_json::{Map, Value as Json};
 use std::fmt;
 use std::io::{BufReader, Read};
 
-/// Hands over each case with the entries that come before all cases, and returns all entries beside them; an error where it is no results file.
+/// Passes on each case with the entries that come before all cases, and returns the entries beside the cases. An error if it
+/// is not a results file.
 pub(super) fn read_cases(file: impl Read, take: Take) -> Result<Map<String, Json>, String> {
     let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
     let whole = Whole(take).deserialize(&mut text).map_err(|error| error.to_string())?;

@@ -143,7 +143,7 @@ impl Check<'_> {
         }
         let listed: Vec<&str> = wanted(self.sweep);
         if self.origin.format > 0 && beside.get("files") != Some(&Json::from(listed)) {
-            self.found.findings.push((0, "files are not those of the study".into()));
+            self.found.findings.push((0, "the list of files does not match the study".into()));
         }
         self.found.agreement = self.agreement.unwrap_or_default();
         let known = ["study", "version", "date", "only_cases", "files"];

@@ -13,7 +13,7 @@ pub struct StudyResults {
     pub study: String,
     /// Version of the program.
     pub version: String,
-    /// What they come from.
+    /// The origin of the results.
     #[serde(flatten)]
     pub origin: Origin,
     /// The day of the run.

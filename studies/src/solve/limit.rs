@@ -204,7 +204,7 @@ pub(super) fn asked_of_solvers(
             best = Some(result);
         }
     }
-    let best = best.unwrap_or_else(|| CaseResult::stalled("no solver takes this scene"));
+    let best = best.unwrap_or_else(|| CaseResult::stalled("no solver supports this scene"));
     CaseResult { notes, ..best }
 }
 

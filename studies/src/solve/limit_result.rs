@@ -68,7 +68,7 @@ pub(super) fn certified(
         }),
     };
     let Verdict { certificate, status, bounds, greatest } = certify(assembly, loads, &claim, input.settings.tolerance);
-    // Only the evidence of what is proved goes into the result.
+    // Only evidence of the proved status goes into the result.
     let shows = |statuses: &[Status]| statuses.contains(&status);
     let believed = certificate.passed || is_ours(tag);
     let field = field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));

@@ -31,7 +31,7 @@ pub(super) struct Seen {
     pub checker: PathChecker,
     /// The last state of each stage, by index.
     pub ends: Vec<Option<PathState>>,
-    /// How far the states have come.
+    /// The load steps that the states have reached.
     pub progress: Progress,
     /// How much of the energy of a stage its steps may lose.
     pub energy: f64,
@@ -134,7 +134,7 @@ pub(super) fn path_result(
     }
 }
 
-/// Removes the parts of an answer that no check proves: those of a solver from elsewhere are not believed.
+/// Removes the parts of an answer that no check proves. They are not believed if the solver is from outside this project.
 fn leave_out_unproved(solved: &mut PathAnswer) {
     solved.limit_points.clear();
     solved.branchings.clear();

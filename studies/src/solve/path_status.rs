@@ -67,14 +67,14 @@ fn is_complete(step: &LoadStep, factor: f64) -> bool {
     }
 }
 
-/// Returns true if a load step ends where it starts, or has no load and no settlement: solvers may pass over it.
+/// Returns true if the factor of a load step does not change, or if it has no load and no settlement. Solvers may skip it.
 fn changes_nothing(problem: &PathProblem, step: &LoadStep) -> bool {
     let LoadStepEnd::Factor(end) = step.end else { return false };
     let unloaded = || problem.wrenches(&step.loading).iter().all(|wrench| *wrench == [0.0; 3]);
     end == step.start || (step.loading.settlements.is_empty() && unloaded())
 }
 
-/// What is known of a path when its status is decided.
+/// The evidence that decides the status of a path.
 pub(super) struct Evidence<'a> {
     pub problem: &'a PathProblem,
     pub progress: &'a Progress,
@@ -90,7 +90,7 @@ pub(super) struct Evidence<'a> {
     pub associated: Option<AssociatedLoad>,
 }
 
-/// What a path proves.
+/// The proved status of a path, with its bounds.
 pub(super) struct PathVerdict {
     pub status: Status,
     pub greatest: Greatest,

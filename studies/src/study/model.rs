@@ -77,9 +77,9 @@ impl Case {
         self.hash_in(this_program())
     }
 
-    /// What tells this case from any other: commit, sources and plug-ins of the program, its label and its whole resolved
-    /// study, as 128 bits of FNV-1a in hexadecimal; of tables their own hashes, which cases share. No seal: it finds
-    /// confusion, not malice.
+    /// A hash of this case: commit, sources and plug-ins of the program, its label and its whole resolved study. It has 128
+    /// bits of FNV-1a in hexadecimal. Tables enter with their own hashes, which cases share. It finds confused cases, not
+    /// forged ones.
     pub fn hash_in(&self, origin: &Origin) -> String {
         let label = (self.id, &self.variant, &self.scene, &self.parameters);
         let mut hash = Fnv::of(&(origin.program(), label));

@@ -1,4 +1,4 @@
-//! How results are compared with a second run: bit by bit if both come from the same program and the same kind of processor,
+//! The comparison of results with a second run: bit by bit if both come from the same program and the same kind of processor,
 //! by their claims otherwise.
 
 use super::{meaning, repeat, texts};
@@ -6,7 +6,7 @@ use crate::results::{Origin, words};
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-/// How two runs are compared.
+/// The way in which two runs are compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Agreement {
     /// Every number and word must be the same.
@@ -36,7 +36,7 @@ impl Agreement {
         Agreement::of(&origin.unwrap_or_default(), study)
     }
 
-    /// The differences of a stored value from that of a second run, in words.
+    /// The differences between a stored value and the value of a second run, in words.
     pub fn differences(self, stored: &Json, again: &Json) -> Vec<String> {
         match self {
             Agreement::Bits => repeat::differences(stored, again),

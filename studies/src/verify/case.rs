@@ -29,7 +29,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     findings.expect(result.label.scene == case.scene, "scene is not that of the study");
     findings.expect(result.label.parameters == case.parameters, "parameters are not those of the study");
     let loads = load_entries(case);
-    findings.expect(same_loads(&result.loads, &loads), "loads are not those of the study");
+    findings.expect(same_loads(&result.loads, &loads), "loads do not match the study");
     let last = result.stages.len().checked_sub(1).ok_or("no stage")?;
     case.stages.get(last).ok_or("more stages than the study has")?;
     verify_stages(case, result, last, findings);
@@ -47,7 +47,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     }
 }
 
-/// Whether stored loads are those of the study, but for rounding of their places and sums.
+/// Returns true if stored loads match the study, but for rounding of their places and sums.
 fn same_loads(stored: &[LoadEntry], loads: &[LoadEntry]) -> bool {
     let numbers = |list: &[LoadEntry]| list.iter().map(|l| [l.resultant, l.point].concat()).collect::<Vec<_>>();
     let words = |l: &LoadEntry| (l.stage.clone(), l.what, l.block.clone());

@@ -43,7 +43,7 @@ fn distance(p: Point, [a, b]: [Point; 2]) -> f64 {
     (arm[0] - share * along[0]).hypot(arm[1] - share * along[1])
 }
 
-/// Whether the vertices lie on the curve, each on the segment of the one before or on a later one.
+/// Returns true if the vertices lie on the curve, each on the segment of the one before or on a later one.
 fn lies_on(vertices: &[Point], curve: &[Point], near: f64) -> bool {
     if let [only] = curve {
         return vertices.iter().all(|p| distance(*p, [*only, *only]) <= near);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
 
-/// In what the events of two runs differ. `steps_differ`: the second run has another number of steps.
+/// The differences between the events of two runs. `steps_differ`: the second run has another number of steps.
 pub(super) fn differences(stored: &Json, again: &Json, route: Route, steps_differ: bool) -> Vec<String> {
     let read = |events: &Json| Vec::<EventEntry>::deserialize(events).map_err(|error| vec![format!("events: {error}")]);
     let (stored, again) = match (read(stored), read(again)) {
@@ -37,7 +37,7 @@ pub(super) fn differences(stored: &Json, again: &Json, route: Route, steps_diffe
     let unmatched = unmatched(left, right, share * greatest);
     let allowed = if steps_differ { 2.0 + share * (left.len() + right.len()) as f64 } else { 0.0 };
     if unmatched as f64 > allowed {
-        found.push(format!("{unmatched} events beyond the greatest factor are not those of solving again"));
+        found.push(format!("{unmatched} events beyond the greatest factor differ when the case is solved again"));
     }
     found
 }
@@ -93,7 +93,7 @@ fn strict(stored: &[Event], again: &[Event], near: f64) -> Option<String> {
     None
 }
 
-/// How many events of both lists have no partner of the same identity, in order, with a factor no further than `near`.
+/// The number of events of both lists without a partner of the same identity, in order, with a factor no further than `near`.
 fn unmatched(stored: &[Event], again: &[Event], near: f64) -> usize {
     let by_identity = |list: &[Event]| {
         let mut own: BTreeMap<usize, Vec<f64>> = BTreeMap::new();

@@ -109,7 +109,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     Ok(())
 }
 
-/// Whether forces of the fill act where the scene says, between its bounds.
+/// Returns true if forces of the fill act at the places of the scene, between its bounds.
 fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
     let numbers =
         |list: &[FillEntry]| list.iter().map(|f| [f.point, f.direction, f.bounds].concat()).collect::<Vec<_>>();

@@ -26,14 +26,14 @@ pub fn differences(stored: &Json, again: &Json) -> Vec<String> {
     listed(comparison.found)
 }
 
-/// Whether two values that are no cases are the same: words, and numbers as factors.
+/// Returns true if two values that are not cases are the same: words, and numbers as factors.
 pub fn same(stored: &Json, again: &Json) -> bool {
     let mut comparison = Comparison { case: false, ..Comparison::new(stored, again) };
     comparison.entry(stored, again, "", "");
     comparison.found.is_empty()
 }
 
-/// How an entry is compared.
+/// The rule by which an entry is compared.
 enum Rule {
     /// Not at all.
     Free,
@@ -57,16 +57,16 @@ enum Rule {
 
 /// A comparison of two cases.
 struct Comparison<'a> {
-    /// Whether both are cases, whose keys have rules.
+    /// True if both are cases, whose keys have rules.
     case: bool,
     route: Route,
-    /// Whether fields are stored, which the certificate has checked.
+    /// True if fields are stored, which the certificate has checked.
     fields: bool,
-    /// Whether the mechanism is the only one.
+    /// True if the mechanism is the only one.
     unique: bool,
-    /// Whether the second run has another number of steps.
+    /// True if the second run has another number of steps.
     steps_differ: bool,
-    /// Whether the stored certificate has passed.
+    /// True if the stored certificate has passed.
     passed: bool,
     factor: f64,
     /// The greatest number below each key, without indices.
@@ -169,7 +169,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// Whether two numbers are the same within the rule; never if one is NaN.
+    /// Returns true if two numbers are the same within the rule; never if one is NaN.
     fn near(&self, rule: &Rule, a: f64, b: f64, key: &str) -> bool {
         let apart = (a - b).abs();
         let greatest = self.greatest.get(key).copied().unwrap_or(0.0);
@@ -192,7 +192,7 @@ impl<'a> Comparison<'a> {
     }
 }
 
-/// Whether a stored residual is within its gate. The certificate of limit analysis is recomputed from stored fields.
+/// Returns true if a stored residual is within its gate. The certificate of limit analysis is recomputed from stored fields.
 fn within_gate(stored: f64, again: f64, key: &str, route: Route, fields: bool) -> bool {
     let name = key.rsplit('.').next().unwrap_or(key);
     let gate = match (route, name) {
@@ -203,7 +203,7 @@ fn within_gate(stored: f64, again: f64, key: &str, route: Route, fields: bool) -
     recomputed || (gate.is_finite() && stored <= gate) || (stored - again).abs() <= 1e-9 * again.abs().max(1.0)
 }
 
-/// Who has answered a case.
+/// The kind of solver of a case.
 fn route(solver: Option<&str>) -> Route {
     match solver {
         Some("event_path") => Route::Events,
@@ -212,7 +212,7 @@ fn route(solver: Option<&str>) -> Route {
     }
 }
 
-/// The key of an entry of a list: that of the list, but for the columns of a driven point, each of which has its unit.
+/// The key of an entry of a list: the key of the list. Columns of a driven point have their own keys, because each has its unit.
 fn item(key: &str, index: usize) -> String {
     match key {
         "rows" => "rows.".into(),

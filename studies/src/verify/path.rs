@@ -53,7 +53,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     Ok(())
 }
 
-/// What the status needs besides the state: the target of the stage, bounds, and a solver that is believed.
+/// Checks the parts of the status beyond the state: the target of the stage, bounds, and a solver that is believed.
 fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: &CaseResult, findings: &mut Findings) {
     let input = CaseInput::of(case);
     let field_is_proof = !input.settings.finite && safe_theorem_holds(&case.assembly);

@@ -20,7 +20,7 @@ pub(super) fn listed(mut found: Vec<String>) -> Vec<String> {
     let more = found.len().saturating_sub(LISTED);
     found.truncate(LISTED);
     if more > 0 {
-        found.push(format!("{more} more entries are not those of solving again"));
+        found.push(format!("{more} more entries differ when the case is solved again"));
     }
     found
 }

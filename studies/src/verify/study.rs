@@ -110,10 +110,10 @@ impl<'a> StoredCheck<'a> {
     }
 }
 
-/// Finds a hash that is not that of the case in results of this origin. Older results have another hash.
+/// Finds a wrong hash of a case in results of this origin. Results of another origin have another hash.
 pub fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<String> {
     let fine = origin.format == 0 || case.hash_in(origin) == result.label.case_hash;
-    (!fine).then(|| "case_hash is not that of the case".into())
+    (!fine).then(|| "case_hash does not match the case".into())
 }
 
 /// What stands beside the cases.

@@ -49,7 +49,7 @@ fn unit(text: &str) -> f64 {
     10f64.powi(exponent.parse::<i32>().unwrap_or(0) - decimals)
 }
 
-/// Cuts a text into numbers and what is between them.
+/// Cuts a text into numbers and the words between them.
 fn pieces(text: &str) -> Vec<Piece<'_>> {
     let bytes = text.as_bytes();
     let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);

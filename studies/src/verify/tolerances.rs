@@ -1,9 +1,9 @@
-//! How far a result may differ from the same case solved again by another program or on another processor.
+//! Greatest differences of a result from the same case solved again by another program or on another processor.
 //!
 //! Processors round differently, and libraries choose their code by the features of a processor. A case solved again there
 //! agrees in its claims, not in its bits. All tolerances of this comparison are here, with their reasons.
 
-/// How a case was solved: it decides how far a second solution may be off.
+/// The kind of solver of a case: it decides the tolerances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
     /// Limit analysis.
@@ -19,7 +19,7 @@ pub enum Route {
 pub struct Tolerance {
     /// Entries of a case, in words.
     pub entries: &'static str,
-    /// Greatest difference for limit analysis; `None` where it has no such entry or the stored fields prove the number.
+    /// Greatest difference for limit analysis; `None` if it has no such entry or the stored fields prove the number.
     pub limit: Option<f64>,
     /// For paths from event to event.
     pub events: Option<f64>,
@@ -32,7 +32,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// The tolerance of a route; 0 where it has none.
+    /// The tolerance of a route; 0 without a tolerance.
     pub fn of(&self, route: Route) -> f64 {
         let own = match route {
             Route::Limit => self.limit,
@@ -75,7 +75,7 @@ pub const GEOMETRY: Tolerance = row(
     GREATEST,
     "sums, sines and square roots of the numbers of the study",
 );
-/// Factors.
+/// Load factors and their bounds.
 pub const FACTOR: Tolerance = row(
     "`load_factor`, `bounds`, `field_factor`, `associated_load_factor`, `feasible_interval`, `bracket`; factors of stages, limit points and events",
     [Some(1e-9), Some(1e-9), Some(1e-8)],
@@ -89,7 +89,7 @@ pub const STATE: Tolerance = row(
     GREATEST,
     "gates of kinematics and laws; limit analysis: the certificate proves the stored numbers, and a second field may differ",
 );
-/// Velocities.
+/// Velocities and hinges.
 pub const RATE: Tolerance = row(
     "`motion`, `mechanism`, hinges of stages, `branches`",
     [None, Some(1e-6), Some(1e-5)],

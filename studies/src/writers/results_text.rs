@@ -15,7 +15,7 @@ pub struct ResultsHead {
     pub study: String,
     /// Version of the program.
     pub version: String,
-    /// What they come from.
+    /// The origin of the results.
     pub origin: Origin,
     /// The day of the run.
     pub date: Option<String>,

@@ -30,7 +30,7 @@ pub fn writers() -> Vec<&'static WriterEntry> {
     all
 }
 
-/// Writes what the study's `[output]` asks for beside results.json: all writers, or those that it lists.
+/// Writes the files of the study's `[output]` beside results.json: by all writers, or by the listed ones.
 pub fn written(study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
     let wanted = |tag: &str| match (tag, &study.output.writers) {
         // It names the other files, so it comes last.

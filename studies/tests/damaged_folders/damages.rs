@@ -29,9 +29,9 @@ pub enum Change {
 /// A damage of a whole file.
 #[derive(Debug, Clone)]
 pub enum Harm {
-    /// So many thousandths of it are left.
+    /// Thousandths of it that are left.
     Cut(usize),
-    /// A byte that is not UTF-8, at so many thousandths of it.
+    /// A byte that is not UTF-8, at these thousandths of its length.
     Byte(usize),
     Missing,
     Empty,

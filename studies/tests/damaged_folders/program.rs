@@ -10,7 +10,7 @@ pub struct Ended {
     pub code: Option<i32>,
     /// All that it printed.
     pub text: String,
-    /// How long it ran.
+    /// Its running time.
     pub time: Duration,
 }
 

@@ -50,6 +50,7 @@ voussoir_core::inventory::submit! {
         }],
         sources: &["where the equations come from"],
         file: file!(),
+        package: voussoir_core::package!(),
         page: "# `capped_friction`\n\nPurpose, equations, regimes, state, validity, sources.\n",
         ..Card::BLANK
     }

@@ -1,6 +1,6 @@
 //! A family of forgeries of eight kinds of results: each number times 1 + 1e-6, 1.1 and −1, each word by another of its kind, each
 //! entry of a list left out or doubled. In results of this program on this processor all are found. In results that name another
-//! processor all are found that are larger than the tolerances; what the comparison leaves out is listed here.
+//! processor all forgeries above the tolerances are found. Entries that the comparison leaves out are listed here.
 
 use super::forgery::{BRIDGE, WORDS, optimum, path};
 use super::tolerances::of_another_processor;
@@ -25,7 +25,7 @@ const LOOSE: [&str; 3] = ["/events", "/curve", "/fall"];
 struct Forgery {
     at: String,
     value: Value,
-    /// Whether it is larger than every tolerance.
+    /// True if it is larger than every tolerance.
     large: bool,
 }
 

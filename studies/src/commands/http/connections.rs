@@ -1,10 +1,10 @@
-//! The connections that are open: a fixed number, of which those without a right to be here make room.
+//! Open connections. Their number is limited: connections that have not passed the gate are closed for newer ones.
 
 use std::net::{Shutdown, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// How long a new connection waits for the place of one that was closed for it.
+/// Longest time until the place of a closed connection is free for a new one.
 const MAX_WAIT: Duration = Duration::from_secs(1);
 
 /// All open connections, oldest first.
@@ -16,7 +16,7 @@ pub(super) struct Connections {
 
 struct Place {
     stream: Arc<TcpStream>,
-    /// Whether it may be closed for a newer one: its request has not passed the gate, or its answer is sent.
+    /// True if it may be closed for a newer one: its request has not passed the gate, or its answer is sent.
     closable: bool,
 }
 
@@ -36,7 +36,7 @@ impl Connections {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A place for a connection. If all are taken, the oldest closable one is closed; `None` if there is none.
+    /// A place for a connection. If all are taken, the oldest closable one is closed. Returns `None` if no connection is closable.
     pub fn enter(&self, stream: &Arc<TcpStream>) -> Option<Connection<'_>> {
         let mut open = self.open();
         if open.len() >= self.most {

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// Bytes that are read at once.
 const CHUNK: usize = 4096;
-/// How long the rest of a request is read and dropped, so that the answer is not lost with a reset.
+/// Time in which the rest of a request is read and dropped, so that the answer is not lost with a reset.
 const LINGER: Duration = Duration::from_secs(1);
 /// Reads after which the rest is too long for that.
 const MAX_DROPPED: usize = 256;
@@ -28,7 +28,7 @@ pub(super) struct Wire<'a> {
     rest: Vec<u8>,
 }
 
-/// The time that is left, as a timeout of the system; an error if there is none.
+/// The time that is left, as a timeout of the system; an error if the deadline is past.
 fn left(deadline: Instant) -> IoResult<Option<Duration>> {
     let left = deadline.saturating_duration_since(Instant::now());
     if left.is_zero() { Err(ErrorKind::TimedOut.into()) } else { Ok(Some(left)) }
@@ -40,7 +40,7 @@ impl<'a> Wire<'a> {
         Wire { stream, limits, rest: Vec::new() }
     }
 
-    /// Reads what comes until a deadline, however slowly it drips; 0 at the end.
+    /// Reads the next bytes before a deadline, which slow senders cannot extend; 0 at the end.
     fn read(&self, chunk: &mut [u8], deadline: Instant) -> IoResult<usize> {
         loop {
             self.stream.set_read_timeout(left(deadline)?)?;

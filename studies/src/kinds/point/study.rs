@@ -16,7 +16,7 @@ const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) ->
 }
 
 const fn component(name: &'static str, quantity: Quantity, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape: Shape::Number(quantity, Range::ANY), need: Need::Optional("it keeps what it had") }
+    Parameter { name, doc, shape: Shape::Number(quantity, Range::ANY), need: Need::Optional("it keeps its value") }
 }
 
 const STRAIN_DOC: &str = "strain at the end of the segment";
@@ -114,7 +114,7 @@ pub static STUDY: &[Parameter] = &[
 pub struct Segment {
     /// Equal steps.
     pub steps: usize,
-    /// Per component: where it goes, `None` where it keeps what it had.
+    /// The end value of each component; `None` if it keeps its value.
     pub targets: Vec<Option<Control>>,
 }
 

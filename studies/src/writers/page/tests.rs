@@ -92,7 +92,7 @@ fn assert_safe(page: &str) -> String {
     assert_eq!(page.matches("<script type=\"application/json\" id=\"cases\">").count(), 1);
     let body = page.replace(script, "").replace(style, "");
     for tag in body.split('<').skip(1).map(|rest| rest.split('>').next().unwrap_or_default()) {
-        // Attributes without what is quoted.
+        // Attributes without their quoted values.
         let bare: String = tag.split('"').step_by(2).collect();
         assert!(!bare.contains(" on") && !bare.contains(" style="), "{tag}");
         let address = tag.split_once(" href=\"").map_or("", |(_, rest)| rest.split('"').next().unwrap_or_default());
