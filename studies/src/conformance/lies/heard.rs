@@ -1,4 +1,4 @@
-//! The status and the factor in a solver's own answer, before a certificate has seen them.
+//! The status and the factor in a solver's own answer, before a certificate decides.
 
 use super::limit_liar::DishonestLimit;
 use super::path_liar::DishonestPath;
@@ -9,12 +9,15 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use voussoir_core::limit::Status;
 
-/// The last status and factor that a solver has answered.
+/// Status and factor of an answer.
+type Answered = (Status, Option<f64>);
+
+/// The last status and factor in the answers of a solver.
 #[derive(Debug, Clone, Default)]
-pub struct Heard(Arc<Mutex<Option<(Status, Option<f64>)>>>);
+pub struct Heard(Arc<Mutex<Option<Answered>>>);
 
 impl Heard {
-    /// Notes an answer.
+    /// Stores an answer.
     pub(super) fn note(&self, status: Status, factor: Option<f64>) {
         if let Ok(mut last) = self.0.lock() {
             *last = Some((status, factor));
@@ -22,13 +25,13 @@ impl Heard {
     }
 
     /// The last answer.
-    fn last(&self) -> Option<(Status, Option<f64>)> {
+    fn last(&self) -> Option<Answered> {
         self.0.lock().ok().and_then(|last| *last)
     }
 }
 
-/// The false statement in the solver's own answer to a case, if it makes one. Certificates do not believe it; but a solver
-/// that states what is false does not conform.
+/// The false statement in the solver's own answer to a case, if it makes one. Certificates do not believe it, but a solver
+/// with a false statement does not conform.
 pub(super) fn false_statement(mut case: Case, truth: &Truth, time: Duration) -> Option<String> {
     let heard = Heard::default();
     case.solver.solver = match &case.solver.solver {
