@@ -42,6 +42,7 @@ impl LimitSolver for Fussy {
             factor: None,
             field_factor: 0.0,
             field: None,
+            start_field: None,
             motion: None,
             unique: None,
             ray: None,

@@ -56,6 +56,8 @@ pub struct Claim<'a> {
     pub field: Option<&'a [ContactForce]>,
     /// Forces of the fill that belong to the field, one for each reaction of the assembly \[N\].
     pub fill: &'a [f64],
+    /// A field in equilibrium at the start and the forces of the fill that belong to it; results do not store it.
+    pub start_field: Option<(&'a [ContactForce], &'a [f64])>,
     /// Velocity of every body.
     pub motion: Option<&'a [CentroidVelocity]>,
     /// Contact forces that balance the varying load alone; with `supports`, forces that balance without any load.
@@ -81,6 +83,8 @@ pub struct Verdict {
     pub bounds: [Option<f64>; 2],
     /// The proof of the greatest factor; with the laws' own flow, of the least one.
     pub greatest: Greatest,
+    /// Set if a field proves that the loads at the start are carried.
+    pub start_is_carried: bool,
 }
 
 /// What is claimed besides where joints flow as their laws say.
@@ -191,7 +195,8 @@ pub fn certify(assembly: &Assembly, loads: &StageLoads, claim: &Claim, gap: f64)
     };
     let size = |wrenches: &Wrenches| check.free_bodies().map(|b| wrenches[b][0].hypot(wrenches[b][1])).sum();
     check.sizes = [size(&loads.fixed), size(&loads.varying)];
-    check.decide(claim, gap)
+    let start_is_carried = check.start_is_carried(claim);
+    Verdict { start_is_carried, ..check.decide(claim, gap) }
 }
 
 impl Verdict {
@@ -211,6 +216,7 @@ impl Verdict {
             status: Status::Stalled,
             bounds: [None; 2],
             greatest: Greatest::Open,
+            start_is_carried: false,
         }
     }
 }
@@ -229,8 +235,9 @@ impl Claim<'_> {
             return Some("a force or velocity is not finite, or too great to be checked".into());
         }
         let own = self.non_associated;
-        let fields = [self.field, self.ray, own.and_then(|own| own.associated_field).map(|(field, _)| field)];
-        if fields.into_iter().flatten().flatten().any(|contact| contact.joint >= assembly.joints.len()) {
+        let beside = [self.start_field, own.and_then(|own| own.associated_field)];
+        let fields = [self.field, self.ray].into_iter().chain(beside.map(|beside| beside.map(|(field, _)| field)));
+        if fields.flatten().flatten().any(|contact| contact.joint >= assembly.joints.len()) {
             return Some("a contact force acts on a joint that does not exist".into());
         }
         let motions = [self.motion, own.and_then(|own| own.associated_motion)];
@@ -268,7 +275,16 @@ impl Check<'_> {
         if certificate.failures.is_empty() {
             certificate.failures.push("not proven".into());
         }
-        Verdict { certificate, status, bounds, greatest }
+        Verdict { certificate, status, bounds, greatest, start_is_carried: false }
+    }
+
+    /// Returns true if the field at the start is in equilibrium there and within the strengths.
+    fn start_is_carried(&mut self, claim: &Claim) -> bool {
+        let Some((field, fill)) = claim.start_field else { return false };
+        let at_start = Claim { field: Some(field), fill, field_factor: claim.start, ..*claim };
+        let carried = self.field(&at_start);
+        self.certificate = Certificate::blank();
+        carried
     }
 
     /// Checks the evidence for one status. `None` if a part of the evidence is missing or fails.
@@ -276,7 +292,7 @@ impl Check<'_> {
         let idle = self.sizes[1] == 0.0;
         let verdict = |bounds, greatest| {
             let certificate = Certificate::blank();
-            Some(Verdict { certificate, status, bounds, greatest })
+            Some(Verdict { certificate, status, bounds, greatest, start_is_carried: false })
         };
         match status {
             Status::Stands => {
@@ -303,7 +319,8 @@ impl Check<'_> {
                 };
                 let least = claim.non_associated.is_some_and(|own| own.lower_proof.is_some());
                 let status = if least && lower.is_none() { Status::Open } else { status };
-                Some(Verdict { certificate: Certificate::blank(), status, bounds: [lower, Some(factor)], greatest })
+                let bounds = [lower, Some(factor)];
+                Some(Verdict { status, bounds, ..verdict([None; 2], greatest)? })
             }
             Status::Collapse => {
                 let lower = self.field(claim).then_some(claim.field_factor);

@@ -14,8 +14,9 @@ impl Claim<'_> {
     /// Returns true if all forces and velocities are in range.
     pub(super) fn in_range(&self) -> bool {
         let own = self.non_associated.and_then(|own| own.associated_motion);
-        let associated = self.non_associated.and_then(|own| own.associated_field).map(|(field, _)| field);
-        let forces = [self.field, self.ray, associated].into_iter().flatten().flatten();
+        let beside = [self.start_field, self.non_associated.and_then(|own| own.associated_field)];
+        let beside = beside.map(|beside| beside.map(|(field, _)| field));
+        let forces = [self.field, self.ray].into_iter().chain(beside).flatten().flatten();
         let motions = [self.motion, own].into_iter().flatten().flatten();
         forces.flat_map(|contact| contact.force.iter().chain(contact.point.iter())).all(|x| in_range(*x))
             && [self.factor.unwrap_or(0.0), self.field_factor].iter().all(|x| in_range(*x))

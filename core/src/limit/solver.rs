@@ -78,6 +78,9 @@ pub struct LimitAnswer {
     pub field_factor: f64,
     /// One entry per joint of the problem.
     pub field: Option<Vec<JointForce>>,
+    /// A field in equilibrium at the start of a search for collapse, one entry per joint of the problem. Without it the
+    /// solver is asked whether the start is admissible.
+    pub start_field: Option<Vec<JointForce>>,
     /// One entry per group, about the problem's pole; scaled to varying·q̇ = 1, for `NoEquilibrium`
     /// with a feasible interval to ±1, without one in any scale.
     pub motion: Option<Vec<Velocity>>,

@@ -25,6 +25,7 @@ impl LimitAnswer {
         check_finite("factor", &self.factor)?;
         check_finite("factor of the field", self.field.as_ref().map(|_| &self.field_factor))?;
         check_forces("field", self.field.as_ref(), problem)?;
+        check_forces("field at the start", self.start_field.as_ref(), problem)?;
         check_forces("ray", self.ray.as_ref(), problem)?;
         check_motion("motion", self.motion.as_ref(), problem)?;
         if self.feasible_interval.iter().flatten().any(|end| end.is_nan()) {
@@ -33,6 +34,7 @@ impl LimitAnswer {
         let Some(own) = &self.non_associated else { return Ok(()) };
         check_finite("lower bound", &own.proved_lower)?;
         check_finite("associated factor", &own.associated_factor)?;
+        check_forces("associated field", own.associated_field.as_ref(), problem)?;
         check_motion("associated motion", own.associated_motion.as_ref(), problem)?;
         let points = own.bracket.iter().flat_map(|point| [&point.work, &point.lower].into_iter().chain(&point.found));
         check_finite("bracket", points)

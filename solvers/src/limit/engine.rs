@@ -53,8 +53,8 @@ pub trait Engine {
     /// some λ can.
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest;
 
-    /// The same for fixed loads of which it is not known whether they can be carried: an answer only where they can.
-    fn greatest_if_carried(&mut self, _: &Wrenches, _: &Wrenches, _: f64) -> Option<Greatest> {
+    /// The same for fixed loads that may not be carried: the answer if they are, with a field that carries them.
+    fn greatest_if_carried(&mut self, _: &Wrenches, _: &Wrenches, _: f64) -> Option<(Vec<JointForce>, Greatest)> {
         None
     }
 

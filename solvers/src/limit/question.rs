@@ -19,6 +19,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         factor: None,
         field_factor: start,
         field: None,
+        start_field: None,
         motion: None,
         unique: None,
         ray: None,
@@ -36,7 +37,8 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
     }
     let grows = matches!(question, LimitQuestion::Collapse { .. }) && problem.magnitude(&problem.varying) > 0.0;
     let at_once = if grows { engine.greatest_if_carried(&base, &problem.varying, max - start) } else { None };
-    if let Some(greatest) = at_once {
+    if let Some((field, greatest)) = at_once {
+        answer.start_field = Some(field);
         answer.status = Status::Stands;
         carried(problem, greatest, &base, (start, max), &mut answer);
         answer.counters = engine.counters();
@@ -48,6 +50,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
     let carries = |engine: &mut dyn Engine| if grows { engine.carried(&base) } else { engine.admissible(&base) };
     match if idle { nothing() } else { carries(engine) } {
         Equilibrium::Field(field) => {
+            answer.start_field = grows.then(|| field.clone());
             answer.field = Some(field);
             answer.status = Status::Stands;
             if matches!(question, LimitQuestion::Collapse { .. }) {

@@ -41,7 +41,7 @@ pub(crate) fn associated_load(input: &CaseInput) -> Option<AssociatedLoad> {
     problem.non_associated = false;
     let posed = CaseInput { solver: &SelectedSolver::Auto, of_stages: &[], ..*input };
     let asked = LimitQuestion::Collapse { start: 0.0, max: f64::INFINITY };
-    let answer = asked_of_solvers(&posed, index, (&problem, &loads[index]), asked);
+    let (answer, _) = asked_of_solvers(&posed, index, (&problem, &loads[index]), asked);
     let factor = answer.bounds?[1].filter(|_| answer.status == Status::Collapse)?;
     Some(AssociatedLoad { factor, unit: fixed / varying, associated })
 }

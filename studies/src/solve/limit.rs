@@ -119,17 +119,18 @@ fn settled_hinges(
     }
 }
 
-/// The result of an answer with its certificate; a stalled one if the answer is malformed.
+/// The result of an answer with its certificate, and whether it proves the start; a stalled result if the answer is
+/// malformed.
 fn read(
     input: &CaseInput,
     stage: &Stage,
     (problem, loads): (&LimitProblem, &StageLoads),
     asked: LimitQuestion,
     (tag, solved): (&str, LimitAnswer),
-) -> CaseResult {
+) -> (CaseResult, bool) {
     match solved.check_form(problem) {
         Ok(()) => certified(input, stage, (problem, loads), asked, (tag, solved)),
-        Err(why) => CaseResult::stalled(why),
+        Err(why) => (CaseResult::stalled(why), false),
     }
 }
 
@@ -138,12 +139,12 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, all_load
     let loads = &all_loads[index];
     let stage = &input.stages[index];
     let asked = ask(stage, problem);
-    let result = asked_of_solvers(input, index, (problem, loads), asked);
+    let (result, start_is_carried) = asked_of_solvers(input, index, (problem, loads), asked);
     if let LimitQuestion::Collapse { start, .. } = asked
         && matches!(result.status, Status::Collapse | Status::Unbounded | Status::Open)
-        && !start_is_proved(input.stages, index, all_loads, start)
+        && !(start_is_carried || start_is_proved(input.stages, index, all_loads, start))
     {
-        let mut at_start = asked_of_solvers(input, index, (problem, loads), LimitQuestion::Admissible(start));
+        let (mut at_start, _) = asked_of_solvers(input, index, (problem, loads), LimitQuestion::Admissible(start));
         if at_start.status != Status::Stands {
             at_start.notes.push(format!(
                 "a load factor was found, but nothing proves that the loads at the start of the stage, at the factor {start}, \
@@ -163,17 +164,18 @@ fn start_is_proved(stages: &[Stage], index: usize, loads: &[StageLoads], start: 
     unloaded || continues
 }
 
-/// Puts a question to the solvers to try, one after the other.
+/// Puts a question to the solvers to try, one after the other. Returns the result, and whether its answer proves the
+/// start.
 pub(super) fn asked_of_solvers(
     input: &CaseInput,
     index: usize,
     (problem, loads): (&LimitProblem, &StageLoads),
     asked: LimitQuestion,
-) -> CaseResult {
+) -> (CaseResult, bool) {
     let stage = &input.stages[index];
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let mut notes = Vec::new();
-    let mut best: Option<CaseResult> = None;
+    let mut best: Option<(CaseResult, bool)> = None;
     // Those that `auto` chooses have been asked.
     let named = matches!(selected, SelectedSolver::Limit(..));
     for (tag, solver) in limit_solvers(selected, problem) {
@@ -183,29 +185,31 @@ pub(super) fn asked_of_solvers(
         }
         let solve =
             |posed: &LimitProblem| read(input, stage, (problem, loads), asked, (tag, solver.solve(posed, asked)));
-        let mut result = solve(problem);
+        let (mut result, mut start_is_carried) = solve(problem);
         let bracketed = result.bounds.is_some() && result.non_associated.lower_proof.is_some();
         if !result.certificate.passed && !bracketed {
             // Numbers of very unlike sizes are what solvers fail on; the certificate reads the laws as they are.
             let within = problem.within_reach();
             let bounded = within.as_ref().unwrap_or(problem).with_bounded_shear();
             let mut easier = [within, bounded].into_iter().flatten();
-            result = easier
-                .find_map(|easier| Some(solve(&easier)).filter(|again| again.certificate.passed))
-                .unwrap_or(result);
+            if let Some(again) =
+                easier.find_map(|easier| Some(solve(&easier)).filter(|again| again.0.certificate.passed))
+            {
+                (result, start_is_carried) = again;
+            }
         }
         result.solver = tag.to_string();
         if result.certificate.passed {
-            return result;
+            return (result, start_is_carried);
         }
         notes.push(format!("{tag}: {}", result.certificate.failures.join("; ")));
         notes.append(&mut result.notes);
-        if best.as_ref().is_none_or(|best| best.status == Status::Stalled && result.status == Status::Open) {
-            best = Some(result);
+        if best.as_ref().is_none_or(|best| best.0.status == Status::Stalled && result.status == Status::Open) {
+            best = Some((result, start_is_carried));
         }
     }
-    let best = best.unwrap_or_else(|| CaseResult::stalled("no solver supports this scene"));
-    CaseResult { notes, ..best }
+    let (best, start_is_carried) = best.unwrap_or_else(|| (CaseResult::stalled("no solver supports this scene"), false));
+    (CaseResult { notes, ..best }, start_is_carried)
 }
 
 /// Notes on how limit analysis reads a scene that says more.

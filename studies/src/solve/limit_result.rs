@@ -14,14 +14,16 @@ use voussoir_core::limit::{JointForce, LimitAnswer, LimitProblem, LimitQuestion,
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target};
 
-/// The result of one stage, certified.
+/// The result of one stage, certified, and whether a field of the answer carries the loads at the start of the stage.
 pub(super) fn certified(
     input: &CaseInput,
     stage: &Stage,
     (problem, loads): (&LimitProblem, &StageLoads),
     asked: LimitQuestion,
-    (tag, solved): (&str, LimitAnswer),
-) -> CaseResult {
+    (tag, mut solved): (&str, LimitAnswer),
+) -> (CaseResult, bool) {
+    // Of an interval only the end nearer to the start is checked: the other one rests on the solver.
+    solved.feasible_interval = solved.feasible_interval.filter(|_| is_ours(tag));
     let assembly = input.assembly;
     let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
     let ray = solved.ray.as_ref().map(|forces| contact_forces(problem, forces));
@@ -36,16 +38,10 @@ pub(super) fn certified(
         LimitQuestion::Admissible(factor) => (factor, factor),
         LimitQuestion::Collapse { start, max } => (start, max),
     };
-    let associated_fill;
-    let associated_contacts;
-    let associated_field = match own.and_then(|own| own.associated_field.as_ref()) {
-        Some(forces) => {
-            associated_contacts = contact_forces(problem, forces);
-            associated_fill = problem.fill_forces(forces, &loads.fill_bounds);
-            Some((&associated_contacts[..], &associated_fill[..]))
-        }
-        None => None,
-    };
+    let beside =
+        |forces: &Vec<JointForce>| (contact_forces(problem, forces), problem.fill_forces(forces, &loads.fill_bounds));
+    let associated_field = own.and_then(|own| own.associated_field.as_ref()).map(beside);
+    let start_field = solved.start_field.as_ref().map(beside);
     let claim = Claim {
         hint: solved.status,
         target: max,
@@ -53,6 +49,7 @@ pub(super) fn certified(
         field_factor: solved.field_factor,
         start,
         field: field.as_deref(),
+        start_field: start_field.as_ref().map(|(field, fill)| (&field[..], &fill[..])),
         fill: &fill,
         motion: motion.as_deref(),
         ray: ray.as_deref(),
@@ -64,10 +61,11 @@ pub(super) fn certified(
             search_is_trusted: is_ours(tag),
             associated_factor: own.associated_factor,
             associated_motion: associated_motion.as_deref(),
-            associated_field,
+            associated_field: associated_field.as_ref().map(|(field, fill)| (&field[..], &fill[..])),
         }),
     };
-    let Verdict { certificate, status, bounds, greatest } = certify(assembly, loads, &claim, input.settings.tolerance);
+    let Verdict { certificate, status, bounds, greatest, start_is_carried } =
+        certify(assembly, loads, &claim, input.settings.tolerance);
     // Only evidence of the proved status goes into the result.
     let shows = |statuses: &[Status]| statuses.contains(&status);
     let believed = certificate.passed || is_ours(tag);
@@ -84,7 +82,7 @@ pub(super) fn certified(
     let found = solved.factor.filter(|factor| own.is_some() && upper == Some(*factor) && believed);
     // No check proves that a mechanism is the only one.
     let unique = solved.unique.filter(|unique| !unique || is_ours(tag));
-    CaseResult {
+    let result = CaseResult {
         status,
         load_factor: match status {
             Status::Collapse => solved.factor.or(lower),
@@ -117,7 +115,8 @@ pub(super) fn certified(
         counters: solved.counters,
         notes,
         ..CaseResult::empty()
-    }
+    };
+    (result, start_is_carried)
 }
 
 /// Velocities of all bodies; those that refute equilibrium without a factor are scaled to a greatest jump of 1.

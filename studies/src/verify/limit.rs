@@ -81,6 +81,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         field_factor: result.proof.field_factor.unwrap_or(start),
         start,
         field: stored.field.as_deref(),
+        start_field: None,
         fill: &fill,
         motion: stored.motion.as_deref(),
         ray: stored.ray.as_deref(),
@@ -119,7 +120,7 @@ fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
 
 /// The stored status, certificate and bounds against those that the stored evidence proves.
 fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Findings) {
-    let Verdict { certificate, status, bounds, greatest } = verdict;
+    let Verdict { certificate, status, bounds, greatest, .. } = verdict;
     findings.expect(*status == result.status, "the stored evidence does not prove the stored status");
     findings.expect(*greatest == result.greatest, "greatest does not fit the bounds");
     findings.expect(certificate.passed == result.certificate.passed, "the stored verdict is not the recomputed one");

@@ -371,16 +371,24 @@ impl Engine for ConicEngine<'_> {
         }
     }
 
-    fn greatest_if_carried(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Option<Greatest> {
+    fn greatest_if_carried(
+        &mut self,
+        fixed: &Wrenches,
+        varying: &Wrenches,
+        cap: f64,
+    ) -> Option<(Vec<JointForce>, Greatest)> {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let solved = self.by_blocks(loads, |program| block_program::solve(program, true))?;
         let stands = solved.stands.filter(|field| self.carries(fixed, field))?;
         let solution = solved.solution.filter(|solution| self.holds(fixed, varying, solution));
-        if solution.is_none() {
-            self.carried = Some((fixed.clone(), stands));
-            self.unsolved = Some((fixed.clone(), varying.clone()));
+        match solution {
+            Some(solution) => Some((stands, greatest_of(solution, varying))),
+            None => {
+                self.carried = Some((fixed.clone(), stands));
+                self.unsolved = Some((fixed.clone(), varying.clone()));
+                None
+            }
         }
-        Some(greatest_of(solution?, varying))
     }
 
     fn counters(&self) -> Counters {
