@@ -208,7 +208,8 @@ pub(super) fn asked_of_solvers(
             best = Some((result, start_is_carried));
         }
     }
-    let (best, start_is_carried) = best.unwrap_or_else(|| (CaseResult::stalled("no solver supports this scene"), false));
+    let (best, start_is_carried) =
+        best.unwrap_or_else(|| (CaseResult::stalled("no solver supports this scene"), false));
     (CaseResult { notes, ..best }, start_is_carried)
 }
 
