@@ -94,7 +94,7 @@ pub fn status_meaning(status: Status) -> &'static str {
             "cannot carry the loads present before the stage begins, or cannot follow its supports"
         }
         Status::LimitPoint => "no equilibrium path with a growing load factor",
-        Status::Open => "a bound of the load factor is proved, its end is not",
+        Status::Open => "bounds of the load factor are proved, the load factor itself is not",
         Status::Stalled => "nothing is proved; the notes give the reason",
     }
 }

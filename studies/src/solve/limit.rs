@@ -202,7 +202,9 @@ pub(super) fn asked_of_solvers(
         if result.certificate.passed {
             return (result, start_is_carried);
         }
-        notes.push(format!("{tag}: {}", result.certificate.failures.join("; ")));
+        if result.status == Status::Stalled {
+            notes.push(format!("{tag}: {}", result.certificate.failures.join("; ")));
+        }
         notes.append(&mut result.notes);
         if best.as_ref().is_none_or(|best| best.0.status == Status::Stalled && result.status == Status::Open) {
             best = Some((result, start_is_carried));

@@ -147,8 +147,17 @@ fn summary(study: &StudyOutput) -> String {
             );
         }
     }
-    let failed: Vec<usize> = cases.iter().filter(|case| !case.certificate.passed).map(|case| case.label.id).collect();
-    text += &if failed.is_empty() {
+    let unproved = |open: bool| {
+        let cases = cases.iter().filter(move |case| !case.certificate.passed && (case.status == Status::Open) == open);
+        cases.map(|case| case.label.id).collect::<Vec<usize>>()
+    };
+    let (open, failed) = (unproved(true), unproved(false));
+    if !open.is_empty() {
+        text += &format!(" <strong>Only bounds are proved for {}.</strong>", id_list(&open, cases.len()));
+    }
+    text += &if failed.is_empty() && !open.is_empty() {
+        String::new()
+    } else if failed.is_empty() {
         format!(" Every answer passed its certificate: {}.", checked(cases))
     } else {
         format!(
@@ -157,6 +166,15 @@ fn summary(study: &StudyOutput) -> String {
         )
     };
     text + "</p>\n"
+}
+
+/// The verdict of the certificate: of an open result only the bounds are proved.
+fn certificate_word(case: &CaseResult) -> &'static str {
+    match (case.certificate.passed, case.status) {
+        (true, _) => "passed",
+        (false, Status::Open) => "bounds",
+        (false, _) => "failed",
+    }
 }
 
 /// The least load factor with the case it belongs to: `382.1 kN at rise = 5.69 m`.
@@ -229,7 +247,7 @@ fn case_table(study: &StudyOutput) -> String {
         }));
         let joints = case.mechanism.as_ref().map(hinge_list).unwrap_or_default();
         row.push(if joints.len() > 12 { format!("{} joints", joints.len()) } else { joints.join(", ") });
-        row.push(if case.certificate.passed { "passed" } else { "failed" }.into());
+        row.push(certificate_word(case).into());
         row.push(format_seconds(case.seconds));
         row
     });
@@ -382,7 +400,7 @@ fn certificates(cases: &[CaseResult]) -> String {
                 .iter()
                 .map(|name| case.certificate.residuals.get(*name).map_or(String::new(), |r| format!("{r:.1e}"))),
         );
-        row.push(if case.certificate.passed { "passed" } else { "failed" }.into());
+        row.push(certificate_word(case).into());
         row
     });
     format!(

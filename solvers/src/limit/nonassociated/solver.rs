@@ -460,7 +460,11 @@ fn finish(
             let factor = start + state.factor;
             own.proved_lower = Some(proved.min(factor));
             own.bracket = curve.factors(start, unit, [proved.min(factor), factor]);
-            if lower * unit < state.factor * (1.0 - 2.0 * WIDEST) {
+            if lower <= 0.0 && state.factor > 0.0 {
+                answer.notes.push(format!(
+                    "the least load factor of the laws' own flow is at most {factor:.9} (found); no lower end is proved: {why}"
+                ));
+            } else if lower * unit < state.factor * (1.0 - 2.0 * WIDEST) {
                 answer.notes.push(format!(
                     "the least load factor of the laws' own flow lies between {proved:.9} (proved) and {factor:.9} (found): {why}"
                 ));
