@@ -10,6 +10,7 @@ pub mod book;
 pub mod by_hand;
 pub mod energy;
 pub mod gates;
+pub mod integrator;
 mod keep;
 pub mod known;
 pub mod random;

@@ -5,6 +5,7 @@ mod cap;
 mod conic;
 mod extremes;
 mod imperfections;
+mod integrator;
 mod limit;
 mod limit_scenes;
 mod nonassociated;

@@ -1,0 +1,107 @@
+//! Paths with friction and finite displacements against an integrator that shares no code with the solvers.
+//!
+//! ```sh
+//! CASES=60 FIRST=0 cargo test --release -p voussoir-tests --test stress -- --ignored --nocapture integrator_of_many
+//! ```
+
+use voussoir::core::limit::Status;
+use voussoir::results::CaseResult;
+use voussoir::solve_case;
+use voussoir_tests::integrator::families::SmallScene;
+use voussoir_tests::integrator::{End, Found, integrate};
+use voussoir_tests::{first_case, keep};
+
+/// Relative difference of two loads that agree.
+const SAME_LOAD: f64 = 1e-5;
+/// Longest step of the integrator.
+const LONGEST_STEP: f64 = 1e-3;
+/// Maxima behind which the load falls by a smaller share of itself are not compared.
+const SMALLEST_FALL: f64 = 1e-7;
+
+/// The outcome of a comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Outcome {
+    Agrees,
+    FirstPeakDiffers,
+    ProgramOpen,
+    ProgramStalled,
+    IntegratorLost,
+    Contradicts,
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_LOAD * a.abs().max(b.abs())
+}
+
+/// Compares a result with the integrator's path.
+fn compared(result: &CaseResult, found: Option<&Found>) -> Outcome {
+    let Some(found) = found else { return Outcome::IntegratorLost };
+    let complete = !matches!(found.end, End::Lost | End::Steps);
+    let lost_or = |outcome| if complete { outcome } else { Outcome::IntegratorLost };
+    match (result.status, result.load_factor) {
+        (Status::Collapse | Status::LimitPoint, Some(load)) if same(load, found.greatest) => {
+            let first = found.peaks.iter().find(|[load, fall]| *fall > SMALLEST_FALL * load.abs());
+            match (first, result.path.first_limit_point) {
+                (Some([one, _]), Some(other)) if !same(*one, other) => Outcome::FirstPeakDiffers,
+                _ => Outcome::Agrees,
+            }
+        }
+        (Status::Collapse | Status::LimitPoint, Some(_)) => lost_or(Outcome::Contradicts),
+        (Status::Open, _) => {
+            let lower = result.bounds.and_then(|bounds| bounds[0]).unwrap_or(0.0);
+            if lower <= found.greatest * (1.0 + SAME_LOAD) {
+                Outcome::ProgramOpen
+            } else {
+                lost_or(Outcome::Contradicts)
+            }
+        }
+        _ => Outcome::ProgramStalled,
+    }
+}
+
+/// The outcomes of a scene and of its mirror image, with a line for the table.
+fn outcomes(seed: u64) -> ([Outcome; 2], String) {
+    let scene = SmallScene::of_seed(seed);
+    let texts = [scene.study(""), scene.mirrored().study("")];
+    let found = integrate(&first_case(&texts[0]), LONGEST_STEP);
+    let mut line = format!("{seed} {}: ", scene.family);
+    line += &found.as_ref().map_or("dead load not carried".into(), |f| format!("{:.9} {:?}", f.greatest, f.end));
+    let outcomes = [0, 1].map(|side| {
+        let result = solve_case(&first_case(&texts[side]));
+        let outcome = compared(&result, found.as_ref());
+        if !matches!(outcome, Outcome::Agrees) {
+            keep(&format!("integrator{seed}_{side}.toml"), &texts[side]);
+        }
+        line += &format!(" | {outcome:?} {:?} {:?} {:?}", result.status, result.load_factor, result.bounds);
+        outcome
+    });
+    (outcomes, line)
+}
+
+/// A stack, a portal, an arch and a wall carry the load of the integrator, and so do their mirror images.
+#[test]
+fn integrator_of_some() {
+    let found: Vec<_> = std::thread::scope(|scope| {
+        let work = [vec![2], vec![1, 20, 23]]
+            .map(|seeds: Vec<u64>| scope.spawn(move || seeds.into_iter().map(outcomes).collect::<Vec<_>>()));
+        work.into_iter().flat_map(|part| part.join().expect("no panic")).collect()
+    });
+    for (outcomes, line) in found {
+        assert_eq!(outcomes, [Outcome::Agrees; 2], "{line}");
+    }
+}
+
+/// The table of many scenes.
+#[test]
+#[ignore = "minutes; CASES and FIRST choose the scenes"]
+fn integrator_of_many() {
+    let number = |key: &str, default: u64| std::env::var(key).ok().and_then(|s| s.parse().ok()).unwrap_or(default);
+    let first = number("FIRST", 0);
+    let mut counts = std::collections::BTreeMap::new();
+    for seed in first..first + number("CASES", 60) {
+        let (outcomes, line) = outcomes(seed);
+        println!("{line}");
+        outcomes.into_iter().for_each(|outcome| *counts.entry(outcome).or_insert(0) += 1);
+    }
+    println!("{counts:?}");
+}
