@@ -45,13 +45,15 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    Seen { checker, ends, progress, energy, states }: Seen,
+    Seen { checker, ends, mut progress, energy, states }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     prefer_symmetric(assembly, &checker, finite, &mut solved);
     let mut certificate = certificate(&solved, &checker, finite, energy);
     let ours = path_is_ours(tag, input.settings);
-    if !ours {
+    if ours {
+        progress.add_peak(&solved.state);
+    } else {
         leave_out_unproved(&mut solved);
     }
     let evidence = Evidence {

@@ -42,6 +42,15 @@ impl Progress {
         }
     }
 
+    /// Takes over the state of a located peak, which solvers do not report as a step.
+    pub fn add_peak(&mut self, state: &PathState) {
+        let Some(last) = &self.last else { return };
+        let highest = self.greatest_of(last.load_step).is_none_or(|greatest| state.factor > greatest.factor);
+        if state.load_step == last.load_step && highest {
+            self.greatest = Some(state.clone());
+        }
+    }
+
     /// The load step of the last state.
     pub fn load_step(&self) -> Option<usize> {
         self.last.as_ref().map(|state| state.load_step)

@@ -46,6 +46,8 @@ fn compared(result: &CaseResult, found: Option<&Found>) -> Outcome {
                 _ => Outcome::Agrees,
             }
         }
+        // A greater load of the integrator contradicts, wherever its path ends.
+        (Status::Collapse | Status::LimitPoint, Some(load)) if load < found.greatest => Outcome::Contradicts,
         (Status::Collapse | Status::LimitPoint, Some(_)) => lost_or(Outcome::Contradicts),
         (Status::Open, _) => {
             let lower = result.bounds.and_then(|bounds| bounds[0]).unwrap_or(0.0);

@@ -1,6 +1,6 @@
 //! The check of a solver or strategy by `voussoir conform`.
 
-use super::heard::false_statement;
+use super::own_answer::false_statement;
 use super::suite::{Lie, answered_within, reference, scenes, solver_keys};
 use crate::conformance::findings::Recorder;
 use std::sync::atomic::Ordering;

@@ -1,6 +1,6 @@
 //! Dishonest limit solvers: the list, and the solver that tells one of the lies.
 
-use super::heard::Heard;
+use super::last_answer::LastAnswer;
 use super::limit_lie::{LimitAsked, LimitLie};
 use super::{limit_fields, limit_status, limit_substitutes};
 use serde::{Deserialize, Serialize};
@@ -28,7 +28,7 @@ pub struct DishonestLimit {
     pub told: Arc<AtomicUsize>,
     /// Status and factor of the last answer to a search for collapse.
     #[serde(skip)]
-    pub heard: Heard,
+    pub last_answer: LastAnswer,
 }
 
 #[typetag::serde(name = "dishonest_limit")]
@@ -44,7 +44,7 @@ impl LimitSolver for DishonestLimit {
             None => asked.answer(),
         };
         if matches!(question, LimitQuestion::Collapse { .. }) {
-            self.heard.note(answer.status, answer.factor);
+            self.last_answer.store(answer.status, answer.factor);
         }
         answer
     }

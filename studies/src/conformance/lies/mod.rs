@@ -4,12 +4,13 @@
 //! criterion: which claims of a result are false. Statements that are true are allowed, however they were found.
 
 mod check;
-mod heard;
+mod last_answer;
 mod limit_fields;
 mod limit_liar;
 mod limit_lie;
 mod limit_status;
 mod limit_substitutes;
+mod own_answer;
 mod path_answers;
 mod path_endings;
 mod path_liar;
@@ -21,7 +22,7 @@ mod suite;
 mod truth;
 
 pub(super) use check::check;
-pub use heard::Heard;
+pub use last_answer::LastAnswer;
 pub use limit_liar::{DishonestLimit, limit_lies};
 pub use limit_lie::{LimitAsked, LimitLie};
 pub use path_liar::{DishonestPath, path_lies};

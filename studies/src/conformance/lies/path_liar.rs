@@ -1,6 +1,6 @@
 //! Dishonest path solvers: the list, and the solver that tells one of the lies.
 
-use super::heard::Heard;
+use super::last_answer::LastAnswer;
 use super::path_lie::{PathAsked, PathLie};
 use super::{path_answers, path_endings, path_states};
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub struct DishonestPath {
     pub told: Arc<AtomicUsize>,
     /// Status and factor of the last answer.
     #[serde(skip)]
-    pub heard: Heard,
+    pub last_answer: LastAnswer,
 }
 
 #[typetag::serde(name = "dishonest_path")]
@@ -46,7 +46,7 @@ impl PathSolver for DishonestPath {
                 break;
             }
         }
-        self.heard.note(story.answer.status, story.answer.factor);
+        self.last_answer.store(story.answer.status, story.answer.factor);
         story.answer
     }
 
