@@ -81,7 +81,7 @@ fn said_of_a_lie(text: &str, lie: Option<Lie>, follow: Option<FollowLie>) -> Str
     case.solver.solver = SelectedSolver::Limit(tag.clone(), Arc::new(lying));
     let result = solve_case(&case);
     assert!(!result.status.is_answer() && !result.certificate.passed, "{:?} {:?}", result.status, result.notes);
-    result.notes.join("\n")
+    [result.notes, result.certificate.failures].concat().join("\n")
 }
 
 fn arch() -> Arch {
