@@ -33,7 +33,7 @@ voussoir::core::inventory::submit! {
         parameters: PARAMETERS,
         provides: &[Capability::FACETS, Capability::RESPONSE],
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir::core::package!(),
         page: "# `python_facets`\n\nThe class has `facets()`, a list of `voussoir.Facet`, and may have `stiffness`, two numbers in Pa/m.\n",
         check: |table| checked(table, "facets"),
         ..Card::BLANK
@@ -48,7 +48,7 @@ voussoir::core::inventory::submit! {
         parameters: PARAMETERS,
         provides: &[Capability::RESPONSE],
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir::core::package!(),
         page: "# `python_response`\n\nThe class has `stiffness`, two numbers in Pa/m, `state_names`, and `respond(gap, state)`.\n",
         check: |table| checked(table, "response"),
         ..Card::BLANK
