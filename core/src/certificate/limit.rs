@@ -366,8 +366,8 @@ impl Check<'_> {
         let carried = reads_associated && claim.field.is_some() && self.field(claim);
         let lower = (carried && claim.field_factor > claim.start).then_some(claim.field_factor);
         self.certificate = Certificate::blank();
-        let bounded = claim.motion.is_some() && self.upper_bound(claim).is_some() && self.certificate.passed;
-        let upper = if bounded { self.upper_bound(claim).map(|(upper, _)| upper) } else { None };
+        let bound = self.upper_bound(claim).map(|(upper, _)| upper);
+        let upper = bound.filter(|_| self.certificate.passed);
         self.certificate = Certificate::blank();
         let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
         if consistent { [lower, upper] } else { [None; 2] }

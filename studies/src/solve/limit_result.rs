@@ -22,7 +22,7 @@ pub(super) fn certified(
     asked: LimitQuestion,
     (tag, mut solved): (&str, LimitAnswer),
 ) -> (CaseResult, bool) {
-    // Of an interval only the end nearer to the start is checked: the other one rests on the solver.
+    // The certificate checks only the end of the interval that is nearer to the start; the other end rests on the solver.
     solved.feasible_interval = solved.feasible_interval.filter(|_| is_ours(tag));
     let assembly = input.assembly;
     let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));

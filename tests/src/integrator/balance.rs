@@ -5,7 +5,7 @@ use super::law::{Memory, Mode, Response};
 use super::scene::{Contact, Scene};
 use nalgebra::{DMatrix, DVector};
 
-/// What acts: shares of the dead load and of the live load.
+/// Shares of the dead load and of the live load that act.
 #[derive(Debug, Clone, Copy)]
 pub struct Loads {
     /// Factor of gravity.

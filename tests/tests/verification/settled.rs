@@ -280,7 +280,7 @@ fn where_the_usual_strategy_stalls_another_one_follows() {
     assert!(usual.certificate.passed && usual.load_factor == named.load_factor, "{:?}", usual.load_factor);
     assert!(usual.load_factor.is_some_and(|factor| (factor - 45_099.38).abs() < 0.01), "{:?}", usual.load_factor);
     assert!(followed(&usual) && !followed(&named), "{:?}\n{:?}", usual.notes, named.notes);
-    // What the named strategy reached is proved: an open result with a lower end below the peak.
+    // The states of the named strategy prove an open result with a lower end below the peak.
     let alone = by(scene, "\"arc_length\"");
     let lower = alone.bounds.and_then(|bounds| bounds[0]).expect("a lower end");
     assert!(alone.status == Status::Open && lower <= 45_099.39, "{:?} {lower}", alone.status);

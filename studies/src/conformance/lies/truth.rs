@@ -219,7 +219,7 @@ fn not_finite(result: &CaseResult, wrong: &mut Vec<String>) {
     check("curve", result.path.curve.iter().flatten().flatten().all(|value| value.is_finite()));
 }
 
-/// Every event happens on the known path too, at that joint. A path by steps may report that a point sticks although
+/// Every event also happens on the known path at the same joint. A path by steps may report that a point sticks although
 /// it slides again within the step.
 fn events(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
     let known = &reference.path.events;
