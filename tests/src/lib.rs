@@ -9,6 +9,7 @@ mod arch;
 pub mod book;
 pub mod by_hand;
 pub mod energy;
+pub mod family;
 pub mod gates;
 pub mod integrator;
 mod keep;
@@ -21,7 +22,7 @@ mod wall;
 pub mod written;
 
 pub use arch::{Arch, as_blocks};
-pub use keep::keep;
+pub use keep::{keep, keep_in};
 pub use wall::Wall;
 
 use voussoir::core::limit::Status;

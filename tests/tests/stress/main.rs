@@ -4,6 +4,7 @@ mod bridges;
 mod cap;
 mod conic;
 mod extremes;
+mod families;
 mod imperfections;
 mod integrator;
 mod limit;

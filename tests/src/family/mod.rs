@@ -1,0 +1,136 @@
+//! Five families of random scenes of three to nine blocks: random, mirror-symmetric, equal bricks, settlements, finite.
+//!
+//! Each scene is a list of blocks. It can be written as a study in several forms that must not change the answer: its mirror
+//! image, and its blocks in another order.
+
+mod shapes;
+mod written;
+
+use crate::sequence::Sequence;
+
+/// A family of scenes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// Stacks, portals, arches and walls of unequal blocks.
+    Random,
+    /// The same shapes with a vertical axis of symmetry; several contact points change their mode at once.
+    Symmetric,
+    /// Walls, stacks and arches of equal blocks with round numbers.
+    Bricks,
+    /// A support moves before the load grows.
+    Settlements,
+    /// Finite displacements with soft joints, slender stacks and shallow arches.
+    Finite,
+}
+
+impl Family {
+    /// All families.
+    pub const ALL: [Family; 5] =
+        [Family::Random, Family::Symmetric, Family::Bricks, Family::Settlements, Family::Finite];
+
+    /// Name in lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Family::Random => "random",
+            Family::Symmetric => "symmetric",
+            Family::Bricks => "bricks",
+            Family::Settlements => "settlements",
+            Family::Finite => "finite",
+        }
+    }
+
+    /// The family of a name.
+    pub fn of_name(name: &str) -> Option<Family> {
+        Family::ALL.into_iter().find(|family| family.name() == name)
+    }
+}
+
+/// Joint law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// No slip.
+    Stuck,
+    /// Slip along the normal of the friction cone.
+    Associated,
+    /// Slip without dilatancy.
+    Coulomb,
+    /// Slip with half the friction angle as dilatancy.
+    Dilatant,
+}
+
+/// A quadrilateral block; mesh elements count along edges 0 and 2, and along edges 1 and 3.
+#[derive(Debug, Clone)]
+struct Block {
+    vertices: [[f64; 2]; 4],
+    fixed: bool,
+}
+
+/// A load of the last stage.
+#[derive(Debug, Clone, Copy)]
+enum Load {
+    /// A force \[N\] at a point of a block.
+    Point { block: usize, point: [f64; 2], force: [f64; 2] },
+    /// A horizontal acceleration of all blocks \[m/s²\].
+    Body { acceleration: f64 },
+}
+
+/// A scene of a family.
+#[derive(Debug, Clone)]
+pub struct FamilyScene {
+    /// Name of the shape.
+    pub shape: &'static str,
+    /// Joint law.
+    pub law: Law,
+    /// True if displacements are finite.
+    pub finite: bool,
+    friction: f64,
+    /// Normal and shear stiffness of the joints \[Pa/m\] if the blocks are rigid.
+    stiffness: Option<[f64; 2]>,
+    /// Young's modulus of each block \[Pa\] if they are elastic.
+    moduli: Vec<f64>,
+    blocks: Vec<Block>,
+    elements: [usize; 2],
+    loads: Vec<Load>,
+    /// Displacement and rotation of supports.
+    settlements: Vec<(usize, [f64; 3])>,
+}
+
+/// A form of a scene that must not change the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// As it was drawn.
+    Given,
+    /// Its mirror image.
+    Mirrored,
+    /// Its blocks in another order.
+    Renumbered,
+}
+
+/// Scene `seed` of a family.
+pub fn family_scene(family: Family, seed: u64) -> FamilyScene {
+    let salt = family as u64 + 1;
+    let mut numbers = Sequence::new(seed.wrapping_mul(11).wrapping_add(salt).wrapping_add(7_000_000_000));
+    let mut scene = shapes::drawn(family, &mut numbers);
+    let round = family == Family::Bricks;
+    scene.law = match numbers.unit() {
+        share if share < 0.6 => Law::Coulomb,
+        share if share < 0.8 => Law::Associated,
+        share if share < 0.9 => Law::Dilatant,
+        _ => Law::Stuck,
+    };
+    let friction = numbers.between(0.25, 0.9);
+    scene.friction = if round { (10.0 * friction).round() / 10.0 } else { friction };
+    let softer = if family == Family::Finite { 1.5 } else { 0.0 };
+    let decade = numbers.between(0.0, 1.5) - softer;
+    if numbers.chance(0.5) {
+        let normal = 10f64.powf(9.0 + decade);
+        scene.stiffness = Some([normal, normal * numbers.between(0.3, 0.8)]);
+    } else {
+        let spread = if family == Family::Random && numbers.chance(0.5) { 2.0 } else { 0.0 };
+        let modulus = |numbers: &mut Sequence| 10f64.powf(9.0 + decade - spread * numbers.unit());
+        scene.moduli = (0..scene.blocks.len()).map(|_| modulus(&mut numbers)).collect();
+    }
+    scene.elements = [numbers.whole(1, 3), numbers.whole(1, 2)];
+    scene.finite = family == Family::Finite || seed.is_multiple_of(2);
+    scene
+}
