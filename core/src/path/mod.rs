@@ -20,6 +20,7 @@ mod sliding;
 mod solver;
 mod state;
 mod well_formed;
+mod witness;
 mod work;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
@@ -30,3 +31,4 @@ pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, Pat
 pub use self::sliding::Sliding;
 pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, StageSettings, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};
+pub use self::witness::{FarkasVector, ModeTree, PathRate, PointMode, RateClaim, Witness};

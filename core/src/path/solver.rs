@@ -4,6 +4,7 @@ use super::continuation::Continuation;
 use super::peak::{Branching, ProvenPeak, StageStability};
 use super::problem::PathProblem;
 use super::state::{PathEvent, PathState};
+use super::witness::Witness;
 use crate::limit::{Counters, Status};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -36,6 +37,8 @@ pub struct PathAnswer {
     pub ray: Option<Vec<[f64; 2]>>,
     /// Events in order.
     pub events: Vec<PathEvent>,
+    /// Statements about the rates at states of the path, for the certificate; the proof of an end of the path.
+    pub witnesses: Vec<Witness>,
     /// Work done.
     pub counters: Counters,
     /// What a user should know.

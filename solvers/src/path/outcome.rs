@@ -3,7 +3,9 @@
 
 use super::self_check::confirmed;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability};
+use voussoir_core::path::{
+    Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability, Witness,
+};
 
 /// A status with what it claims.
 #[derive(Debug, Clone)]
@@ -30,6 +32,7 @@ pub(super) struct PathRecord {
     pub limit_points: Vec<ProvenPeak>,
     pub stability: Vec<StageStability>,
     pub branchings: Vec<Branching>,
+    pub witnesses: Vec<Witness>,
     pub counters: Counters,
     pub notes: Vec<String>,
 }
@@ -58,8 +61,18 @@ impl Outcome {
     /// The answer as it is: for paths whose end cannot be checked without what came before.
     pub fn unconfirmed(self, record: PathRecord) -> PathAnswer {
         let Outcome { status, factor, motion, ray, unique } = self;
-        let PathRecord { load_step, state, last, events, limit_points, stability, branchings, counters, notes } =
-            record;
+        let PathRecord {
+            load_step,
+            state,
+            last,
+            events,
+            limit_points,
+            stability,
+            branchings,
+            witnesses,
+            counters,
+            notes,
+        } = record;
         PathAnswer {
             status,
             load_step,
@@ -73,6 +86,7 @@ impl Outcome {
             branchings,
             ray,
             events,
+            witnesses,
             counters,
             notes,
         }

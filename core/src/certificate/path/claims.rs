@@ -83,7 +83,7 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
 const YIELDING: f64 = 1e-9;
 
 /// Distance of v from the cone of some directions in the plane.
-fn outside(v: [f64; 2], cone: &[[f64; 2]]) -> f64 {
+pub(super) fn outside(v: [f64; 2], cone: &[[f64; 2]]) -> f64 {
     let mut least = v[0].hypot(v[1]);
     for (k, a) in cone.iter().enumerate() {
         let along = ((v[0] * a[0] + v[1] * a[1]) / (a[0] * a[0] + a[1] * a[1])).max(0.0);

@@ -27,15 +27,28 @@
 //! - `path_flow`: how far a mechanism's jumps leave the flow of the facets that yield;
 //! - `path_power`: |p·q̇ − 1| of a mechanism;
 //! - `path_ray`: what a ray leaves of the load, or its excess over a facet, relative to its forces.
+//!
+//! The end of a path is proved by a [`PathChain`] of its states, and by a [`Witness`](crate::path::Witness) at one of them.
 
+mod chain;
 mod checker;
 mod claims;
 mod displaced;
+mod displaced_rates;
+mod dual;
 mod energy;
+mod increment;
+mod none_rises;
+mod point_modes;
+mod rate_check;
+mod rate_equations;
 mod response;
 mod structure;
+#[cfg(test)]
+mod tests;
 mod tolerance;
 
+pub use self::chain::PathChain;
 pub use self::checker::PathChecker;
 pub use self::claims::{flow_residual, power_residual, ray_residual};
 pub use self::displaced::Displaced;

@@ -207,6 +207,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         branchings: tracer.record.branchings,
         counters,
         notes,
+        ..PathRecord::default()
     };
     Outcome::at(tracer.ending.status, factor).moving(motion).carried_by(tracer.ending.ray).answer(
         tracer.system.problem,

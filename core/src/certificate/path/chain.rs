@@ -1,0 +1,263 @@
+//! A path as a chain of states: from the unloaded structure to its end, each state next to the one before.
+//!
+//! A greatest factor among states proves a peak of the path only if the states follow each other. Each increment
+//! is checked: only the factor of one load step changes, supports move as that says, and every contact point keeps one mode
+//! ([`increment`](super::increment)). With small displacements the chain is then a path to rounding. With finite displacements
+//! the state midway must nearly be in equilibrium too: states of two branches are not neighbours.
+
+use super::displaced::Displaced;
+use super::increment::{Allowed, first_opening, passed};
+use super::none_rises::RateProblem;
+use super::point_modes::{ACTIVE, ModeCone, point_modes};
+use super::rate_equations::RateEquations;
+use crate::path::{LoadStep, LoadStepEnd, PathProblem, PathState, RateClaim, Witness};
+use std::sync::Arc;
+
+/// Most distance of all increments together from the flow of laws, as a share of the greatest displacement.
+const DRIFT: f64 = 1e-7;
+/// Opening of closed points, as a share of the greatest displacement.
+const CLOSED: f64 = 1e-9;
+/// Relative difference of factors that are the same.
+const SAME_FACTOR: f64 = 1e-9;
+/// With finite displacements, unbalanced forces of the state midway, as a share of all forces.
+const MIDWAY: f64 = 1e-3;
+
+/// A state of a chain.
+#[derive(Debug, Clone)]
+struct Link {
+    state: PathState,
+    /// Opening of every contact point \[m\].
+    openings: Vec<f64>,
+}
+
+/// A chain of states.
+#[derive(Debug)]
+pub struct PathChain {
+    structure: Arc<PathProblem>,
+    finite: bool,
+    links: Vec<Link>,
+    /// Distance of the increments so far from the flow of laws \[m\].
+    drift: f64,
+    /// Why the chain ends before its last state.
+    broken: Option<String>,
+}
+
+/// The greatest size of gaps and displacements.
+fn deformation(state: &PathState) -> f64 {
+    let moves = state.motion.iter().flat_map(|u| [u[0], u[1]]);
+    state.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()))
+}
+
+fn greatest_force(state: &PathState) -> f64 {
+    state.force.iter().map(|r| r[0].hypot(r[1])).fold(0.0, f64::max)
+}
+
+/// Returns true if a load step has neither a load nor a settlement, so that its factor means nothing.
+fn is_idle(problem: &PathProblem, step: &LoadStep) -> bool {
+    step.loading.settlements.is_empty() && problem.wrenches(&step.loading).iter().all(|w| *w == [0.0; 3])
+}
+
+impl PathChain {
+    /// A chain that begins with the unloaded structure.
+    pub fn new(structure: Arc<PathProblem>, finite: bool) -> Self {
+        let contacts = &structure.contacts;
+        let state = PathState {
+            factor: structure.load_steps.first().map_or(0.0, |step| step.start),
+            force: vec![[0.0; 2]; contacts.len()],
+            gap: contacts.iter().map(|contact| [contact.gap, 0.0]).collect(),
+            motion: vec![[0.0; 3]; structure.bodies.len()],
+            ..PathState::default()
+        };
+        let openings = contacts.iter().map(first_opening).collect();
+        let history = structure.yields() || contacts.iter().any(|c| c.law.response().is_some());
+        let broken = history.then(|| "blocks that yield and laws of tractions from gaps have no checked chain".into());
+        PathChain { structure, finite, links: vec![Link { state, openings }], drift: 0.0, broken }
+    }
+
+    /// Adds the next state of the path.
+    pub fn add(&mut self, state: &PathState) {
+        if self.broken.is_some() {
+            return;
+        }
+        match self.next(state) {
+            Ok((openings, drift)) => {
+                self.links.push(Link { state: state.clone(), openings });
+                self.drift = drift;
+            }
+            Err(why) => {
+                self.broken = Some(format!("state {} at the factor {}: {why}", self.links.len(), state.factor));
+            }
+        }
+    }
+
+    /// Openings and drift after an increment to a state.
+    fn next(&self, state: &PathState) -> Result<(Vec<f64>, f64), String> {
+        let problem = &*self.structure;
+        let Some(last) = self.links.last() else { return Err("there is no state before it".into()) };
+        if state.load_step < last.state.load_step || state.load_step >= problem.load_steps.len() {
+            return Err("its load step is not the next".into());
+        }
+        self.check_factors(&last.state, state)?;
+        self.check_supports(state)?;
+        let size = deformation(state).max(deformation(&last.state));
+        let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
+        let force = greatest_force(state).max(greatest_force(&last.state));
+        let allowed = Allowed { slack: ACTIVE * force, opening: CLOSED * size + rounding };
+        let mut openings = Vec::with_capacity(last.openings.len());
+        let mut worst = (0.0, 0);
+        for (index, contact) in problem.contacts.iter().enumerate() {
+            let forces = [last.state.force[index], state.force[index]];
+            let gaps = [last.state.gap[index], state.gap[index]];
+            let passed = passed(contact, forces, gaps, last.openings[index], allowed);
+            if passed.outside.is_nan() || passed.outside > worst.0 {
+                worst = (passed.outside, index);
+            }
+            openings.push(passed.opening);
+        }
+        let drift = self.drift + (worst.0 - rounding).max(0.0);
+        if drift.is_nan() || drift > DRIFT * size {
+            return Err(format!("the gap of contact point {} does not flow as its law says", worst.1));
+        }
+        if self.finite {
+            self.check_midway(&last.state, state)?;
+        }
+        Ok((openings, drift))
+    }
+
+    /// Only the factor of the state's own load step may change; earlier steps have reached their ends.
+    fn check_factors(&self, last: &PathState, state: &PathState) -> Result<(), String> {
+        let problem = &*self.structure;
+        let [before, now] = [last, state].map(|state| problem.applied(state.load_step, state.factor));
+        for (index, step) in problem.load_steps.iter().enumerate() {
+            let scale = before[index].abs().max(now[index].abs());
+            let same = (before[index] - now[index]).abs() <= SAME_FACTOR * scale;
+            if index != state.load_step && !same && !is_idle(problem, step) {
+                return Err("loads of another load step change".into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Held bodies have moved by their settlements.
+    fn check_supports(&self, state: &PathState) -> Result<(), String> {
+        let problem = &*self.structure;
+        let mut settled = vec![[0.0; 3]; problem.bodies.len()];
+        for (step, applied) in problem.load_steps.iter().zip(problem.applied(state.load_step, state.factor)) {
+            for (body, motion) in &step.loading.settlements {
+                (0..3).for_each(|i| settled[*body][i] += applied * motion[i]);
+            }
+        }
+        let bodies = problem.bodies.iter().zip(state.motion.iter().zip(&settled));
+        let off = bodies.filter(|(body, _)| body.held).flat_map(|(_, (own, settled))| {
+            (0..3).map(|i| (own[i] - settled[i]).abs() - SAME_FACTOR * settled[i].abs())
+        });
+        if off.fold(0.0, f64::max) > 0.0 { Err("a support has not moved by its settlement".into()) } else { Ok(()) }
+    }
+
+    /// The mean of two neighbours is nearly in equilibrium.
+    fn check_midway(&self, last: &PathState, state: &PathState) -> Result<(), String> {
+        let problem = &*self.structure;
+        let mean2 = |a: &[[f64; 2]], b: &[[f64; 2]]| -> Vec<[f64; 2]> {
+            a.iter().zip(b).map(|(a, b)| [0, 1].map(|i| 0.5 * (a[i] + b[i]))).collect()
+        };
+        // Applied loads are linear in the factor, whichever load step the last state is in.
+        let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
+        let start = problem.load_steps[state.load_step].start;
+        let motion = last.motion.iter().zip(&state.motion);
+        let midway = PathState {
+            load_step: state.load_step,
+            factor: start + 0.5 * (applied(last) + applied(state)),
+            force: mean2(&last.force, &state.force),
+            gap: mean2(&last.gap, &state.gap),
+            motion: motion.map(|(a, b)| [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))).collect(),
+            ..PathState::default()
+        };
+        let left = Displaced::new(problem, &midway, true).unbalanced();
+        let bodies = left.iter().zip(&problem.bodies).filter(|(_, body)| !body.held);
+        let worst = bodies.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
+        let size: f64 = midway.force.iter().map(|r| r[0].hypot(r[1])).sum();
+        if worst <= MIDWAY * size { Ok(()) } else { Err("it is far from the state before it".into()) }
+    }
+
+    /// Why the chain ends before the last state that was added.
+    pub fn broken(&self) -> Option<&str> {
+        self.broken.as_deref()
+    }
+
+    /// States of the chain in order; the first is the unloaded structure.
+    pub fn states(&self) -> impl Iterator<Item = &PathState> {
+        self.links.iter().map(|link| &link.state)
+    }
+
+    /// The state of the chain that a witness speaks of, with the equations of its rates and the modes of its points.
+    fn at(&self, witness: &Witness) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
+        let same = |link: &&Link| {
+            let own = &witness.state;
+            let state = &link.state;
+            state.load_step == own.load_step
+                && state.factor == own.factor
+                && state.force == own.force
+                && state.motion == own.motion
+        };
+        let link = self.links.iter().rev().find(same).ok_or("the witness speaks of a state that is not on the path")?;
+        let state = &link.state;
+        let equations = RateEquations::new(&self.structure, state, self.finite)?;
+        let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
+        let (slack, closed) = (ACTIVE * greatest_force(state), CLOSED * deformation(state) + rounding);
+        let points = self.structure.contacts.iter().zip(&state.force).zip(&link.openings);
+        let modes: Vec<Vec<ModeCone>> =
+            points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect();
+        Ok((link, equations, modes))
+    }
+
+    /// Checks a witness at a state of the chain.
+    ///
+    /// # Errors
+    /// The first part that is wrong, in words.
+    pub fn check(&self, witness: &Witness) -> Result<(), String> {
+        let (_, equations, modes) = self.at(witness)?;
+        let rates = RateProblem { equations: &equations, modes: &modes };
+        match &witness.claim {
+            RateClaim::Rate(rate) => rates.check_rate(rate).map(|_| ()),
+            RateClaim::NoneRises(tree) => rates.check_none_rises(tree).map(|_| ()),
+        }
+    }
+
+    /// Checks that a witness proves that no rate rises at its state, and that a mechanism moves on there at constant load.
+    /// Small displacements only.
+    ///
+    /// # Errors
+    /// The first part that is wrong, in words.
+    pub fn check_collapse(&self, witness: &Witness, motion: &[[f64; 3]]) -> Result<(), String> {
+        if self.finite {
+            return Err("mechanisms at constant load are checked with small displacements only".into());
+        }
+        let RateClaim::NoneRises(tree) = &witness.claim else {
+            return Err("no proof that the load does not rise".into());
+        };
+        let (link, equations, modes) = self.at(witness)?;
+        let rates = RateProblem { equations: &equations, modes: &modes };
+        rates.check_none_rises(tree)?;
+        rates.check_plateau(&self.structure, &link.state, motion)
+    }
+
+    /// Returns true if the last state is at the end of the last load step and no increment lowers a factor away from its end.
+    pub fn reaches_end(&self) -> bool {
+        let steps = &self.structure.load_steps;
+        let Some(last) = self.links.last().filter(|_| self.broken.is_none()) else { return false };
+        let end = |step: &LoadStep| match step.end {
+            LoadStepEnd::Factor(end) | LoadStepEnd::Collapse(end) => end,
+        };
+        let there = |step: &LoadStep, factor: f64| (factor - end(step)).abs() <= SAME_FACTOR * end(step).abs();
+        let monotone = self.links.windows(2).all(|pair| {
+            let [before, now] = [&pair[0].state, &pair[1].state];
+            let step = &steps[now.load_step];
+            let from = if before.load_step == now.load_step { before.factor } else { step.start };
+            (now.factor - from) * (end(step) - step.start).signum() >= 0.0
+        });
+        let left = steps[last.state.load_step + 1..].iter();
+        monotone
+            && there(&steps[last.state.load_step], last.state.factor)
+            && left.clone().all(|step| is_idle(&self.structure, step))
+    }
+}

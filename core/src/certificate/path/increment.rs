@@ -1,0 +1,94 @@
+//! The check of an increment between two states of a path at one contact point.
+//!
+//! With small displacements everything but the laws is linear. So the straight line between two states is a piece of a path if
+//! each point keeps one mode on it: it sticks, or its gap flows along facets that are active at both ends, or it is open and
+//! carries nothing at both ends. An open point is followed by its opening, the gap above the surface that slip with
+//! dilatancy has raised.
+
+use super::claims::outside;
+use super::point_modes::{active_facets, dilatancy, is_apex};
+use super::rate_check::opening_of;
+use crate::law::{Facet, FacetMode};
+use crate::path::{Contact, PointLaw};
+
+/// Tolerances of an increment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Allowed {
+    /// Slack of active facets \[N\].
+    pub slack: f64,
+    /// Opening of closed points \[m\].
+    pub opening: f64,
+}
+
+/// A contact point after an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Passed {
+    /// Its opening \[m\].
+    pub opening: f64,
+    /// Distance of the increment from the flow of the law \[m\].
+    pub outside: f64,
+}
+
+/// The opening of a contact point before any load \[m\].
+pub(super) fn first_opening(contact: &Contact) -> f64 {
+    if contact.law.facets().is_some() { contact.gap.max(0.0) } else { 0.0 }
+}
+
+/// The increment of one contact point with forces and gaps at both ends.
+pub(super) fn passed(
+    contact: &Contact,
+    forces: [[f64; 2]; 2],
+    gaps: [[f64; 2]; 2],
+    opening: f64,
+    allowed: Allowed,
+) -> Passed {
+    let moved = [0, 1].map(|i| gaps[1][i] - gaps[0][i]);
+    let stuck = Passed { opening, outside: moved[0].hypot(moved[1]) };
+    let PointLaw::Facets(facets) = &contact.law else { return stuck };
+    let active = active_facets(contact, facets, &forces, allowed.slack);
+    let open = opening > allowed.opening;
+    if is_apex(facets, &active) {
+        let opening = opening + moved[0] - dilatancy(facets) * moved[1].abs();
+        let free = Passed { opening: opening.max(0.0), outside: (-opening).max(0.0) };
+        return if open { free } else { better(free, flowing(facets, &active, moved, stuck)) };
+    }
+    let facet = active.iter().copied().find(|f| facets[*f].mode == FacetMode::Opening);
+    match (open, facet) {
+        // An open point carries the strength of its opening facet.
+        (true, None) => Passed { opening, outside: f64::INFINITY },
+        (true, Some(facet)) => reopened(facets, &active, facet, moved, opening),
+        (false, _) => better(stuck, flowing(facets, &active, moved, stuck)),
+    }
+}
+
+fn better(a: Passed, b: Passed) -> Passed {
+    if b.outside < a.outside { b } else { a }
+}
+
+/// A closed point that flows along its active facets.
+fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -> Passed {
+    let flows: Vec<[f64; 2]> = active.iter().map(|f| facets[*f].flow.map(|d| -d)).collect();
+    let outside = outside(moved, &flows);
+    let facet = active.iter().copied().find(|f| facets[*f].mode == FacetMode::Opening);
+    let opened = facet.map_or(0.0, |facet| opening_of(facets, active, facet, moved));
+    let slides = |f: &usize| facets[*f].mode != FacetMode::Opening;
+    // Slip alone does not open a point above its surface.
+    let sliding: Vec<[f64; 2]> = active.iter().filter(|f| slides(f)).map(|f| facets[*f].flow.map(|d| -d)).collect();
+    let closed = super::claims::outside(moved, &sliding) <= outside;
+    let opened = if closed || !opened.is_finite() { 0.0 } else { opened.max(0.0) };
+    Passed { opening: stuck.opening + opened, outside }
+}
+
+/// An open point on its opening facet.
+fn reopened(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2], opening: f64) -> Passed {
+    let [d, back] = [facets[facet].flow.map(|d| -d), facets[facet].flow];
+    let others = active.iter().filter(|f| **f != facet).map(|f| facets[*f].flow.map(|d| -d));
+    let flows: Vec<[f64; 2]> = [d, back].into_iter().chain(others).collect();
+    let off = outside(moved, &flows);
+    let after = opening + opening_of(facets, active, facet, moved);
+    if after.is_finite() {
+        return Passed { opening: after.max(0.0), outside: off.max(-after) };
+    }
+    let alone = opening - (moved[0] * facets[facet].flow[0] + moved[1] * facets[facet].flow[1]);
+    Passed { opening: alone.max(0.0), outside: off.max(-alone) }
+}

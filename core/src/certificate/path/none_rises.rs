@@ -1,0 +1,165 @@
+//! The proof that no rate at a state has λ̇ > 0: a complete tree of mode decisions with a Farkas vector at each leaf.
+//!
+//! A leaf with multipliers (y, β) proves its case if, with α as in [`FarkasVector`],
+//!
+//! - Kᵀ y + Gᵀ β = 0 for the motion of every free body,
+//! - α·ṙ + β·ġ ≥ 0 in every mode that is left at every contact point,
+//! - p·y + g_p·β is negative by a margin.
+//!
+//! Sums are compared with the sizes of their terms. So the proof holds for all structures whose coefficients differ from these
+//! by the tolerances. No number is searched for.
+
+use super::point_modes::{ModeCone, length};
+use super::rate_equations::{Column, RateEquations};
+use crate::path::{FarkasVector, ModeTree, PointMode};
+use std::collections::BTreeMap;
+
+/// Most leaves of a tree.
+pub const MAX_LEAVES: usize = 10_000;
+/// Rounding of sums that must vanish or have a sign, as a share of their terms.
+const ROUNDING: f64 = 1e-10;
+/// The same of the geometric terms Kᵀ y: how closely a state on a curved path is at its limit point.
+const LOCATED: f64 = 1e-7;
+/// Sums below this share of the greatest sum of terms are rounding.
+const NOISE: f64 = 1e-14;
+/// Least size of the negative factor of λ̇, as a share of its terms.
+const MARGIN: f64 = 1e-6;
+
+/// The rate problem at a state with the modes of all contact points.
+pub(super) struct RateProblem<'a> {
+    pub equations: &'a RateEquations,
+    /// The modes that each contact point may take.
+    pub modes: &'a [Vec<ModeCone>],
+}
+
+/// A sum with the sum of the sizes of its terms.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    value: f64,
+    terms: f64,
+}
+
+impl Sum {
+    fn add(&mut self, term: f64) {
+        self.value += term;
+        self.terms += term.abs();
+    }
+}
+
+/// Multipliers with the sums that they make.
+struct Products<'a> {
+    /// α of each contact point with the sizes of its terms.
+    alpha: Vec<([f64; 2], f64)>,
+    beta: &'a [[f64; 2]],
+    /// Kᵀ y and Gᵀ β by 3 × body + component.
+    motions: Vec<[Sum; 2]>,
+    /// The factor of λ̇.
+    load: Sum,
+}
+
+/// Sums of the entries of a column with y, and with β.
+fn sums(column: &Column, vector: &FarkasVector) -> [Sum; 2] {
+    let mut sums = [Sum::default(); 2];
+    let y = vector.equilibrium.as_flattened();
+    let beta = vector.gap.as_flattened();
+    column.equilibrium.iter().for_each(|(row, value)| sums[0].add(value * y[*row]));
+    column.gap.iter().for_each(|(row, value)| sums[1].add(value * beta[*row]));
+    sums
+}
+
+impl<'a> Products<'a> {
+    fn new(equations: &RateEquations, vector: &'a FarkasVector) -> Self {
+        let both = |column: &Column| {
+            let [a, b] = sums(column, vector);
+            Sum { value: a.value + b.value, terms: a.terms + b.terms }
+        };
+        let alpha = equations.forces.chunks_exact(2).map(|pair| {
+            let [n, t] = [both(&pair[0]), both(&pair[1])];
+            ([-n.value, -t.value], n.terms.max(t.terms))
+        });
+        Products {
+            alpha: alpha.collect(),
+            beta: &vector.gap,
+            motions: equations.motions.iter().map(|column| sums(column, vector)).collect(),
+            load: both(&equations.load),
+        }
+    }
+
+    /// The first reason why these multipliers prove nothing.
+    fn refutes(&self, problem: &RateProblem, decided: &BTreeMap<usize, PointMode>) -> Result<(), String> {
+        let equations = problem.equations;
+        let scale = |index: usize| if index % 3 == 2 { equations.length } else { 1.0 };
+        let moved = self.motions.iter().enumerate().map(|(i, [k, g])| (k.terms + g.terms) / scale(i));
+        let largest = moved.fold(0.0, f64::max);
+        for (index, [k, g]) in self.motions.iter().enumerate() {
+            let allowed = LOCATED * k.terms + ROUNDING * g.terms + NOISE * largest * scale(index);
+            if (k.value + g.value).abs() > allowed {
+                return Err(format!("the multipliers leave a part of the motion of body {}", index / 3));
+            }
+        }
+        let factor = equations.sense * self.load.value;
+        if factor.is_nan() || factor > -MARGIN * self.load.terms || factor == 0.0 {
+            return Err("the multipliers do not exclude that the load rises".into());
+        }
+        let largest_alpha = self.alpha.iter().map(|own| own.1).fold(0.0, f64::max);
+        let largest_beta = self.beta.iter().map(|beta| length(*beta)).fold(0.0, f64::max);
+        for (contact, (modes, (alpha, terms))) in problem.modes.iter().zip(&self.alpha).enumerate() {
+            let left = |cone: &&ModeCone| decided.get(&contact).is_none_or(|mode| *mode == cone.mode);
+            let allowed = [ROUNDING * terms + NOISE * largest_alpha, ROUNDING * largest_beta];
+            for cone in modes.iter().filter(left) {
+                let products = cone.least_products([*alpha, self.beta[contact]]);
+                if (0..2).any(|i| products[i] < -allowed[i]) {
+                    return Err(format!("the multipliers do not refute {:?} at contact point {contact}", cone.mode));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl RateProblem<'_> {
+    /// Checks the proof that no rate has λ̇ > 0; returns the number of its leaves.
+    ///
+    /// # Errors
+    /// The first part that proves nothing, in words.
+    pub fn check_none_rises(&self, tree: &ModeTree) -> Result<usize, String> {
+        if tree.leaves(MAX_LEAVES) > MAX_LEAVES {
+            return Err(format!("the tree has more than {MAX_LEAVES} leaves"));
+        }
+        if let Some(contact) = self.modes.iter().position(Vec::is_empty) {
+            return Err(format!("contact point {contact} has no mode"));
+        }
+        self.check_tree(tree, &mut BTreeMap::new())
+    }
+
+    fn check_tree(&self, tree: &ModeTree, decided: &mut BTreeMap<usize, PointMode>) -> Result<usize, String> {
+        let (contact, branches) = match tree {
+            ModeTree::Leaf(vector) => {
+                self.check_form(vector)?;
+                return Products::new(self.equations, vector).refutes(self, decided).map(|()| 1);
+            }
+            ModeTree::Split { contact, branches } => (*contact, branches),
+        };
+        let modes = self.modes.get(contact).ok_or("a decision at a contact point that does not exist")?;
+        if decided.contains_key(&contact) {
+            return Err(format!("contact point {contact} is decided twice"));
+        }
+        let complete = modes.iter().all(|cone| branches.iter().any(|(mode, _)| *mode == cone.mode));
+        if !complete || branches.len() != modes.len() {
+            return Err(format!("the modes of contact point {contact} are not complete"));
+        }
+        let mut leaves = 0;
+        for (mode, branch) in branches {
+            decided.insert(contact, *mode);
+            leaves += self.check_tree(branch, decided)?;
+        }
+        decided.remove(&contact);
+        Ok(leaves)
+    }
+
+    fn check_form(&self, vector: &FarkasVector) -> Result<(), String> {
+        let fits = vector.equilibrium.len() == self.equations.held.len() && vector.gap.len() == self.modes.len();
+        let mut numbers = vector.equilibrium.as_flattened().iter().chain(vector.gap.as_flattened());
+        if fits && numbers.all(|number| number.is_finite()) { Ok(()) } else { Err("a malformed Farkas vector".into()) }
+    }
+}

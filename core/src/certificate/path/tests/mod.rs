@@ -1,0 +1,6 @@
+//! Checks of rates, mechanisms and increments on structures with one or two blocks that can be solved by hand.
+
+mod chain;
+mod derivatives;
+mod scenes;
+mod wedge;

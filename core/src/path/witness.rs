@@ -1,0 +1,106 @@
+//! Proofs of the end of a path by its solver: rates at a state, or the proof that no rate raises the load.
+//!
+//! The rate problem at a state, over the rates of contact forces ṙ, of gaps ġ and of motions q̇:
+//!
+//! ```text
+//! equilibrium   E ṙ + K q̇ + λ̇ p = 0        of each free body; K = 0 with small displacements
+//! kinematics    ġ = C ṙ + G q̇ + λ̇ g_p
+//! law           (ṙ, ġ) in a mode of each contact point
+//! ```
+//!
+//! The certificate derives E, K, p, C, G and g_p from the assembly, and checks a witness without any search.
+
+use super::state::PathState;
+
+/// A statement about the rates at a state of a path.
+#[derive(Debug, Clone)]
+pub struct Witness {
+    /// The state; one of those that the observer has seen.
+    pub state: PathState,
+    /// The statement.
+    pub claim: RateClaim,
+}
+
+/// The statement of a witness.
+#[derive(Debug, Clone)]
+pub enum RateClaim {
+    /// These rates solve the rate problem.
+    Rate(PathRate),
+    /// No rate has λ̇ > 0 (λ̇ < 0 in a load step that unloads).
+    NoneRises(ModeTree),
+}
+
+/// Rates of everything at a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathRate {
+    /// λ̇.
+    pub factor: f64,
+    /// (ṙ_n, ṙ_t) of every contact point, in axes that turn with it \[N\].
+    pub force: Vec<[f64; 2]>,
+    /// (ġ_n, ġ_t) of every contact point \[m\].
+    pub gap: Vec<[f64; 2]>,
+    /// Velocity of every body about its pole.
+    pub motion: Vec<[f64; 3]>,
+}
+
+/// The mode of a contact point in a rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PointMode {
+    /// ġ = 0, and no active facet is left outwards.
+    Stick,
+    /// The force stays on this facet, and the gap flows along it.
+    Facet(usize),
+    /// ṙ = 0, and the gap flows along all active facets.
+    Vertex,
+    /// ṙ = 0, and the gap is free: an open point without strength.
+    Open,
+}
+
+/// A complete tree of decisions. Each leaf refutes λ̇ > 0 for the modes decided on the way to it; a point that is not
+/// decided may be in any of its modes. If flow is associated and displacements are small, one leaf without decisions is enough.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModeTree {
+    /// No rate has the modes decided so far.
+    Leaf(FarkasVector),
+    /// A contact point with a subtree for each of its modes.
+    Split {
+        /// Index of the contact point.
+        contact: usize,
+        /// Its modes, each with what refutes it.
+        branches: Vec<(PointMode, ModeTree)>,
+    },
+}
+
+/// Multipliers y of equilibrium and β of kinematics. They are such that Kᵀ y + Gᵀ β = 0. Every rate then satisfies
+///
+/// ```text
+/// α·ṙ + β·ġ = λ̇ (p·y + g_p·β),   α = −(Eᵀ y + Cᵀ β)
+/// ```
+///
+/// If the left side is ≥ 0 in all modes that are left and the factor of λ̇ is negative, then λ̇ > 0 is impossible. A
+/// mechanism q̇ with p·q̇ = 1 gives y = −q̇, β = 0, and α is the rate of its gaps.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FarkasVector {
+    /// y of every body (those of held bodies are not read).
+    pub equilibrium: Vec<[f64; 3]>,
+    /// β of every contact point.
+    pub gap: Vec<[f64; 2]>,
+}
+
+impl ModeTree {
+    /// Number of leaves; counting ends above `most`.
+    pub fn leaves(&self, most: usize) -> usize {
+        let mut open = vec![self];
+        let mut leaves = 0;
+        while let Some(tree) = open.pop() {
+            match tree {
+                ModeTree::Leaf(_) => leaves += 1,
+                ModeTree::Split { branches, .. } => open.extend(branches.iter().map(|(_, tree)| tree)),
+            }
+            if leaves > most {
+                break;
+            }
+        }
+        leaves
+    }
+}
