@@ -86,7 +86,8 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
         q += &onto * multipliers.column(n);
     }
     let largest = m.diagonal().amax();
-    let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(1e-12 * largest).sqrt()).collect();
+    let least = if largest > 0.0 { 1e-12 * largest } else { 1.0 };
+    let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(least).sqrt()).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
     let constant = DVector::from_fn(n, |i, _| q[i] / unit[i]);
     Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant }, free: Free { facets: opened, multipliers } })
@@ -138,6 +139,27 @@ pub fn pivoting(problem: &RateProblem, associated: bool, trials: &mut u64) -> Op
         *gap = [0.0; 2];
     }
     Some(Pivoted::Ray(Rate { factor: 0.0, modes, gaps }))
+}
+
+/// A rate of a monotone problem by Lemke's pivoting, which always ends: with λ̇ = 1, or the ray of a mechanism. `None`
+/// if rounding prevents it.
+pub fn monotone_rate(problem: &RateProblem, trials: &mut u64) -> Option<Rate> {
+    let lcp = rate_lcp(problem, false).filter(|lcp| lcp.facets.len() <= MOST)?;
+    let rate = match lemke(&lcp.lcp, trials) {
+        LemkeResult::Unfinished => return None,
+        LemkeResult::Solution(z) => {
+            let modes = modes_of_solution(problem, &lcp, &z);
+            let exact = problem.exactly(modes.clone(), 1.0);
+            exact.unwrap_or_else(|| Rate { factor: 1.0, modes, gaps: gaps_of(problem, &lcp, &z, 1.0, false) })
+        }
+        LemkeResult::Ray(z) => {
+            let most = z.iter().copied().fold(1e-300, f64::max);
+            let modes = modes_of(problem, &lcp.facets, |i| z[i] > 1e-8 * most);
+            let gaps = gaps_of(problem, &lcp, &z, 0.0, false);
+            problem.mechanism_near(&modes, &gaps).unwrap_or(Rate { factor: 0.0, modes, gaps })
+        }
+    };
+    problem.admits(&rate).then_some(rate)
 }
 
 /// Whether a mechanism means that the load does not grow: from nothing only where slip with

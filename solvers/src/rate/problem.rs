@@ -66,6 +66,8 @@ pub struct RateProblem<'a> {
     /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
     /// associated does not prove that the load cannot be carried.
     pub from_nothing: bool,
+    /// p·q̇ for a unit of λ̇ if all points are held; 0 if it is not known.
+    pub load_flexibility: f64,
     /// Whether a support moves: then forces may stand still while λ goes on, and their rates are rounding of what
     /// cancels.
     pub settles: bool,
@@ -116,6 +118,11 @@ impl RateProblem<'_> {
         let (flows, rows) = self.flows_and_rows(modes);
         let matrix = self.matrix(&flows, &rows);
         (flows, matrix)
+    }
+
+    /// AᵀSD over the flows and rows of a combination of modes, in the units of the points.
+    pub(super) fn mode_matrix(&self, modes: &[ContactMode]) -> DMatrix<f64> {
+        self.system(modes).1
     }
 
     /// Solves for the unknowns of a combination of modes with λ̇ = `factor`; where the combination

@@ -40,6 +40,10 @@ pub enum Algorithm {
     Homotopy,
     /// Branching on the complementarity problem.
     Branching,
+    /// The cells next to the arrival.
+    Neighbours,
+    /// The complete search over modes.
+    Tree,
 }
 
 /// How often each algorithm decided, and the linear systems and programs that this took.
@@ -61,6 +65,8 @@ impl Algorithm {
             Algorithm::LineSearch => "rates_by_line_search",
             Algorithm::Homotopy => "rates_by_homotopy",
             Algorithm::Branching => "rates_by_branching",
+            Algorithm::Neighbours => "rates_by_neighbours",
+            Algorithm::Tree => "rates_by_tree",
         }
     }
 }

@@ -67,6 +67,7 @@ impl<'a> SchurComplement<'a> {
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
             load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
+            load_flexibility: 0.0,
             settles: load.settles,
         };
         Some(SchurComplement { rate, system, points, open: m, response, epsilon })

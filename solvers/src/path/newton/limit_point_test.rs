@@ -249,6 +249,7 @@ fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec
         s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
         load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
         from_nothing: false,
+        load_flexibility: 0.0,
         settles: false,
     }
 }

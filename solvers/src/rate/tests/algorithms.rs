@@ -1,16 +1,16 @@
 //! Rate problems by every algorithm against complete enumeration.
 
-use super::active_set::active_set;
-use super::branching::branching;
-use super::enumerate::enumerate_modes;
-use super::homotopy::homotopy;
-use super::lcp::{Pivoted, pivoting};
-use super::line_search::line_search;
-use super::problem::{Rate, RateOutcome, RateProblem};
-use super::solve::{RateCounts, solve};
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcg::Lcg;
+use crate::rate::active_set::active_set;
+use crate::rate::branching::branching;
+use crate::rate::enumerate::enumerate_modes;
+use crate::rate::homotopy::homotopy;
+use crate::rate::lcp::{Pivoted, pivoting};
+use crate::rate::line_search::line_search;
+use crate::rate::problem::{Rate, RateOutcome, RateProblem};
+use crate::rate::solve::{RateCounts, solve};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use voussoir_core::law::Facet;
@@ -44,6 +44,7 @@ fn branching_agrees_with_every_combination() {
             s: &root * root.transpose() + DMatrix::identity(2 * count, 2 * count) * 0.01,
             load_rate: DVector::from_fn(2 * count, |_, _| random.next()),
             from_nothing: false,
+            load_flexibility: 0.0,
             settles: false,
         };
         let all = enumerate_modes(&problem, &mut 0);
@@ -214,7 +215,7 @@ fn fuzzed_rate_problems_are_solved() {
             0 => &root * push,
             _ => DVector::from_fn(2 * count, |_, _| random.next()),
         };
-        let problem = RateProblem { points, s, load_rate, from_nothing: false, settles: false };
+        let problem = RateProblem { points, s, load_rate, from_nothing: false, load_flexibility: 0.0, settles: false };
         let tally = tallies.entry(family).or_default();
         tally.problems += 1;
         let outcome = solve(&problem, false, &mut tally.order);

@@ -1,0 +1,68 @@
+//! The arrival of a path at an event: modes, forces and the sense of λ on the piece before it.
+//!
+//! Two kinds of rates exist on every piece before its event, and prove nothing at the event:
+//!
+//! - *unloading*: λ falls, every point that slipped stops, and no point of the event changes its mode;
+//! - *going back* on a piece that does not rise: λ rises, and no point of the event changes its mode.
+
+use super::problem::{Rate, RateProblem};
+use crate::contact::mode::ContactMode;
+use voussoir_core::law::FacetMode;
+
+/// An active contact point at the end of the piece before the event.
+#[derive(Debug, Clone, Copy)]
+pub struct ArrivalPoint {
+    /// Its mode on that piece.
+    pub mode: ContactMode,
+    /// True if it is a point of the event.
+    pub hit: bool,
+    /// Its contact force at the event \[N\].
+    pub force: [f64; 2],
+}
+
+/// The piece before the event, seen from the points of the rate problem.
+#[derive(Debug, Clone)]
+pub struct Arrival {
+    /// The sense of λ on it: 1, 0 or −1.
+    pub factor: f64,
+    /// One entry for each point of the rate problem, in the same order.
+    pub points: Vec<ArrivalPoint>,
+}
+
+impl Arrival {
+    /// Modes of all points on the piece before the event.
+    pub fn modes(&self) -> Vec<ContactMode> {
+        self.points.iter().map(|point| point.mode).collect()
+    }
+
+    /// True if a rate continues the path: it neither unloads nor goes back.
+    pub fn continues(&self, problem: &RateProblem, rate: &Rate) -> bool {
+        if rate.factor == self.factor && rate.modes == self.modes() {
+            return true;
+        }
+        let sliding = |k: usize| slides(problem, k, self.points[k].mode);
+        let each = || self.points.iter().zip(&rate.modes).enumerate();
+        let stops = each().all(|(k, (_, mode))| !sliding(k) || *mode == ContactMode::Stick);
+        let kept = |k: usize, was: ContactMode, is: ContactMode| was == is || sliding(k) && is == ContactMode::Stick;
+        let old = each().all(|(k, (point, mode))| !point.hit || kept(k, point.mode, *mode));
+        let existed = if rate.factor < 0.0 { stops } else { rate.factor > 0.0 && self.factor <= 0.0 };
+        !(existed && old)
+    }
+
+    /// Dissipation −r·ġ of a rate.
+    pub fn dissipation(&self, rate: &Rate) -> f64 {
+        let points = self.points.iter().zip(&rate.gaps);
+        -points.map(|(point, gap)| point.force[0] * gap[0] + point.force[1] * gap[1]).sum::<f64>()
+    }
+}
+
+/// True if a mode dissipates: it slides or crushes.
+fn slides(problem: &RateProblem, k: usize, mode: ContactMode) -> bool {
+    let facets = problem.points[k].facets;
+    let yields = |f: u8| facets.get(f as usize).is_some_and(|facet| facet.mode != FacetMode::Opening);
+    match mode {
+        ContactMode::Stick | ContactMode::Open => false,
+        ContactMode::Facet(i) => yields(i),
+        ContactMode::Corner(i, j) => yields(i) || yields(j),
+    }
+}

@@ -1,0 +1,60 @@
+//! The one rule that chooses if several rates continue.
+//!
+//! 1. The present modes, if they go on and are stable under control.
+//! 2. Otherwise the rates that are stable under control, or all rates if no rate is stable. Of these
+//!    - the one with the greatest dissipation per unit step, if any dissipates;
+//!    - otherwise the one with the least second-order energy per unit step.
+//!
+//! Rates within a relative 1e-6 are twins. A unit step has a Euclidean norm of gap rates of one, in units of √k with
+//! the stiffness k of each point.
+//!
+//! *Stable under control*: with the modes m of a rate, flows D and rows A, the matrix AᵀSD has no negative real
+//! eigenvalue (stable under load); or it has one, λ falls and the load point moves on (a softening branch that is
+//! followed with the load point held). A rate that needs more than that is on a branch beyond a bifurcation.
+
+use super::arrival::Arrival;
+use super::neighbours::forward_modes;
+use super::problem::{Rate, RateProblem};
+
+/// Relative difference up to which rates are twins.
+const TWINS: f64 = 1e-6;
+/// Dissipation, as a share of forces times gap rates, up to which a rate does not dissipate.
+const NO_DISSIPATION: f64 = 1e-9;
+
+/// The chosen rate and its twins. `None` if there is no rate.
+pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Option<(Rate, Vec<Rate>)> {
+    if rates.len() < 2 {
+        return rates.into_iter().next().map(|rate| (rate, Vec::new()));
+    }
+    let (stable, unstable): (Vec<Rate>, Vec<Rate>) =
+        rates.into_iter().partition(|rate| problem.stable_under_control(rate));
+    let present = [arrival.modes(), forward_modes(problem, arrival)];
+    if let Some(rate) = present.iter().find_map(|modes| stable.iter().find(|rate| rate.modes == *modes)) {
+        return Some((rate.clone(), Vec::new()));
+    }
+    let pool = if stable.is_empty() { unstable } else { stable };
+    let dissipation: Vec<f64> = pool.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
+    let most = dissipation.iter().copied().fold(0.0, f64::max);
+    let merit: Vec<f64> = if most > NO_DISSIPATION * force_size(problem, arrival) {
+        dissipation
+    } else {
+        pool.iter().map(|rate| -problem.second_order_energy(rate)).collect()
+    };
+    let best = merit.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let size = merit.iter().fold(0.0, |a: f64, m| a.max(m.abs()));
+    let mut tied = pool.into_iter().zip(merit).filter(|(_, m)| best - m <= TWINS * size).map(|(rate, _)| rate);
+    tied.next().map(|rate| (rate, tied.collect()))
+}
+
+/// Dissipation per unit step.
+fn dissipation_share(problem: &RateProblem, arrival: &Arrival, rate: &Rate) -> f64 {
+    arrival.dissipation(rate) / problem.step(rate).max(1e-300)
+}
+
+/// The greatest contact force in the units of the points.
+fn force_size(problem: &RateProblem, arrival: &Arrival) -> f64 {
+    let share = |(k, point): (usize, &super::arrival::ArrivalPoint)| {
+        point.force[0].hypot(point.force[1]) / problem.points[k].stiffness.sqrt()
+    };
+    arrival.points.iter().enumerate().map(share).fold(0.0, f64::max)
+}

@@ -1,0 +1,45 @@
+//! Measures of rates for the rule that chooses: size of the step, second-order energy, stability under control.
+
+use super::problem::{Rate, RateProblem};
+
+/// Real eigenvalue of AᵀSD, relative to the greatest entry, above which it is not negative.
+const NEGATIVE: f64 = -1e-9;
+
+impl RateProblem<'_> {
+    /// Euclidean norm of the gap rates in the units of the points.
+    pub fn step(&self, rate: &Rate) -> f64 {
+        let size = |(k, gap): (usize, &[f64; 2])| self.points[k].stiffness * (gap[0] * gap[0] + gap[1] * gap[1]);
+        rate.gaps.iter().enumerate().map(size).sum::<f64>().sqrt()
+    }
+
+    /// Second-order energy ½ ġ·S ġ at a held load, per unit step squared.
+    pub fn second_order_energy(&self, rate: &Rate) -> f64 {
+        let gaps = nalgebra::DVector::from_iterator(self.s.nrows(), rate.gaps.iter().flatten().copied());
+        0.5 * gaps.dot(&(&self.s * &gaps)) / self.step(rate).powi(2).max(1e-300)
+    }
+
+    /// True if a rate is stable while the load point or the settlement is held.
+    pub fn stable_under_control(&self, rate: &Rate) -> bool {
+        match self.negative_eigenvalues(rate) {
+            Some(0) => true,
+            // The load point moves on while the load falls.
+            Some(1) => {
+                let moves = self.load_flexibility * rate.factor + self.power(&rate.gaps);
+                !self.settles && rate.factor <= 0.0 && moves > 0.0
+            }
+            _ => false,
+        }
+    }
+
+    /// Number of negative real eigenvalues of AᵀSD over the modes of a rate.
+    fn negative_eigenvalues(&self, rate: &Rate) -> Option<usize> {
+        let matrix = self.mode_matrix(&rate.modes);
+        if matrix.is_empty() {
+            return Some(0);
+        }
+        let least = NEGATIVE * matrix.amax();
+        let schur = nalgebra::linalg::Schur::try_new(matrix, 1e-14, 10_000)?;
+        let values = schur.complex_eigenvalues();
+        Some(values.iter().filter(|v| v.re < least && v.im.abs() <= 1e-9 * v.re.abs()).count())
+    }
+}
