@@ -134,3 +134,37 @@ pub fn family_scene(family: Family, seed: u64) -> FamilyScene {
     scene.finite = family == Family::Finite || seed.is_multiple_of(2);
     scene
 }
+
+impl FamilyScene {
+    /// The scene with rigid blocks, joints without compliance, small displacements and supports at rest.
+    pub fn rigid(mut self) -> FamilyScene {
+        (self.stiffness, self.finite) = (None, false);
+        self.moduli.clear();
+        self.settlements.clear();
+        self
+    }
+
+    /// The scene with small displacements.
+    pub fn small(self) -> FamilyScene {
+        FamilyScene { finite: false, ..self }
+    }
+
+    /// The scene with another law.
+    pub fn with_law(self, law: Law) -> FamilyScene {
+        FamilyScene { law, ..self }
+    }
+
+    /// μ, or `None` if joints do not slip.
+    pub fn friction(&self) -> Option<f64> {
+        (self.law != Law::Stuck).then_some(self.friction)
+    }
+
+    /// Opening per slip.
+    pub fn dilatancy(&self) -> f64 {
+        match self.law {
+            Law::Stuck | Law::Coulomb => 0.0,
+            Law::Associated => self.friction,
+            Law::Dilatant => (self.friction.atan() / 2.0).tan(),
+        }
+    }
+}

@@ -16,8 +16,8 @@ impl FamilyScene {
     /// The study in a form, with these lines under `[solver]`.
     pub fn study(&self, form: Form, solver: &str) -> String {
         let kinematics = if self.finite { "finite" } else { "small" };
-        let mut text = format!(
-            "name = \"family\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"m0\"\njoint = \"dry\"\nblocks = [\n"
+        let mut text = String::from(
+            "name = \"family\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"m0\"\njoint = \"dry\"\nblocks = [\n",
         );
         for index in self.order(form) {
             let block = &self.blocks[index];

@@ -31,6 +31,10 @@ impl Rows {
         Rows { variables, entries: Vec::new(), right: Vec::new(), linear_from: 0, cones_from: 0, cones: 0 }
     }
 
+    pub fn variables(&self) -> usize {
+        self.variables
+    }
+
     pub fn entry(&mut self, row: usize, variable: usize, value: f64) {
         self.entries.push((row, variable, value));
     }

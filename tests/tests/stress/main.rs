@@ -11,6 +11,7 @@ mod limit;
 mod limit_scenes;
 mod nonassociated;
 mod path;
+mod programs;
 mod settlements;
 mod shorter_steps;
 mod strategies;
