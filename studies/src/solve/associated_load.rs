@@ -7,12 +7,13 @@
 use super::case_input::CaseInput;
 use super::limit::asked_of_solvers;
 use super::statics::resists_by_friction_alone;
+use crate::results::MotionEntry;
 use crate::study::SelectedSolver;
 use voussoir_core::limit::{LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{Target, stage_loads};
 
 /// The greatest factor of the last stage with associated flow.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct AssociatedLoad {
     /// The upper end that a mechanism proves.
     pub factor: f64,
@@ -20,6 +21,8 @@ pub(crate) struct AssociatedLoad {
     pub unit: f64,
     /// Set if all joints have associated flow, so that an elastic path ends at this very load.
     pub associated: bool,
+    /// The mechanism of that load.
+    pub motion: Vec<MotionEntry>,
 }
 
 /// The associated load of a case whose path has small displacements. `None` if it is no upper end or was not proved.
@@ -43,5 +46,6 @@ pub(crate) fn associated_load(input: &CaseInput) -> Option<AssociatedLoad> {
     let asked = LimitQuestion::Collapse { start: 0.0, max: f64::INFINITY };
     let (answer, _) = asked_of_solvers(&posed, index, (&problem, &loads[index]), asked);
     let factor = answer.bounds?[1].filter(|_| answer.status == Status::Collapse)?;
-    Some(AssociatedLoad { factor, unit: fixed / varying, associated })
+    let motion = answer.proof.motion.unwrap_or_default();
+    Some(AssociatedLoad { factor, unit: fixed / varying, associated, motion })
 }

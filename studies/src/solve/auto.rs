@@ -2,7 +2,7 @@
 //!
 //! Solvers are found by their cards: `cost` gives the order, `provides` what a question needs (finite
 //! displacements, settlements, flow that is not associated), `requires` what laws and materials must give. Of those
-//! that remain, the first that does not refuse the problem solves it; a path that stalls is left to the next path solver.
+//! that remain, the first that does not refuse the problem solves it.
 
 use super::case_input::CaseInput;
 use crate::config::default_table::default_table;
@@ -65,25 +65,20 @@ pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
         .collect()
 }
 
-/// The first path solver that takes the problem and those after it that do too; else the tag of the last one and why it
-/// does not.
+/// The first path solver that accepts the problem; else the tag of the last one and its reason.
 pub fn willing<'a>(
     solvers: &'a [TaggedPathSolver],
     problem: &PathProblem,
     settings: &PathSettings,
-) -> Result<(&'a TaggedPathSolver, Vec<&'a TaggedPathSolver>), (String, String)> {
+) -> Result<&'a TaggedPathSolver, (String, String)> {
     let mut refusal = (String::new(), "no path solver is registered".to_string());
-    let mut taking = solvers.iter().filter(|tagged| match tagged.1.refuses(problem, settings) {
-        None => true,
-        Some(why) => {
-            refusal = (tagged.0.clone(), why);
-            false
+    for tagged in solvers {
+        match tagged.1.refuses(problem, settings) {
+            None => return Ok(tagged),
+            Some(why) => refusal = (tagged.0.clone(), why),
         }
-    });
-    match taking.next() {
-        Some(first) => Ok((first, taking.collect())),
-        None => Err(refusal),
     }
+    Err(refusal)
 }
 
 /// The limit solvers to try, in order; those that `auto` chooses do not refuse the problem.

@@ -91,7 +91,7 @@ fn explain_path(case: &Case, solvers: &[TaggedPathSolver], text: &mut String) {
         }
     };
     let tag = match willing(solvers, &problem, settings) {
-        Ok(((tag, _), _)) => tag,
+        Ok((tag, _)) => tag,
         Err((tag, why)) => {
             let _ = writeln!(text, "{tag}: {why}");
             return;

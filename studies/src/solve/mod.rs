@@ -13,6 +13,7 @@ pub mod explain;
 mod explain_bridge;
 pub mod knobs;
 mod limit;
+mod limit_mechanism;
 mod limit_result;
 mod observer;
 pub(crate) mod ours;

@@ -40,7 +40,7 @@ impl PathObserver for Watched<'_> {
     }
 }
 
-/// Solves a case along its path by the first solver that takes it and does not stall; `observer` sees every state.
+/// Solves a case along its path by the first solver that accepts it; `observer` sees every state.
 pub(super) fn solve_by_path(
     input: &CaseInput,
     solvers: &[TaggedPathSolver],
@@ -50,33 +50,22 @@ pub(super) fn solve_by_path(
         Ok(problem) => problem,
         Err(why) => return failed(&solvers[0].0, why),
     };
-    let (first, others) = match willing(solvers, &problem, input.settings) {
-        Ok(willing) => willing,
-        Err((tag, why)) => return failed(&tag, format!("{tag}: {why}")),
-    };
-    let (mut result, mut ended) = by_strategies(input, &problem, first, observer);
-    for next in others {
-        if ended || result.status.is_answer() {
-            break;
-        }
-        let CaseResult { solver: tag, notes, .. } = result;
-        (result, ended) = by_strategies(input, &problem, next, observer);
-        result.notes.extend(notes.into_iter().map(|note| format!("{tag} stalled: {note}")));
+    match willing(solvers, &problem, input.settings) {
+        Ok(solver) => by_strategies(input, &problem, solver, observer),
+        Err((tag, why)) => failed(&tag, format!("{tag}: {why}")),
     }
-    result
 }
 
-/// Solves a case along its path by one solver, with further strategies where its own stalls; whether the observer has
-/// ended it.
+/// Solves a case along its path by one solver, with further strategies if its own stalls.
 fn by_strategies(
     input: &CaseInput,
     problem: &PathProblem,
     solver: &TaggedPathSolver,
     observer: &mut dyn PathObserver,
-) -> (CaseResult, bool) {
+) -> CaseResult {
     let (mut own, mut ended) = traced(input, problem, solver, observer);
     if own.status.is_answer() {
-        return (own, ended);
+        return own;
     }
     let own_why = why(&own);
     let named = input.settings.strategies().next().is_some();
@@ -92,14 +81,14 @@ fn by_strategies(
         let missed = missed_peak(&own, &other).filter(|_| other.status.is_answer());
         if other.status.is_answer() && missed.is_none() {
             other.notes.push(format!("followed by {name}: {whose} stalled ({own_why})"));
-            return (other, ended);
+            return other;
         }
         own.notes.push(match missed {
             Some(peak) => format!("by {name}: no limit point at the factor {peak}, which {whose} found"),
             None => format!("by {name}: {}", why(&other)),
         });
     }
-    (own, ended)
+    own
 }
 
 /// Why a path stalled, in the words of its notes but for that on its energy.

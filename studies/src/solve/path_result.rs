@@ -3,6 +3,7 @@
 use super::associated_load::associated_load;
 use super::case_input::CaseInput;
 use super::coarse_joints::coarse_joints;
+use super::limit_mechanism::end_in_limit_mechanism;
 use super::ours::path_is_ours;
 use super::path_status::{Evidence, PathVerdict, Progress};
 use super::safe_theorem::safe_theorem_holds;
@@ -48,6 +49,10 @@ pub(super) fn path_result(
     Seen { checker, ends, mut progress, energy, states }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
+    let associated = associated_load(input);
+    if let (Some(load), Some(structure)) = (&associated, checker.structure()) {
+        end_in_limit_mechanism(assembly, &structure, load, &mut solved);
+    }
     prefer_symmetric(assembly, &checker, finite, &mut solved);
     let mut certificate = certificate(&solved, &checker, finite, energy);
     let ours = path_is_ours(tag, input.settings);
@@ -63,7 +68,7 @@ pub(super) fn path_result(
         certificate: &certificate,
         ours,
         field_is_proof: !finite && safe_theorem_holds(assembly),
-        associated: associated_load(input),
+        associated: associated.as_ref(),
     };
     let PathVerdict { status, greatest, bounds, failures } = evidence.decide();
     let mut notes = solved.notes.clone();

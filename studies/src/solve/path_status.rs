@@ -11,6 +11,9 @@ const REACHED: f64 = 1e-12;
 /// Relative difference of the loads of a path and of limit analysis up to which they agree.
 const SAME_LOAD: f64 = 1e-6;
 
+/// Relative difference of two bounds of a load factor up to which they meet.
+const SAME_BOUNDS: f64 = 1e-9;
+
 /// States of a path, in the order in which its solver reported them.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
@@ -96,7 +99,7 @@ pub(super) struct Evidence<'a> {
     /// Set if a static field at the target is proof enough: small displacements and associated flow, without softening.
     pub field_is_proof: bool,
     /// The load of limit analysis with associated flow, if no state of the path can lie above it.
-    pub associated: Option<AssociatedLoad>,
+    pub associated: Option<&'a AssociatedLoad>,
 }
 
 /// The proved status of a path, with its bounds.
@@ -139,17 +142,27 @@ impl Evidence<'_> {
         }
         failures.extend(self.contradiction(step));
         if failures.is_empty() {
-            return PathVerdict { status, greatest: Greatest::ProvedOnThePath, bounds: [None; 2], failures };
+            let met = self.meets_associated_load();
+            let greatest = if met.is_some() { Greatest::ProvedOptimal } else { Greatest::ProvedOnThePath };
+            return PathVerdict { status, greatest, bounds: met.map_or([None; 2], |met| met.map(Some)), failures };
         }
         let bounds = self.proved_ends();
         let status = if bounds == [None; 2] { Status::Stalled } else { Status::Open };
         PathVerdict { status, greatest: Greatest::Open, bounds, failures }
     }
 
+    /// Both bounds of the load factor, if the path collapses at the associated load of its last stage.
+    fn meets_associated_load(&self) -> Option<[f64; 2]> {
+        let (status, load_step, factor) = self.hint;
+        let is_last = load_step + 1 == self.problem.load_steps.len();
+        let load = self.associated.filter(|_| is_last && status == Status::Collapse)?;
+        meeting_bounds(factor?, load)
+    }
+
     /// The reason why limit analysis contradicts the claim: the path ends above the associated load, or below it although
     /// flow is associated, or it goes past it.
     fn contradiction(&self, step: &LoadStep) -> Option<String> {
-        let AssociatedLoad { factor: limit, unit, associated } = self.associated?;
+        let AssociatedLoad { factor: limit, unit, associated, .. } = *self.associated?;
         let (status, load_step, factor) = self.hint;
         if load_step + 1 != self.problem.load_steps.len() || step.gravity {
             return None;
@@ -185,6 +198,12 @@ impl Evidence<'_> {
         let lower = self.progress.greatest_of(at).map(|state| state.factor).filter(|factor| *factor > step.start);
         ordered(lower, upper)
     }
+}
+
+/// A lower end, proved by the state of a path, and the associated load as the upper end, if they meet.
+pub(crate) fn meeting_bounds(lower: f64, load: &AssociatedLoad) -> Option<[f64; 2]> {
+    let meets = (lower - load.factor).abs() <= SAME_BOUNDS * load.factor.abs().max(1e-3 * load.unit);
+    meets.then(|| [lower.min(load.factor), lower.max(load.factor)])
 }
 
 /// A lower and an upper end in their order. The state of a path may lie above the associated load by its tolerance; a state

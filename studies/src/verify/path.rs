@@ -9,7 +9,7 @@ use crate::results::path_state::{mechanism_of, small};
 use crate::solve::CaseInput;
 use crate::solve::associated_load::associated_load;
 use crate::solve::ours::path_is_ours;
-use crate::solve::path_status::{ELSEWHERE, ordered};
+use crate::solve::path_status::{ELSEWHERE, meeting_bounds, ordered};
 use crate::solve::safe_theorem::safe_theorem_holds;
 use crate::study::Case;
 use voussoir_core::certificate::{
@@ -61,7 +61,19 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
     if result.status.is_answer() {
         let believed = path_is_ours(&result.solver, input.settings) || stands_by_field;
         findings.expect(believed, ELSEWHERE);
-        findings.expect(result.bounds.is_none(), "only an open path has bounds");
+    }
+    let is_last = state.load_step + 1 == problem.load_steps.len();
+    let met = match result.status {
+        Status::Collapse if is_last => associated_load(&input).and_then(|load| meeting_bounds(state.factor, &load)),
+        _ => None,
+    };
+    if result.status.is_answer() {
+        let stored = result.bounds.map(|bounds| bounds.map(|end| end.unwrap_or(f64::NAN)));
+        let same = match (stored, met) {
+            (Some(stored), Some(met)) => close(stored[0], met[0]) && close(stored[1], met[1]),
+            (stored, met) => stored.is_none() && met.is_none(),
+        };
+        findings.expect(same, "the state and limit analysis do not prove the bounds");
     }
     match result.status {
         Status::Stands => {
@@ -72,7 +84,6 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
             findings.expect(at_target, "the state is not at the target of the last stage");
         }
         Status::Open => {
-            let is_last = state.load_step + 1 == problem.load_steps.len();
             let upper = associated_load(&input).filter(|_| is_last).map(|load| load.factor);
             let lower = Some(state.factor).filter(|_| result.load_factor.is_some());
             let stored = result.bounds.unwrap_or_default();
@@ -89,7 +100,11 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
         }
         _ => {}
     }
-    let greatest = if result.status == Status::Open { Greatest::Open } else { Greatest::ProvedOnThePath };
+    let greatest = match (result.status, met) {
+        (Status::Open, _) => Greatest::Open,
+        (_, Some(_)) => Greatest::ProvedOptimal,
+        _ => Greatest::ProvedOnThePath,
+    };
     findings.expect(result.greatest == greatest, "greatest does not fit the status");
 }
 

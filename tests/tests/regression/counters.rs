@@ -49,26 +49,6 @@ fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
     result
 }
 
-/// Steps of `newton_path` hardly grow with the number of joints; a step takes three factorisations at most (two
-/// iterations with new regimes, and now and then a step with pivots), because factors serve while regimes stay; pivots
-/// stay below a twentieth of the contact points (13 a joint).
-#[test]
-fn newton_steps_hardly_grow_with_the_ring() {
-    let all = [13, 40, 130].map(|voussoirs| (voussoirs, traced(voussoirs, "newton_path").counters));
-    let fewest = all[0].1["steps"];
-    for (voussoirs, counters) in &all {
-        let points = 13 * (*voussoirs as u64 + 1);
-        let pivots = counters.get("pivots").copied().unwrap_or(0);
-        // 55, 60 and 63: steps are as long as their energy allows.
-        assert!(5 * counters["steps"] <= 6 * fewest, "{all:?}");
-        // Steps that are cut for their energy count too.
-        let tried = counters["steps"] + counters["cutbacks"];
-        assert!(counters["factorisations"] <= 3 * tried, "{all:?}");
-        assert!(2 * counters["newton_iterations"] <= 9 * tried, "{all:?}");
-        assert!(20 * pivots <= points, "{all:?}");
-    }
-}
-
 /// On elastic voussoirs the whole system is asked at the beginning and at the end only; at an event the points of few
 /// joints are examined: 7 and 10 of 14 and 41.
 #[test]

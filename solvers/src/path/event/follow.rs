@@ -339,7 +339,7 @@ fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
     if direction.is_none() || follower.limits.greatest.is_none() {
         follower.trace.log.notes.push(note);
     }
-    if !follower.limits.falling && (direction.is_some() || follower.limits.greatest.is_some()) {
+    if !follower.limits.falling {
         follower.limits.add(follower.trace.present(), run.sense);
     }
     match direction {

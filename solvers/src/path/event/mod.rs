@@ -21,10 +21,17 @@ mod stability;
 mod trace;
 mod unique;
 
+pub(super) use self::follow::follow;
 use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
+
+/// Returns true if the path consists of linear pieces: small displacements, facet laws and linear blocks.
+pub(super) fn is_piecewise_linear(problem: &PathProblem, settings: &PathSettings) -> bool {
+    let has_facets = |c: usize| problem.response(c).is_none();
+    !settings.finite && problem.deforms() && !problem.yields() && (0..problem.contacts.len()).all(has_facets)
+}
 
 /// The exact path of piecewise linear problems.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -34,7 +41,7 @@ pub struct EventPath {}
 #[typetag::serde(name = "event_path")]
 impl PathSolver for EventPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
-        follow::follow(problem, settings, observer)
+        follow(problem, settings, observer)
     }
 
     fn energy_tolerance(&self) -> f64 {

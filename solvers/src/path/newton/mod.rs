@@ -55,6 +55,7 @@ mod trial;
 mod updated_equations;
 
 use self::monitors::resolve;
+use super::event::{self, is_piecewise_linear};
 use super::outcome::stalled;
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::displacement_control::DisplacementControl;
@@ -79,6 +80,9 @@ impl PathSolver for NewtonPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
         if let Some(why) = self.refuses(problem, settings) {
             return stalled(problem, why);
+        }
+        if is_piecewise_linear(problem, settings) {
+            return event::follow(problem, settings, observer);
         }
         load_steps::trace(problem, settings, observer)
     }
