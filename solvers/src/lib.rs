@@ -24,7 +24,6 @@ pub const TAGS: &[&str] = &[
     "displacement_control",
     "dissipation",
     "event_path",
-    "exact_events",
     "limit_chain",
     "limit_conic",
     "limit_least",

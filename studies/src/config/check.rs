@@ -9,7 +9,7 @@ use crate::config::gravity::gravity_of;
 use crate::config::origin::Origin;
 use crate::config::shape_words::{any_shape, describe, fits};
 use serde_json::{Map, Value as Json};
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates, card};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,6 +23,22 @@ pub struct Unused {
 /// A value has mistakes, which are in the checker's list.
 #[derive(Debug, Clone, Copy)]
 pub struct Rejected;
+
+/// Message and help for a tag that is not among these.
+fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
+    let is_plugin = PluginKind::ALL.iter().any(|kind| kind.describe() == what);
+    let other = PluginKind::ALL.into_iter().find(|kind| is_plugin && card(*kind, tag).is_some());
+    if let Some(other) = other {
+        let message = format!("\"{tag}\" is a {}, not a {what}", other.describe());
+        let help = format!("choose it by {} = \"{tag}\"; choices here: {}", other.tag_key(), tags.join(", "));
+        return (message, help);
+    }
+    let mut help = suggest(tag, tags, "choices");
+    if is_plugin && voussoir_core::plugin::nearest(tag, tags.iter().copied()).is_none() {
+        help += "; one of another crate is there only in a program that names that crate (docs/adding_a_law.md)";
+    }
+    (format!("there is no {what} \"{tag}\""), help)
+}
 
 /// A check in progress.
 #[derive(Debug)]
@@ -267,13 +283,7 @@ impl<'a> Checker<'a> {
             return None;
         };
         if !tags.contains(&tag) {
-            let message = format!("there is no {what} \"{tag}\"");
-            let mut help = suggest(tag, tags, "choices");
-            let plugin = PluginKind::ALL.iter().any(|kind| kind.describe() == what);
-            if plugin && voussoir_core::plugin::nearest(tag, tags.iter().copied()).is_none() {
-                help +=
-                    "; one of another crate is there only in a program that names that crate (docs/adding_a_law.md)";
-            }
+            let (message, help) = unknown_tag(tag, tags, what);
             self.wrong_with_help(&value.origin, &join(key, tag_key), message, help);
             return None;
         }

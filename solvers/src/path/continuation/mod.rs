@@ -8,7 +8,6 @@ pub mod arc_length;
 pub mod crack_opening;
 pub mod displacement_control;
 pub mod dissipation;
-pub mod exact_events;
 pub mod load_control;
 
 use voussoir_core::plugin::{Parameter, Quantity, Range};

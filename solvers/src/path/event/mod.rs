@@ -22,7 +22,6 @@ mod trace;
 mod unique;
 
 pub(super) use self::follow::follow;
-use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
@@ -52,8 +51,10 @@ impl PathSolver for EventPath {
         if settings.finite {
             return Some("it follows small displacements only; newton_path follows finite ones".into());
         }
-        if settings.strategies().any(|c| !ExactEvents::is(&**c)) {
-            return Some("it goes from event to event and knows no other continuation than exact_events".into());
+        if settings.strategies().next().is_some() {
+            return Some(
+                "it goes from event to event without steps, so a continuation strategy has no meaning here".into(),
+            );
         }
         if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
             return Some("it takes laws of facets only; newton_path follows laws of tractions from gaps".into());

@@ -60,7 +60,6 @@ use super::outcome::stalled;
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::displacement_control::DisplacementControl;
 use crate::path::continuation::dissipation::Dissipation;
-use crate::path::continuation::exact_events::ExactEvents;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::sync::Arc;
@@ -88,9 +87,6 @@ impl PathSolver for NewtonPath {
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
-        if settings.strategies().any(|c| ExactEvents::is(&**c)) {
-            return Some("it steps; exact_events is for event_path (small displacements, laws of facets)".into());
-        }
         if problem.load_steps.is_empty() {
             return Some("nothing is loaded".into());
         }

@@ -3,7 +3,6 @@
 use super::{Kept, settings};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::dissipation::Dissipation;
-use crate::path::continuation::exact_events::ExactEvents;
 use crate::path::continuation::load_control::LoadControl;
 use crate::path::newton::NewtonPath;
 use nalgebra::DMatrix;
@@ -163,11 +162,4 @@ fn slip_has_a_history() {
         // Dissipation: μ N × (0.3 + 0.5 + 0.4).
         assert!((end.dissipated - 0.6).abs() < 1e-12, "{}", end.dissipated);
     }
-}
-
-#[test]
-fn exact_events_are_refused() {
-    let answer = NewtonPath {}.trace(&turning(), &settings(Some(Arc::new(ExactEvents {}))), &mut Unobserved);
-    assert_eq!(answer.status, Status::Stalled);
-    assert!(answer.notes[0].contains("event_path"));
 }
