@@ -176,17 +176,32 @@ impl Assembly {
         self.bridge.as_ref().map_or(&[], |bridge| &bridge.reactions)
     }
 
-    /// Diagonal of the box around everything \[m\].
-    pub fn size(&self) -> f64 {
+    /// Width and height of the box around everything \[m\].
+    fn extent(&self) -> Vec2 {
         let points = self.bodies.iter().flat_map(|b| &b.vertices).chain(self.joints.iter().flat_map(|j| &j.ends));
         let (low, high) = bounding_box(points);
-        (high - low).norm()
+        high - low
+    }
+
+    /// Diagonal of the box around everything \[m\].
+    pub fn size(&self) -> f64 {
+        self.extent().norm()
     }
 
     /// The longest clear span at the intrados springings \[m\]; of what is no arch [`size`](Self::size).
     pub fn span(&self) -> f64 {
+        self.clear_span().unwrap_or_else(|| self.size())
+    }
+
+    /// The displacement of a load up to which a path without a limit point is followed \[m\]: the longest clear span, or the
+    /// height of a scene that is no arch.
+    pub fn search_range(&self) -> f64 {
+        self.clear_span().unwrap_or_else(|| self.extent().y)
+    }
+
+    fn clear_span(&self) -> Option<f64> {
         let bridge = self.bridge.as_ref().map(|bridge| bridge.longest_span);
-        self.arch.as_ref().map(|arch| arch.span).or(bridge).unwrap_or_else(|| self.size())
+        self.arch.as_ref().map(|arch| arch.span).or(bridge)
     }
 
     /// Which bodies move as one because bonded joints hold them together: for each body the index

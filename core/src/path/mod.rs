@@ -25,7 +25,7 @@ mod work;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
 pub use self::fill::fill_gravity;
-pub use self::peak::{Branching, ProvenPeak, StageStability};
+pub use self::peak::{Branching, LimitPointEnd, ProvenPeak, StageStability};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;

@@ -1,4 +1,6 @@
-//! Peaks, stability and branches of a path, as a solver answers them.
+//! Limit points, stability and branches of a path in the answer of a solver.
+
+use serde::{Deserialize, Serialize};
 
 /// A proven peak of the factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,4 +42,20 @@ pub struct Branching {
     pub released: f64,
     /// Whether the branch in the other sense has the same energy: twins.
     pub twins: bool,
+}
+
+/// The reason why a path ends at a limit point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LimitPointEnd {
+    /// The limit point lies before the target of its stage.
+    Target,
+    /// The stage ends at its first limit point: `until = "first_limit_point"`.
+    Requested,
+    /// With finite displacements load control passes no limit point.
+    LoadControl,
+    /// A corner leaves its face there.
+    JointLost,
+    /// No admissible rate leaves it, rising or falling.
+    None,
 }

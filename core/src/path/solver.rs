@@ -1,7 +1,7 @@
 //! What a path solver is told and answers, and who looks on.
 
 use super::continuation::Continuation;
-use super::peak::{Branching, ProvenPeak, StageStability};
+use super::peak::{Branching, LimitPointEnd, ProvenPeak, StageStability};
 use super::problem::PathProblem;
 use super::state::{PathEvent, PathState};
 use super::witness::Witness;
@@ -29,6 +29,9 @@ pub struct PathAnswer {
     pub unique: Option<bool>,
     /// Proven peaks of the factor in order.
     pub limit_points: Vec<ProvenPeak>,
+    /// The reason why the path ends at a limit point, if the question does not give it: [`LimitPointEnd::JointLost`] or
+    /// [`LimitPointEnd::None`].
+    pub limit_point_end: Option<LimitPointEnd>,
     /// Stability of the state at the end of each stage that was reached.
     pub stability: Vec<StageStability>,
     /// Places where a branch was chosen, or the structure snapped.
@@ -70,6 +73,8 @@ pub struct StageSettings {
     /// How far to go beyond a peak in it: displacement of its load \[m\], and a factor. Both together take the place
     /// of those of all stages, where one of them is given.
     pub stop: Option<[Option<f64>; 2]>,
+    /// True if the stage ends at its first limit point.
+    pub first_limit_point: bool,
 }
 
 impl PathSettings {
@@ -83,6 +88,11 @@ impl PathSettings {
     pub fn stop(&self, stage: usize) -> [Option<f64>; 2] {
         let own = self.stages.get(stage).and_then(|own| own.stop);
         own.unwrap_or([self.stop_displacement, self.stop_factor])
+    }
+
+    /// True if a stage ends at its first limit point.
+    pub fn ends_at_first_limit_point(&self, stage: usize) -> bool {
+        self.stages.get(stage).is_some_and(|own| own.first_limit_point)
     }
 
     /// The same with all stages followed by one strategy.

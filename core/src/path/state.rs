@@ -39,6 +39,9 @@ pub struct PathState {
     /// For each body: what it remembers, where its material has yielded. A list that is too short
     /// stands for bodies that have not.
     pub yielded: Vec<Option<Yielded>>,
+    /// True if second-order work is positive with all loads and settlements fixed, false if it is not. `None` if the solver
+    /// has not examined or not decided it.
+    pub stable_under_load: Option<bool>,
 }
 
 impl PathState {

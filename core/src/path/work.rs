@@ -1,11 +1,19 @@
 //! The work between two states of a path, load by load: what residuals of energy are compared with.
 
-use super::problem::PathProblem;
+use super::problem::{Loading, PathProblem};
 use super::state::PathState;
 use crate::model::geometry::{Vec2, turned};
 use nalgebra::Rotation2;
 
 impl PathProblem {
+    /// Σ|F| of a loading, weights of accelerated free bodies included \[N\]. Times the displacement of a state it is the work
+    /// of the loading at factor 1, by rigid motions.
+    pub fn load_size(&self, loading: &Loading) -> f64 {
+        let forces: f64 = loading.forces.iter().map(|f| f.3.norm()).sum();
+        let masses: f64 = self.bodies.iter().filter(|b| !b.held).map(|b| b.mass).sum();
+        forces + masses * loading.acceleration.norm()
+    }
+
     /// Σ|work| between two states \[J\]: that of the loads of earlier steps, which stand and act on the bodies' rigid
     /// motions, and that of all else, the load that changes and the supports that move. Where a mechanism moves the two
     /// cancel: their sum would say that nothing was done.

@@ -86,9 +86,7 @@ impl EnergyBalance {
 
 /// Σ|F| of a loading, weights of accelerated free bodies included \[N\].
 pub(super) fn load_size(problem: &PathProblem, loading: &Loading) -> f64 {
-    let forces: f64 = loading.forces.iter().map(|f| f.3.norm()).sum();
-    let masses: f64 = problem.bodies.iter().filter(|b| !b.held).map(|b| b.mass).sum();
-    forces + masses * loading.acceleration.norm()
+    problem.load_size(loading)
 }
 
 /// By how much a loading moves the contact points of supports, at most, per unit of its factor \[m\].

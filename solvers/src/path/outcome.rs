@@ -4,7 +4,7 @@
 use super::self_check::confirmed;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{
-    Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability, Witness,
+    Branching, LimitPointEnd, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability, Witness,
 };
 
 /// A status with what it claims.
@@ -18,6 +18,8 @@ pub(super) struct Outcome {
     pub ray: Option<Vec<[f64; 2]>>,
     /// Whether the mechanism is the only one, where that was examined.
     pub unique: Option<bool>,
+    /// The reason why the path ends at a limit point, if the question does not give it.
+    pub limit_point_end: Option<LimitPointEnd>,
 }
 
 /// What a path leaves behind, whatever its end.
@@ -40,7 +42,7 @@ pub(super) struct PathRecord {
 impl Outcome {
     /// A status that claims a factor, or none.
     pub fn at(status: Status, factor: Option<f64>) -> Self {
-        Outcome { status, factor, motion: None, ray: None, unique: None }
+        Outcome { status, factor, motion: None, ray: None, unique: None, limit_point_end: None }
     }
 
     /// With a mechanism, where there is one.
@@ -60,7 +62,7 @@ impl Outcome {
 
     /// The answer as it is: for paths whose end cannot be checked without what came before.
     pub fn unconfirmed(self, record: PathRecord) -> PathAnswer {
-        let Outcome { status, factor, motion, ray, unique } = self;
+        let Outcome { status, factor, motion, ray, unique, limit_point_end } = self;
         let PathRecord {
             load_step,
             state,
@@ -82,6 +84,7 @@ impl Outcome {
             motion,
             unique,
             limit_points,
+            limit_point_end,
             stability,
             branchings,
             ray,

@@ -16,6 +16,7 @@
 
 use crate::optimise::lcg::Lcg;
 use nalgebra::{DMatrix, DVector};
+use voussoir_core::path::ProvenPeak;
 
 /// Motions up to which all columns of the flexibility are computed; of more only its greatest eigenvalues are, by
 /// subspace iteration.
@@ -31,6 +32,17 @@ const SOFTEST: f64 = 1e-6;
 const ASYMMETRY: f64 = 1e-7;
 /// Negative eigenvalues of S nearer to nothing than this, relative to the greatest, are rounding of excluded motions.
 const ROUNDING: f64 = 1e-9;
+
+/// Returns true if the factor regains the factor of a limit point between two states. If the second state is stable, a
+/// structure that snaps under dead load can end there.
+pub(super) fn regains_limit_point(limit_points: &[ProvenPeak], load_step: usize, factors: [f64; 2]) -> bool {
+    let regains = |peak: &ProvenPeak| {
+        let fallen = peak.factor - peak.lowest;
+        let [from, to] = factors.map(|factor| (peak.factor - factor) * fallen);
+        peak.load_step == load_step && from > 0.0 && to <= 0.0
+    };
+    limit_points.iter().any(regains)
+}
 
 /// The second-order work of a state with loads and settlements held.
 #[derive(Debug, Clone)]

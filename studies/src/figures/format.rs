@@ -1,11 +1,12 @@
 //! How numbers, units and results are written in words, for figures, tables and reports alike.
 
 use super::hinges::{DrawnHinge, drawn_hinges};
-use crate::results::CaseResult;
+use crate::results::{CaseResult, other_limit_point};
 use voussoir_core::certificate::{Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
+use voussoir_core::path::LimitPointEnd;
 
 /// `x` with so many significant digits; powers of ten only below 1e-4 and from 1e7.
 pub fn format_number(x: f64, digits: usize) -> String {
@@ -81,6 +82,17 @@ pub fn status_word(status: Status) -> &'static str {
         Status::LimitPoint => "limit_point",
         Status::Open => "open",
         Status::Stalled => "stalled",
+    }
+}
+
+/// The reason why a path ends at a limit point, as results.json has it.
+pub fn continuation_word(end: LimitPointEnd) -> &'static str {
+    match end {
+        LimitPointEnd::Target => "target",
+        LimitPointEnd::Requested => "requested",
+        LimitPointEnd::LoadControl => "load_control",
+        LimitPointEnd::JointLost => "joint_lost",
+        LimitPointEnd::None => "none",
     }
 }
 
@@ -161,18 +173,26 @@ pub fn proved_interval(result: &CaseResult) -> Option<String> {
     }
 }
 
+/// The greatest and the first limit point with equal weight, if they differ: `carries 23.1; snaps from 1.37`.
+pub fn snap_words(load_factor: Option<f64>, first: Option<f64>, number: impl Fn(f64) -> String) -> Option<String> {
+    let first = other_limit_point(load_factor, first)?;
+    Some(format!("carries {}; snaps from {}", number(load_factor?), number(first)))
+}
+
 /// What a case came to, in one line: `collapse, λ = 698.0 (load 698.0 kN)`.
 pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
     let load = |factor: f64| match unit_load(stages) {
         Some(unit) => format!("λ = {} (load {})", format_number(factor, 4), format_force(factor * unit)),
         None => format!("λ = {}", format_number(factor, 4)),
     };
+    let snaps = result.snaps_from().map(|first| format!("snaps from {}", load(first)));
+    let beside = |words: String| snaps.as_ref().map_or(words.clone(), |snaps| format!("{words}; {snaps}"));
     match (result.status, result.load_factor) {
         (Status::Collapse, Some(found)) if let Some([proved, _]) = open_bounds(result) => {
             format!("carries at least {}: proved; a collapse was found at {}", load(proved), load(found))
         }
         (Status::Open, _) if let Some(interval) = proved_interval(result) => {
-            format!("open: proved for the load factor: {interval}")
+            beside(format!("open: proved for the load factor: {interval}"))
         }
         (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
         _ if result.supports_cannot_move() => {
@@ -180,6 +200,9 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
         }
         (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),
         (Status::Stands, None) => "stands: every stage reached its factor".into(),
+        (status, Some(factor)) if snaps.is_some() => {
+            beside(format!("{}: carries {}", status_word(status).replace('_', " "), load(factor)))
+        }
         (status, Some(factor)) => format!("{}, {}", status_word(status).replace('_', " "), load(factor)),
         (status, None) => status_word(status).replace('_', " "),
     }

@@ -136,6 +136,7 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
             ends,
             ..Series::default()
         });
+        series.extend(first_limit_points(variant, mine().copied(), scale));
     }
     if series.iter().all(|s| s.points.is_empty() && s.open_points.is_empty() && s.ends.is_empty()) {
         return None;
@@ -145,6 +146,30 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
     let (low, high) = cases.iter().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), (_, x)| (l.min(*x), h.max(*x)));
     let style = ChartStyle { log: [low > 0.0 && high >= WIDE * low, false] };
     Some(chart(&title, x_label, y_label, &series, &notes, &style))
+}
+
+/// The line of first limit points beside that of load factors, if they differ anywhere. A proved limit point of an open case
+/// belongs to it.
+fn first_limit_points<'a>(
+    variant: Option<&str>,
+    cases: impl Iterator<Item = (&'a CaseResult, f64)> + Clone,
+    scale: f64,
+) -> Option<Series> {
+    cases.clone().find(|(case, _)| case.snaps_from().is_some())?;
+    let answer = |case: &CaseResult| case.load_factor.filter(|_| case.status != Status::Open);
+    let place = |(case, x): (&'a CaseResult, f64)| {
+        let first = case.path.first_limit_point.or_else(|| answer(case))?;
+        Some((x, first * scale, case.label.id))
+    };
+    let mut found: Vec<(f64, f64, usize)> = cases.filter_map(place).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let own = "first limit point";
+    Some(Series {
+        name: variant.map_or(own.to_string(), |variant| format!("{variant}, {own}")),
+        points: found.iter().map(|(x, y, _)| (*x, *y)).collect(),
+        cases: found.iter().map(|(_, _, id)| *id).collect(),
+        ..Series::default()
+    })
 }
 
 /// From this ratio of the greatest to the least value on an axis is logarithmic.

@@ -6,7 +6,7 @@ use super::kind::{CasesOf, LoadedStudy, Piece, RESULTS, RunOutput, RunRequest, S
 use super::stored_cases::read_cases;
 use crate::caught::caught;
 use crate::figures::envelope::envelope_chart;
-use crate::figures::format::format_number;
+use crate::figures::format::{format_number, snap_words};
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_svg, mechanism_svg, scene_svg};
 use crate::results::{CaseLabel, CaseResult, Origin, StudyResults, words};
@@ -267,11 +267,12 @@ fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
         let words =
             ["variant", "vehicle", "direction"].iter().filter_map(|key| Some(format!(", {}", entry[key].as_str()?)));
         let number = |key: &str| entry[key].as_f64().map_or("-".to_string(), |x| format_number(x, 6));
+        let snaps = snap_words(entry["result"].as_f64(), entry["first_limit_point"].as_f64(), |x| format_number(x, 6));
         let status = entry["status"].as_str().unwrap_or_default();
         let (key, case) = (entry["parameter"].as_str().unwrap_or_default(), &entry["case"]);
         format!(
             "\nworst: {} ({status}) at {key} = {}{}{} (case {case})\n",
-            number("result"),
+            snaps.unwrap_or_else(|| number("result")),
             number("value"),
             keys.unit(key).map_or(String::new(), |unit| format!(" {unit}")),
             words.collect::<String>()

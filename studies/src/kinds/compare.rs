@@ -85,6 +85,7 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
                 case: id,
                 status: case.map(|case| case.status),
                 load_factor: case.and_then(|case| case.load_factor),
+                first_limit_point: case.and_then(|case| case.path.first_limit_point),
                 bounds: case.and_then(|case| case.bounds),
                 ratio,
                 mechanism: case.and_then(|case| case.mechanism.as_ref()).map(|mechanism| mechanism.kind),

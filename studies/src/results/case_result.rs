@@ -3,13 +3,23 @@
 use super::entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry,
 };
-use super::limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
+use super::limit_points::{BranchEntry, FollowedTo, LimitPointEntry, StabilityEntry};
 use super::load_factor_error::LoadFactorError;
 use super::sensitivity::SensitivityEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{BracketPoint, Counters, Greatest, LowerProof, Status};
+use voussoir_core::path::LimitPointEnd;
+
+/// Relative difference of two factors that belong to one limit point.
+const SAME_POINT: f64 = 1e-9;
+
+/// The first limit point, if the load factor is another one.
+pub fn other_limit_point(load_factor: Option<f64>, first_limit_point: Option<f64>) -> Option<f64> {
+    let (factor, first) = load_factor.zip(first_limit_point)?;
+    ((first - factor).abs() > SAME_POINT * factor.abs()).then_some(first)
+}
 
 /// Which case of its study it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -90,6 +100,12 @@ pub struct PathRecord {
     /// Factor of the first limit point of the stage that `load_factor` speaks of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_limit_point: Option<f64>,
+    /// The reason why a path with the status `limit_point` ends at it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub continuation: Option<LimitPointEnd>,
+    /// The last state of the path: the range that `greatest` is about ends there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub followed_to: Option<FollowedTo>,
     /// Where the path left an equilibrium that became unstable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub branches: Vec<BranchEntry>,
@@ -198,6 +214,11 @@ impl CaseResult {
     pub fn collapse_load(&self) -> Option<f64> {
         let ends = matches!(self.status, Status::Collapse | Status::LimitPoint);
         self.load_factor.filter(|_| self.certificate.passed && ends)
+    }
+
+    /// The first limit point of the path, if the load factor is another one: a dead load snaps there.
+    pub fn snaps_from(&self) -> Option<f64> {
+        other_limit_point(self.load_factor, self.path.first_limit_point)
     }
 
     /// Whether rigid blocks cannot follow their supports: its ray then refutes their motion, not the loads.

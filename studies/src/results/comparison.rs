@@ -40,6 +40,9 @@ pub struct ComparisonCell {
     pub status: Option<Status>,
     /// The collapse factor.
     pub load_factor: Option<f64>,
+    /// Of a path: the factor of its first limit point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_limit_point: Option<f64>,
     /// \[proved lower, found upper\].
     pub bounds: Option<[Option<f64>; 2]>,
     /// The factor over that of the reference; `null` where one of them is missing or the reference is 0.

@@ -16,12 +16,14 @@ pub mod stage_start;
 mod study_results;
 pub mod thrust_line;
 
-pub use case_result::{CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult};
+pub use case_result::{
+    CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult, other_limit_point,
+};
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, StateEntry, YieldedEntry,
 };
-pub use limit_points::{BranchEntry, LimitPointEntry, StabilityEntry};
+pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
 pub use origin::{FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use rank::{least_of, load_rank};

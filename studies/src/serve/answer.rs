@@ -27,6 +27,7 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String
         "headline": headline(result, &case.stages),
         "status": result.status,
         "load_factor": result.load_factor,
+        "first_limit_point": result.path.first_limit_point,
         "solver": result.solver,
         "certified": result.certificate.passed && result.status.is_answer(),
         "proof": proof(result),

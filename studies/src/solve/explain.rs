@@ -121,8 +121,11 @@ fn explain_path(case: &Case, solvers: &[TaggedPathSolver], text: &mut String) {
         let what = if load_step.gravity { "gravity" } else { "loads" };
         let end = match load_step.end {
             LoadStepEnd::Factor(factor) => format!("to factor {factor}"),
-            LoadStepEnd::Collapse(most) if most.is_finite() => format!("until collapse, up to factor {most}"),
-            LoadStepEnd::Collapse(_) => "until collapse".into(),
+            LoadStepEnd::Collapse(most) => {
+                let first = settings.ends_at_first_limit_point(load_step.stage);
+                let until = if first { "until the first limit point" } else { "until collapse" };
+                if most.is_finite() { format!("{until}, up to factor {most}") } else { until.into() }
+            }
         };
         let stage = &case.stages[load_step.stage].name;
         let _ = writeln!(text, "  stage \"{stage}\", {what}: {tag}, {kinematics} displacements, {end}");

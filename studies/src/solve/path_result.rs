@@ -4,6 +4,10 @@ use super::associated_load::associated_load;
 use super::case_input::CaseInput;
 use super::coarse_joints::coarse_joints;
 use super::limit_mechanism::end_in_limit_mechanism;
+use super::limit_points::{
+    add_last_limit_point, first_limit_point, followed_to, limit_point_end, limit_points, search_range,
+};
+use super::load_history::LoadHistory;
 use super::ours::path_is_ours;
 use super::path_status::{Evidence, PathVerdict, Progress};
 use super::safe_theorem::safe_theorem_holds;
@@ -14,8 +18,8 @@ use crate::results::load_entries::path_fill;
 use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{
-    BranchEntry, CaseResult, DisplacementEntry, EventEntry, LimitPointEntry, PathRecord, Proof, ProofFields,
-    StabilityEntry, StageResult, StateEntry,
+    BranchEntry, CaseResult, DisplacementEntry, EventEntry, PathRecord, Proof, ProofFields, StabilityEntry,
+    StageResult, StateEntry,
 };
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
@@ -24,7 +28,7 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
-use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability};
+use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, StageStability};
 
 /// What was seen of a path.
 pub(super) struct Seen {
@@ -65,6 +69,7 @@ pub(super) fn path_result(
         problem,
         progress: &progress,
         hint: (solved.status, solved.load_step, solved.factor),
+        range: search_range(input, problem, &solved),
         certificate: &certificate,
         ours,
         field_is_proof: !finite && safe_theorem_holds(assembly),
@@ -82,6 +87,7 @@ pub(super) fn path_result(
         keep_proved(&mut solved, &progress, problem, status);
     }
     solved.status = status;
+    add_last_limit_point(&mut solved);
     let load_step = &problem.load_steps[solved.load_step];
     let load_factor = match status {
         Status::Collapse | Status::LimitPoint if !load_step.gravity => solved.factor,
@@ -136,7 +142,7 @@ pub(super) fn path_result(
             &solved.stability,
         ),
         notes,
-        path: PathRecord { states, ..path_record(input, problem, solved, checker) },
+        path: PathRecord { states, ..path_record(input, problem, solved, checker, &progress.history) },
         ..CaseResult::empty()
     }
 }
@@ -144,6 +150,7 @@ pub(super) fn path_result(
 /// Removes the parts of an answer that no check proves. They are not believed if the solver is from outside this project.
 fn leave_out_unproved(solved: &mut PathAnswer) {
     solved.limit_points.clear();
+    solved.limit_point_end = None;
     solved.branchings.clear();
     solved.stability.clear();
     solved.events.clear();
@@ -179,13 +186,20 @@ fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, finite: bool, so
 }
 
 /// What the state, the events and the curve of a path are written as.
-fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, checker: PathChecker) -> PathRecord {
+fn path_record(
+    input: &CaseInput,
+    problem: &PathProblem,
+    solved: PathAnswer,
+    checker: PathChecker,
+    history: &LoadHistory,
+) -> PathRecord {
     let assembly = input.assembly;
     let name = |body: usize| assembly.bodies[body].name.clone();
     let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
     let entry = |(body, displacement)| DisplacementEntry { body: name(body), displacement };
-    let first = first_limit_point(&solved);
-    let limit_points = solved.limit_points.iter().map(|peak| limit_point(input.stages, problem, peak)).collect();
+    let (first, continuation) = (first_limit_point(&solved), limit_point_end(input.settings, problem, &solved));
+    let limit_points = limit_points(input.stages, problem, &solved.limit_points, history);
+    let followed_to = followed_to(input.stages, problem, history);
     let branches = solved.branchings.iter().map(|branching| branch(input.stages, problem, branching)).collect();
     PathRecord {
         displacements: Some(displaced.into_iter().enumerate().map(entry).collect()),
@@ -194,27 +208,11 @@ fn path_record(input: &CaseInput, problem: &PathProblem, solved: PathAnswer, che
         events: events(input, problem, &solved.events),
         curve: Some(checker.curve),
         first_limit_point: first,
+        continuation,
+        followed_to,
         limit_points,
         branches,
         states: Vec::new(),
-    }
-}
-
-/// Factor of the first limit point of the load step at which the path ended.
-fn first_limit_point(solved: &PathAnswer) -> Option<f64> {
-    let ends = matches!(solved.status, Status::Collapse | Status::LimitPoint);
-    let first = solved.limit_points.iter().find(|peak| peak.load_step == solved.load_step);
-    first.map(|peak| peak.factor).or(solved.factor.filter(|_| ends))
-}
-
-fn limit_point(stages: &[Stage], problem: &PathProblem, peak: &ProvenPeak) -> LimitPointEntry {
-    let load_step = &problem.load_steps[peak.load_step];
-    LimitPointEntry {
-        stage: stages[load_step.stage].name.clone(),
-        factor: peak.factor,
-        gravity: load_step.gravity,
-        displacement: peak.displacement,
-        fall: (peak.factor - peak.lowest).abs(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The status that the states of a path prove; the status in the solver's answer is a hint.
 
 use super::associated_load::AssociatedLoad;
+use super::load_history::LoadHistory;
 use voussoir_core::certificate::Certificate;
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::path::{LoadStep, LoadStepEnd, PathProblem, PathState};
@@ -23,11 +24,14 @@ pub(super) struct Progress {
     greatest: Option<PathState>,
     /// Number of load steps whose end a state has reached, one after the other.
     completed: usize,
+    /// Load and displacement of all states.
+    pub history: LoadHistory,
 }
 
 impl Progress {
     /// Takes the next state over.
     pub fn add(&mut self, problem: &PathProblem, state: &PathState) {
+        self.history.add(state);
         if let Some(before) = self.last.replace(state.clone()) {
             let turns = before.load_step == state.load_step && state.factor < before.factor;
             let of_step = self.greatest.as_ref().filter(|greatest| greatest.load_step == state.load_step);
@@ -92,6 +96,8 @@ pub(super) struct Evidence<'a> {
     pub progress: &'a Progress,
     /// The status, the load step and the factor in the solver's answer.
     pub hint: (Status, usize, Option<f64>),
+    /// The displacement of the load up to which a limit point is searched \[m\]; `None` if the path has one, or goes to a factor.
+    pub range: Option<f64>,
     /// Residuals of all states.
     pub certificate: &'a Certificate,
     /// Set if solver and strategies belong to this project: the proof of a limit point rests on them.
@@ -137,7 +143,7 @@ impl Evidence<'_> {
             Status::Collapse | Status::LimitPoint | Status::Unbounded | Status::NoEquilibrium if !self.ours => {
                 failures.push(ELSEWHERE.into());
             }
-            Status::Open | Status::Stalled => failures.push("the end of the path is not proved".into()),
+            Status::Open | Status::Stalled => failures.push(self.unproved_end(load_step)),
             _ => {}
         }
         failures.extend(self.contradiction(step));
@@ -157,6 +163,17 @@ impl Evidence<'_> {
         let is_last = load_step + 1 == self.problem.load_steps.len();
         let load = self.associated.filter(|_| is_last && status == Status::Collapse)?;
         meeting_bounds(factor?, load)
+    }
+
+    /// The reason why the end of a path is not proved.
+    fn unproved_end(&self, load_step: usize) -> String {
+        let moved = self.progress.history.moved(load_step);
+        match self.range.filter(|range| moved >= *range) {
+            Some(range) => {
+                format!("no_limit_point_in_range: up to a displacement of {range} m the path has no limit point")
+            }
+            None => "the end of the path is not proved".into(),
+        }
     }
 
     /// The reason why limit analysis contradicts the claim: the path ends above the associated load, or below it although

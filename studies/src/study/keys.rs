@@ -34,6 +34,9 @@ static SETTLEMENT: Shape = Shape::Table(&[
     .default("0.0"),
 ]);
 
+/// The value of `until` with which a stage ends at its first limit point.
+pub const FIRST_LIMIT_POINT: &str = "first_limit_point";
+
 /// Keys of a stage but for `loads`, which stand after the second.
 static STAGE: &[Parameter] = &[
     key("name", Shape::Text, Need::Required, "name of the stage, unique in the study"),
@@ -48,9 +51,9 @@ static STAGE: &[Parameter] = &[
     ),
     key(
         "until",
-        Shape::Choice(&["collapse"]),
+        Shape::Choice(&["collapse", FIRST_LIMIT_POINT]),
         Need::Optional("the stage goes to its factor"),
-        "\"collapse\": raise the factor until collapse",
+        "\"collapse\": raise the factor until collapse; \"first_limit_point\": stop a path at its first limit point",
     ),
     Parameter::number("factor", Quantity::Ratio, Range::ANY, "factor of this stage's loads")
         .optional("1.0, unless until is given"),

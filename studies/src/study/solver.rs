@@ -2,6 +2,7 @@
 //! built. A table that cannot be read is a mistake, never silently another solver.
 
 use super::diagnostics::DiagnosticList;
+use super::keys::FIRST_LIMIT_POINT;
 use super::model::{SelectedSolver, SolverChoice};
 use super::resolved::Resolved;
 use crate::config::default_table::default_table;
@@ -90,7 +91,8 @@ fn stage_settings(diagnostics: &mut DiagnosticList<'_>, stages: &[Json]) -> Opti
         let stop = stage.get("stop").map(|stop| ["displacement", "factor"].map(|key| stop[key].as_f64()));
         let at = format!("stages.{index}.continuation");
         let continuation = strategy(diagnostics, stage.get("continuation"), &at)?;
-        Some(StageSettings { continuation, stop })
+        let first_limit_point = stage["until"] == FIRST_LIMIT_POINT;
+        Some(StageSettings { continuation, stop, first_limit_point })
     };
     stages.iter().enumerate().map(one).collect()
 }
@@ -241,6 +243,15 @@ fn needs_deformation(
         }
         if rigid && !limit && (finite || path) {
             diagnostics.wrong(&format!("stages.{index}.settlement"), reason, help);
+        }
+    }
+    for (index, _) in stages.iter().enumerate().filter(|(_, stage)| stage["until"] == FIRST_LIMIT_POINT) {
+        let at = format!("stages.{index}.until");
+        if limit {
+            let message = "limit analysis follows no path, so it finds no first limit point";
+            diagnostics.wrong(&at, message, "set until = \"collapse\", or take a path solver");
+        } else if rigid && !finite && !path {
+            diagnostics.wrong(&at, reason, help);
         }
     }
     if rigid && finite && !limit {

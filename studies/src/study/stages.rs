@@ -1,6 +1,7 @@
 //! The stages of a case: what its loads, gravity and settlements do to the blocks.
 
 use super::diagnostics::DiagnosticList;
+use super::keys::FIRST_LIMIT_POINT;
 use super::resolved::Resolved;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
@@ -22,16 +23,16 @@ pub(super) fn build_stages(
     let stages = stages.as_array()?;
     let before = diagnostics.found.len();
     let mut out: Vec<Stage> = Vec::new();
-    for (index, stage) in stages.iter().enumerate() {
+    for (index, raw) in stages.iter().enumerate() {
         let at = format!("stages.{index}");
         let (target, factors) = build_target(diagnostics, stages, index, &at);
-        let settlements = assembly.map(|assembly| build_settlements(diagnostics, &stage["settlement"], assembly, &at));
+        let settlements = assembly.map(|assembly| build_settlements(diagnostics, &raw["settlement"], assembly, &at));
         let settlements = settlements.unwrap_or_default();
-        let (placed, whole) = build_loads(diagnostics, stage, assembly, &tables, &at);
+        let (placed, whole) = build_loads(diagnostics, raw, assembly, &tables, &at);
         let Placed { forces, accelerations, spreads, notes: own } = placed;
         let stage = Stage {
-            name: stage["name"].as_str().unwrap_or_default().to_string(),
-            gravity: gravity(&stage["gravity"]),
+            name: raw["name"].as_str().unwrap_or_default().to_string(),
+            gravity: gravity(&raw["gravity"]),
             forces,
             accelerations,
             spreads,
@@ -45,7 +46,8 @@ pub(super) fn build_stages(
         notes.extend(own);
         if whole && assembly.is_some() && diagnostics.found.len() == before && !stands_off && raises_nothing(&stage) {
             let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
-            let message = "\"collapse\" needs a load to raise, but this stage has none";
+            let until = raw["until"].as_str().unwrap_or_default();
+            let message = format!("\"{until}\" needs a load to raise, but this stage has none");
             diagnostics.wrong(&join(&at, "until"), message, help);
         }
         out.push(stage);
@@ -76,13 +78,13 @@ fn build_target(diagnostics: &mut DiagnosticList<'_>, stages: &[Json], index: us
         let message = format!("two stages are called \"{}\"", stage["name"].as_str().unwrap_or_default());
         diagnostics.wrong(&join(at, "name"), message, "give each stage a name of its own");
     }
-    let collapse = stage["until"] == "collapse";
-    if collapse && stage.get("factor").is_some() {
-        let help = "keep until to raise the loads to collapse, or factor to stop at that factor";
-        diagnostics.wrong(&join(at, "factor"), "is given besides until = \"collapse\"", help);
+    let until = stage["until"].as_str();
+    if let Some(until) = until.filter(|_| stage.get("factor").is_some()) {
+        let help = format!("keep until to raise the loads to {}, or factor to stop at that factor", until_words(until));
+        diagnostics.wrong(&join(at, "factor"), format!("is given besides until = \"{until}\""), help);
     }
-    if collapse && index + 1 < stages.len() {
-        let message = "\"collapse\" is only possible in the last stage: nothing can be loaded after it";
+    if let Some(until) = until.filter(|_| index + 1 < stages.len()) {
+        let message = format!("\"{until}\" is only possible in the last stage: nothing can be loaded after it");
         diagnostics.wrong(&join(at, "until"), message, "make it the last stage, or give this stage a factor");
     }
     let factor = |key: &str| stage.get(key).and_then(Json::as_f64);
@@ -92,8 +94,13 @@ fn build_target(diagnostics: &mut DiagnosticList<'_>, stages: &[Json], index: us
         let message = format!("the search would go from factor_min = {least} to factor_max = {greatest}");
         diagnostics.wrong(&join(at, named), message, "factor_min must be at most factor_max");
     }
-    let target = if collapse { Target::Collapse } else { Target::Factor(factor("factor").unwrap_or(1.0)) };
+    let target = if until.is_some() { Target::Collapse } else { Target::Factor(factor("factor").unwrap_or(1.0)) };
     (target, [least, greatest])
+}
+
+/// A value of `until` in a sentence.
+fn until_words(until: &str) -> &str {
+    if until == FIRST_LIMIT_POINT { "the first limit point" } else { until }
 }
 
 /// Gravity from a stage on: downwards, or a vector.

@@ -175,7 +175,13 @@ impl Fit<'_> {
         self.numbers("joint_states", path.joint_states.iter().flatten().copied());
         for peak in &path.limit_points {
             self.stage("limit_points", &peak.stage);
+            let next = peak.next_state.map(|next| next.displacement);
             self.numbers("limit_points", [peak.factor, peak.displacement, peak.fall]);
+            self.numbers("limit_points", peak.released_energy.into_iter().chain(next));
+        }
+        if let Some(end) = &path.followed_to {
+            self.stage("followed_to", &end.stage);
+            self.numbers("followed_to", [end.factor, end.displacement]);
         }
         for branch in &path.branches {
             self.stage("branches", &branch.stage);

@@ -122,7 +122,11 @@ impl<'a> Comparison<'a> {
                 true => Rule::OfFactor(BEYOND.of(self.route)),
                 false => within(&PEAK),
             },
-            "limit_points" if leaf == "displacement" => within(&PEAK),
+            "limit_points" if key.starts_with("limit_points.next_state") && self.steps_differ => {
+                Rule::Relative(BEYOND.of(self.route))
+            }
+            "limit_points" if leaf == "released_energy" && self.steps_differ => Rule::Relative(BEYOND.of(self.route)),
+            "limit_points" if ["displacement", "released_energy"].contains(&leaf) => within(&PEAK),
             _ if ["point", "direction", "bounds"].contains(&leaf) && key != "bounds" => within(&GEOMETRY),
             "loads" => within(&GEOMETRY),
             "motion" | "mechanism" | "branches" => within(&RATE),

@@ -8,6 +8,7 @@ use crate::results::inelastic_state;
 use crate::results::path_state::{mechanism_of, small};
 use crate::solve::CaseInput;
 use crate::solve::associated_load::associated_load;
+use crate::solve::limit_points::asked_end;
 use crate::solve::ours::path_is_ours;
 use crate::solve::path_status::{ELSEWHERE, meeting_bounds, ordered};
 use crate::solve::safe_theorem::safe_theorem_holds;
@@ -18,7 +19,7 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::{LoadStepEnd, PathObserver, PathProblem, PathState};
+use voussoir_core::path::{LimitPointEnd, LoadStepEnd, PathObserver, PathProblem, PathState};
 
 /// Checks the result of a case that a path solver answered.
 pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
@@ -37,6 +38,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
         findings.expect(same, "the load factor is not that of the field");
     }
     verify_status(case, &problem, &state, result, findings);
+    verify_range(case, &problem, &state, result, findings);
     // At a peak of finite displacements forces change with every motion: there may be none to report.
     if result.status == Status::Collapse && !finite {
         findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
@@ -106,6 +108,33 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
         _ => Greatest::ProvedOnThePath,
     };
     findings.expect(result.greatest == greatest, "greatest does not fit the status");
+}
+
+/// Checks limit points, the reason why the path ends at one, and the end of its range.
+fn verify_range(case: &Case, problem: &PathProblem, state: &PathState, result: &CaseResult, findings: &mut Findings) {
+    let (path, step) = (&result.path, &problem.load_steps[state.load_step]);
+    let stage = &case.stages[step.stage].name;
+    let own: Vec<f64> = path
+        .limit_points
+        .iter()
+        .filter(|peak| peak.stage == *stage && peak.gravity == step.gravity)
+        .map(|peak| peak.factor)
+        .collect();
+    let ends = matches!(result.status, Status::Collapse | Status::LimitPoint);
+    let first = own.first().copied().or(result.load_factor.filter(|_| ends));
+    let has_factor = result.status != Status::Stands && result.load_factor.is_some();
+    findings.expect(!has_factor || path.first_limit_point == first, "first_limit_point is not the first limit point");
+    if let Some(greatest) = result.load_factor.filter(|_| ends) {
+        let rises = |factor: &f64| (factor - greatest) * (greatest - step.start) > 0.0 && !close(*factor, greatest);
+        findings.expect(!own.iter().any(rises), "a limit point lies above the load factor");
+    }
+    let asked = asked_end(&case.solver.settings, step);
+    let fits = match path.continuation {
+        Some(LimitPointEnd::JointLost | LimitPointEnd::None) => result.status == Status::LimitPoint,
+        asked_for => asked_for == asked.filter(|_| result.status == Status::LimitPoint),
+    };
+    findings.expect(fits, "continuation does not fit the status and the question");
+    findings.expect(path.followed_to.is_some(), "a path without followed_to");
 }
 
 /// The state that a result ends at, from its entries.

@@ -98,7 +98,7 @@ pub const RATE: Tolerance = row(
 );
 /// Displacement at a limit point, and the fall after it.
 pub const PEAK: Tolerance = row(
-    "`displacement` and `fall` of `limit_points`, `followed_to`",
+    "`displacement`, `fall`, `released_energy` and `next_state` of `limit_points`, `followed_to`",
     [None, Some(1e-7), Some(1e-5)],
     GREATEST,
     "the load is flat at a peak: an error e of the factor is one of √e of the place",
@@ -112,7 +112,7 @@ pub const CURVE: Tolerance = row(
 );
 /// Events beyond the greatest load, if the number of steps differs.
 pub const BEYOND: Tolerance = row(
-    "beyond the greatest factor: factors of events; if the second run has another number of steps, `fall` and the share of events that may be missing",
+    "beyond the greatest factor: factors of events; if the second run has another number of steps, `followed_to`, `fall`, `released_energy` and `next_state` (the last two relative to themselves), and the share of events that may be missing",
     [None, None, Some(0.05)],
     "greatest factor",
     "a step that is cut elsewhere sees other short events; up to the greatest factor all events must agree",

@@ -5,7 +5,7 @@ use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
-use crate::figures::format::{format_number, format_short, format_value, kind_word, status_word};
+use crate::figures::format::{format_number, format_short, format_value, kind_word, snap_words, status_word};
 use crate::figures::map::map_svg;
 use crate::results::{Comparison, ComparisonCell};
 use crate::study::SweptKeys;
@@ -40,7 +40,7 @@ fn swept(comparison: &Comparison) -> Vec<String> {
     comparison.rows.first().map(|row| row.parameters.keys().cloned().collect()).unwrap_or_default()
 }
 
-/// One row per scene and swept value; for each variant status, factor, bounds, ratio and mechanism.
+/// One row per scene and swept value; for each variant status, factor, first limit point, bounds, ratio and mechanism.
 pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
     let keys = swept(comparison);
     let mut header = vec!["scene".to_string()];
@@ -49,6 +49,7 @@ pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
         let columns = [
             "status".to_string(),
             "load_factor [-]".into(),
+            "first_limit_point [-]".into(),
             "lower_bound [-]".into(),
             "upper_bound [-]".into(),
             format!("ratio to {} [-]", comparison.reference),
@@ -65,6 +66,7 @@ pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
             cells.extend([
                 cell.status.map_or("not answered", status_word).to_string(),
                 number(cell.load_factor),
+                number(cell.first_limit_point),
                 number(cell.bounds.and_then(|bounds| bounds[0])),
                 number(cell.bounds.and_then(|bounds| bounds[1])),
                 number(cell.ratio),
@@ -77,13 +79,15 @@ pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
     csv_table(header, rows)
 }
 
-/// A load factor with what must be said of it: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`.
+/// A load factor with what must be said of it: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`,
+/// `carries 23.1; snaps from 1.37`.
 fn factor(cell: &ComparisonCell) -> String {
     let words = remark(cell);
     let Some(factor) = cell.load_factor else { return words };
     let proved = open_bracket(cell).map(|[low, _]| format!("≥ {}", format_short(low, 4)));
     let said: Vec<String> = Some(words).filter(|words| !words.is_empty()).into_iter().chain(proved).collect();
-    let number = format_number(factor, 7);
+    let digits = |x: f64| format_number(x, 7);
+    let number = snap_words(Some(factor), cell.first_limit_point, digits).unwrap_or_else(|| digits(factor));
     if said.is_empty() { number } else { format!("{number} ({})", said.join(", ")) }
 }
 
@@ -126,6 +130,6 @@ register!(
     "comparison",
     ComparisonFiles,
     "comparison.csv and its figure: variants beside each other, with ratios (kinds compare and map)",
-    "# `comparison`\n\nWrites `comparison.csv`, one row for each scene and swept value, seven columns for each variant, and \
+    "# `comparison`\n\nWrites `comparison.csv`, one row for each scene and swept value, eight columns for each variant, and \
      `figures/comparison.svg` or `figures/map.svg`.\n"
 );

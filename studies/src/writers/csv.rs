@@ -4,7 +4,7 @@ use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{format_value, kind_word, status_word};
+use crate::figures::format::{continuation_word, format_value, kind_word, status_word};
 use crate::results::CaseResult;
 use serde_json::Value as Json;
 
@@ -19,10 +19,11 @@ impl Writer for ResultsCsv {
 }
 
 const BEFORE: [&str; 2] = ["id", "variant"];
-const AFTER: [&str; 18] = [
+const AFTER: [&str; 19] = [
     "status",
     "load_factor [-]",
     "first_limit_point [-]",
+    "continuation",
     "lower_bound [-]",
     "upper_bound [-]",
     "associated_load_factor [-]",
@@ -67,6 +68,7 @@ pub(super) fn row(case: &CaseResult, scenes: bool, keys: &[String]) -> Vec<Strin
         status_word(case.status).to_string(),
         number(case.load_factor),
         number(case.path.first_limit_point),
+        case.path.continuation.map_or(String::new(), |end| continuation_word(end).into()),
         number(case.bounds.and_then(|bounds| bounds[0])),
         number(case.bounds.and_then(|bounds| bounds[1])),
         number(case.non_associated.associated_load_factor),

@@ -9,6 +9,7 @@ pub mod csv;
 pub mod csv_table;
 pub mod curve_csv;
 pub mod figures;
+mod limit_points;
 mod links;
 pub(crate) mod live;
 pub mod markdown;

@@ -1,6 +1,7 @@
 //! `report.html`: one self-contained page for reading and printing.
 
 use super::comparison::{comparison_rows, figure};
+use super::limit_points::limit_points;
 use super::live::case_data;
 use super::page;
 use super::record::record;
@@ -12,7 +13,7 @@ use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
-    open_bounds, proved_interval, status_meaning, status_word, unit_load,
+    open_bounds, proved_interval, snap_words, status_meaning, status_word, unit_load,
 };
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
@@ -146,6 +147,15 @@ fn summary(study: &StudyOutput) -> String {
                 format_number(high, 4)
             );
         }
+        let snapping: Vec<f64> = cases.iter().filter_map(CaseResult::snaps_from).collect();
+        if !snapping.is_empty() {
+            text += &format!(
+                " <strong>{} of {} cases snap before they reach their load factor</strong>, the lowest from λ = {}.",
+                snapping.len(),
+                cases.len(),
+                format_number(snapping.iter().copied().fold(f64::INFINITY, f64::min), 4)
+            );
+        }
     }
     let unproved = |open: bool| {
         let cases = cases.iter().filter(move |case| !case.certificate.passed && (case.status == Status::Open) == open);
@@ -235,12 +245,19 @@ fn case_table(study: &StudyOutput) -> String {
             study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(format_value).unwrap_or_default()),
         );
         row.push(status_word(case.status).replace('_', " "));
-        row.push(case.load_factor.map_or("–".into(), |factor| match open_bounds(case) {
-            Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
-            None => format_number(factor, 7),
+        row.push(case.load_factor.map_or("–".into(), |factor| {
+            match open_bounds(case) {
+                Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+                None => snap_words(case.load_factor, case.path.first_limit_point, |x| format_number(x, 7))
+                    .unwrap_or_else(|| format_number(factor, 7)),
+            }
         }));
-        let force = case.load_factor.zip(*load).map_or(String::new(), |(factor, load)| format_force(factor * load));
-        row.extend(with_load.then_some(force));
+        let force = |load: &f64| {
+            let force = |factor: f64| format_force(factor * load);
+            let snaps = snap_words(case.load_factor, case.path.first_limit_point, force);
+            snaps.or(case.load_factor.map(force)).unwrap_or_default()
+        };
+        row.extend(with_load.then(|| load.as_ref().map(force).unwrap_or_default()));
         row.push(proved_interval(case).unwrap_or_default());
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| {
             format!("{}{}", kind_words(m.kind), if m.unique == Some(false) { ", not unique" } else { "" })
@@ -358,6 +375,7 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
         let events = joint_events(assembly, case);
         let open = if place == 0 { " open" } else { "" };
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&study.case_title(case)));
+        text += &limit_points(case);
         if events.is_empty() {
             text += "<p>No joint became a hinge or slid.</p>\n";
         } else {

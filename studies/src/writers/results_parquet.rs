@@ -4,7 +4,7 @@ use super::parquet::{Cell, Parquet};
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{format_value, kind_word, status_word};
+use crate::figures::format::{continuation_word, format_value, kind_word, status_word};
 use crate::results::CaseResult;
 use serde_json::Value as Json;
 use std::io::{self, Write};
@@ -69,6 +69,7 @@ fn row(case: &CaseResult, scenes: bool, keys: &[SweptColumn]) -> Vec<(String, Ce
         ("status", word(status_word(case.status))),
         ("load_factor [-]", Cell::Number(case.load_factor)),
         ("first_limit_point [-]", Cell::Number(case.path.first_limit_point)),
+        ("continuation", word(case.path.continuation.map_or("", continuation_word))),
         ("lower_bound [-]", Cell::Number(case.bounds.and_then(|bounds| bounds[0]))),
         ("upper_bound [-]", Cell::Number(case.bounds.and_then(|bounds| bounds[1]))),
         ("associated_load_factor [-]", Cell::Number(case.non_associated.associated_load_factor)),

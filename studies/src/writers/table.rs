@@ -2,7 +2,8 @@
 
 use super::study_output::StudyOutput;
 use crate::figures::format::{
-    format_number, format_short, format_value, hinge_list, kind_word, open_bounds, proved_interval, status_word,
+    format_number, format_short, format_value, hinge_list, kind_word, open_bounds, proved_interval, snap_words,
+    status_word,
 };
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -85,15 +86,16 @@ fn certificate(case: &CaseResult) -> &'static str {
 fn factor(case: &CaseResult) -> String {
     match (case.status, case.load_factor) {
         (Status::Unbounded, _) => "unbounded".into(),
-        (Status::Open, _) => proved_interval(case).unwrap_or_else(|| "-".into()),
-        (_, Some(factor)) => {
-            let first = case.path.first_limit_point.filter(|first| (first - factor).abs() > 1e-9 * factor.abs());
-            match (open_bounds(case), first) {
-                (Some([proved, _]), _) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
-                (None, Some(first)) => format!("{} (first {})", format_number(factor, 7), format_number(first, 5)),
-                (None, None) => format_number(factor, 7),
-            }
+        (Status::Open, _) => {
+            let interval = proved_interval(case).unwrap_or_else(|| "-".into());
+            let snaps = case.snaps_from().map(|first| format!("; snaps from {}", format_number(first, 7)));
+            interval + &snaps.unwrap_or_default()
         }
+        (_, Some(factor)) => match open_bounds(case) {
+            Some([proved, _]) => format!("≥ {} (found {})", format_short(proved, 4), format_number(factor, 7)),
+            None => snap_words(case.load_factor, case.path.first_limit_point, |x| format_number(x, 7))
+                .unwrap_or_else(|| format_number(factor, 7)),
+        },
         (_, None) => "-".into(),
     }
 }

@@ -15,13 +15,14 @@ use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, changed, crushing, first_case, friction};
 
 /// Words that stand in results, by what they mean: any other of the same row is a forgery.
-pub const WORDS: [&[&str]; 6] = [
+pub const WORDS: [&[&str]; 7] = [
     &["collapse", "stands", "unbounded", "no_equilibrium", "limit_point", "stalled"],
     &["three_hinge", "four_hinge", "five_hinge", "rocking", "sliding", "crushing", "mixed"],
     &["intrados", "extrados"],
     &["opens", "closes", "slips", "sticks", "reverses"],
     &["limit_chain", "limit_conic", "event_path", "newton_path"],
     &["associated", "own"],
+    &["target", "requested", "load_control", "joint_lost", "none"],
 ];
 
 /// Every entry below `value` with a forged one beside it.

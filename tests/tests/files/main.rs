@@ -12,6 +12,7 @@ mod lower_bound;
 mod pages;
 mod report;
 mod round_trip;
+mod snaps;
 mod streamed;
 mod survey;
 mod tampering;

@@ -11,10 +11,13 @@ use super::stability::stage_stability;
 use super::trace::Trace;
 use super::unique::unique;
 use crate::path::outcome::{Outcome, PathRecord};
+use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::{LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak};
+use voussoir_core::path::{
+    LimitPointEnd, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak,
+};
 
 /// Rate problems put to the whole system, at most, before the force method is tried again.
 const MOST_RESTS: u32 = 32;
@@ -30,6 +33,8 @@ enum End {
     Stands,
     /// At a limit point.
     LimitPoint,
+    /// At a limit point that no rate leaves, rising or falling.
+    NoRate,
     /// Not followed further, and why.
     Stalled(String),
     /// A direction without end under a load.
@@ -245,6 +250,10 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if whole && direction.factor > 0.0 {
         trace.state.factor = run.target;
     }
+    let factors = [before, trace.state.factor];
+    trace.state.stable_under_load = regains_limit_point(&follower.limits.proven, trace.state.load_step, factors)
+        .then(|| stage_stability(trace, &run.load).under_load)
+        .flatten();
     // Of many events of the chain as few are recorded as of the force method.
     let all = !by_chain || whole || follower.limits.greatest.is_some();
     if (all || run.unrecorded.events * RECORDED >= trace.log.counts.rate_problems) && !run.unrecorded.record(trace) {
@@ -265,6 +274,9 @@ fn stops(follower: &Follower, run: &Run) -> Result<bool, End> {
         return Ok(true);
     }
     let stage = trace.problem.load_steps[trace.state.load_step].stage;
+    if trace.settings.ends_at_first_limit_point(stage) {
+        return Err(End::LimitPoint);
+    }
     let [displacement, factor] = trace.settings.stop(stage);
     let moved = displacement.is_some_and(|most| (trace.displacement() - limits.last).abs() > most);
     let fallen = factor.is_some_and(|least| limits.falling && (trace.state.factor - least) * run.sense <= 0.0);
@@ -345,7 +357,7 @@ fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
     match direction {
         Some(direction) => Ok(direction),
         None if undecided => Err(End::Stalled("the path was not followed beyond its limit point".into())),
-        None => Err(End::LimitPoint),
+        None => Err(End::NoRate),
     }
 }
 
@@ -354,6 +366,7 @@ fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
     let outcome = match end {
         End::Stands => Outcome::at(Status::Stands, Some(follower.trace.state.factor)),
         End::LimitPoint => Outcome::at(Status::LimitPoint, None),
+        End::NoRate => Outcome { limit_point_end: Some(LimitPointEnd::None), ..Outcome::at(Status::LimitPoint, None) },
         End::Stalled(why) => {
             follower.trace.log.notes.push(why);
             Outcome::at(Status::Stalled, None)

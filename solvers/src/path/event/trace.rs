@@ -21,6 +21,8 @@ pub struct State {
     pub load_step: usize,
     /// λ.
     pub factor: f64,
+    /// Stability under the loads, if it was examined.
+    pub stable_under_load: Option<bool>,
     /// Work of loads and supports, and what dissipated \[J\].
     pub energy: EnergyBalance,
 }
@@ -108,7 +110,14 @@ impl<'a> Trace<'a> {
             settings,
             observer,
             associated: problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated),
-            state: State { x, points, load_step: 0, factor: 0.0, energy: EnergyBalance::default() },
+            state: State {
+                x,
+                points,
+                load_step: 0,
+                factor: 0.0,
+                stable_under_load: None,
+                energy: EnergyBalance::default(),
+            },
             system,
             factors: Factors::default(),
             log: Log::default(),
@@ -156,6 +165,7 @@ impl<'a> Trace<'a> {
             work: state.energy.work,
             displacement: self.displacement_of(&motion),
             motion,
+            stable_under_load: state.stable_under_load,
             ..PathState::default()
         };
         let deformation = Deformation::new(self.problem, &present);

@@ -95,7 +95,8 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
         if let Some(outcome) = go_on(tracer, &mut following, end) {
             return outcome;
         }
-        if following.limits.ends_at_peak && tracer.limit.peak.is_some() {
+        let ends = following.limits.ends_at_peak || tracer.settings.ends_at_first_limit_point(load_step.stage);
+        if ends && tracer.limit.peak.is_some() {
             return end_path(tracer, Status::LimitPoint, String::new());
         }
     }

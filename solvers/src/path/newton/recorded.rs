@@ -87,5 +87,6 @@ pub(super) fn recorded(
         displacement: load_displacement(system, &state.motion, state.factor),
         memory: state.updates.before.clone(),
         yielded: yielded(&state.blocks),
+        stable_under_load: None,
     }
 }

@@ -4,9 +4,11 @@ use super::cycle_detector::{CycleDetector, Excursion};
 use super::derivatives::Gradient;
 use super::events::events;
 use super::recorded::{energy_after, recorded, work_state};
+use super::second_order::stability;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
+use crate::path::energy::{EnergyBalance, StageBalance, WorkState, load_size};
+use crate::path::stability::regains_limit_point;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
@@ -125,7 +127,11 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     tracer.record.energy = energy;
     let start = tracer.state.clone();
     tracer.system.keep(&start, &mut next);
-    let seen = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
+    let mut seen = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
+    if regains_limit_point(&tracer.limit.proven_peaks, tracer.load_step, [start.factor, next.factor]) {
+        let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        seen.stable_under_load = stability(&mut tracer.system, &next, settles).under_load;
+    }
     let (problem, finite) = (tracer.system.problem, tracer.system.finite());
     tracer.record.balance = tracer.record.balance.after(problem, finite, &tracer.record.state, &seen).0;
     tracer.record.state = seen;

@@ -36,6 +36,7 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
                 "direction": place.direction,
                 "value": place.value,
                 "result": place.result.load_factor,
+                "first_limit_point": place.result.path.first_limit_point,
                 "status": place.result.status,
                 "case": place.result.label.id,
             })
@@ -69,6 +70,7 @@ fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Opti
         "vehicle": place.vehicle,
         "direction": place.direction,
         "result": place.result.load_factor,
+        "first_limit_point": place.result.path.first_limit_point,
         "status": place.result.status,
         "case": place.result.label.id,
         "intervals": intervals(&own),

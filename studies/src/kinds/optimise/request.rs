@@ -49,13 +49,14 @@ impl Request {
 
     /// The result that is optimised; `None` where it is not finite.
     pub fn result_of(&self, case: &Case, result: &CaseResult) -> Option<f64> {
-        let answered = matches!(result.status, Status::Collapse | Status::LimitPoint);
         let first = match self.result.as_deref() {
             Some(word) => word == "first_limit_point",
             None => case.solver.settings.finite,
         };
-        let found = if first { result.path.first_limit_point.or(result.load_factor) } else { result.load_factor };
-        found.filter(|_| answered)
+        let answer = result.load_factor.filter(|_| matches!(result.status, Status::Collapse | Status::LimitPoint));
+        // A proved limit point is an answer, whatever lies beyond it.
+        let limit_point = result.path.first_limit_point.filter(|_| answer.is_some() || result.status == Status::Open);
+        limit_point.filter(|_| first).or(answer)
     }
 
     /// The statuses for which there is no optimum.

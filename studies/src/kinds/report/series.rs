@@ -158,6 +158,8 @@ fn result(entry: &Json, path: &str) -> Value {
         match (status, entry[path].as_f64()) {
             ("unbounded", _) if path != "value" => return Value::Number(f64::INFINITY),
             ("unbounded", _) => return Value::none("unbounded"),
+            // A proved limit point is an answer, whatever lies beyond it.
+            ("open", Some(number)) if path == "first_limit_point" => return Value::Number(number),
             ("open", _) => return Value::unknown("a case is open"),
             (_, Some(number)) => return Value::Number(number),
             ("stalled", _) => return Value::unknown("a case stalled"),

@@ -1,8 +1,9 @@
 // What makes a report answer: sorting, filtering, values under the pointer, drawings that move, printing.
 // Tables: a button in each head sorts, a field above filters rows.
 const number = text => {
-  const found = text.replace(/[≥≤–]/g, '').trim().match(/^[-+]?[\d.]+(e[-+]?\d+)?/i);
-  return found ? parseFloat(found[0]) * ({ kN: 1e3, MN: 1e6, ms: 1e-3, 'µs': 1e-6 }[text.trim().split(' ')[1]] || 1) : NaN;
+  const plain = text.replace(/[≥≤–]|carries/g, '').trim();
+  const found = plain.match(/^[-+]?[\d.]+(e[-+]?\d+)?/i);
+  return found ? parseFloat(found[0]) * ({ kN: 1e3, MN: 1e6, ms: 1e-3, 'µs': 1e-6 }[plain.split(/[ ;]/)[1]] || 1) : NaN;
 };
 for (const table of document.querySelectorAll('.wide > table')) {
   const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];

@@ -1,0 +1,35 @@
+//! The limit points of a path as a table of the page: how far the load falls beyond each, and what a dead load would do.
+
+use super::page;
+use crate::figures::format::{format_length, format_number, format_short};
+use crate::results::{CaseResult, LimitPointEntry, NextState};
+
+/// The table of a case; empty if its path has no limit point.
+pub(super) fn limit_points(case: &CaseResult) -> String {
+    let points = &case.path.limit_points;
+    if points.is_empty() {
+        return String::new();
+    }
+    let header = ["stage", "limit point at factor", "displacement", "factor falls by", "released energy", "next state"];
+    let words = "<p>Under dead load the structure snaps at a limit point. The released energy is counted along the path to the \
+                 next state that carries the same load, or to the end of the path.</p>\n";
+    words.to_string() + &page::table(&header.map(String::from), points.iter().map(row))
+}
+
+fn row(point: &LimitPointEntry) -> Vec<String> {
+    let stage = if point.gravity { format!("{} (gravity)", point.stage) } else { point.stage.clone() };
+    let energy = point.released_energy.map_or("–".into(), |energy| format!("{} J", format_short(energy, 3)));
+    vec![
+        stage,
+        format_number(point.factor, 7),
+        format_length(point.displacement),
+        format_short(point.fall, 4),
+        energy,
+        point.next_state.as_ref().map_or("none".into(), next_state),
+    ]
+}
+
+fn next_state(next: &NextState) -> String {
+    let stability = if next.stable_under_load == Some(true) { "stable" } else { "stability not proved" };
+    format!("{} ({stability})", format_length(next.displacement))
+}
