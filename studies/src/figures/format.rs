@@ -41,6 +41,11 @@ pub fn format_force(newtons: f64) -> String {
     scaled(newtons, &[(1e6, "MN"), (1e3, "kN"), (1.0, "N")])
 }
 
+/// An energy \[J\] with four digits, in J, kJ or MJ.
+pub fn format_energy(joules: f64) -> String {
+    scaled(joules, &[(1e6, "MJ"), (1e3, "kJ"), (1.0, "J")])
+}
+
 /// A length \[m\], short, in m or mm.
 pub fn format_length(metres: f64) -> String {
     if metres.abs() < 0.1 && metres != 0.0 {

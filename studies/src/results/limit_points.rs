@@ -17,8 +17,8 @@ pub struct LimitPointEntry {
     /// By how much the factor falls after it, before the next peak or the end of the path.
     pub fall: f64,
     /// Energy that a dead load of this factor would release on the way of the path: ∫ (λ_limit − λ) p·dq until the load is back,
-    /// or to the end of the path, by the trapezoidal rule over its states \[J\]. `null` if the path ends there or the stage moves
-    /// supports.
+    /// or to the end of the path, by rigid motions and the trapezoidal rule over the states \[J\]. It is negative if the load moves
+    /// back. `null` if the path ends there or the stage moves supports.
     pub released_energy: Option<f64>,
     /// The next state on the path that carries the same load and is not proved unstable under it; `null` if the range has no
     /// such state.

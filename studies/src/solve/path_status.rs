@@ -170,7 +170,9 @@ impl Evidence<'_> {
         let moved = self.progress.history.moved(load_step);
         match self.range.filter(|range| moved >= *range) {
             Some(range) => {
-                format!("no_limit_point_in_range: up to a displacement of {range} m the path has no limit point")
+                format!(
+                    "no_limit_point_in_range: the load has moved by {moved:.3} m without a limit point; the range is {range:.3} m"
+                )
             }
             None => "the end of the path is not proved".into(),
         }

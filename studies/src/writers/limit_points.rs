@@ -1,7 +1,7 @@
 //! The limit points of a path as a table of the page: how far the load falls beyond each, and what a dead load would do.
 
 use super::page;
-use crate::figures::format::{format_length, format_number, format_short};
+use crate::figures::format::{format_energy, format_length, format_number, format_short};
 use crate::results::{CaseResult, LimitPointEntry, NextState};
 
 /// The table of a case; empty if its path has no limit point.
@@ -18,7 +18,7 @@ pub(super) fn limit_points(case: &CaseResult) -> String {
 
 fn row(point: &LimitPointEntry) -> Vec<String> {
     let stage = if point.gravity { format!("{} (gravity)", point.stage) } else { point.stage.clone() };
-    let energy = point.released_energy.map_or("–".into(), |energy| format!("{} J", format_short(energy, 3)));
+    let energy = point.released_energy.map_or("–".into(), format_energy);
     vec![
         stage,
         format_number(point.factor, 7),

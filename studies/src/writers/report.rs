@@ -375,7 +375,6 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
         let events = joint_events(assembly, case);
         let open = if place == 0 { " open" } else { "" };
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&study.case_title(case)));
-        text += &limit_points(case);
         if events.is_empty() {
             text += "<p>No joint became a hinge or slid.</p>\n";
         } else {
@@ -387,6 +386,7 @@ fn paths(study: &StudyOutput, drawn: usize) -> String {
             });
             text += &page::table(&header, rows);
         }
+        text += &limit_points(case);
         let points = case.path.events.len();
         let counts = case.counters.iter().map(|(name, count)| format!("{}: {count}", name.replace('_', " ")));
         text += &format!(

@@ -206,3 +206,63 @@ fn every_change_of_a_limit_point_is_found() {
     found((&whole, &both), "/limit_points/0/next_state", Value::Null);
     found((&whole, &both), "/first_limit_point", both["cases"][0]["load_factor"].clone());
 }
+
+#[test]
+fn an_optimum_is_one_of_first_limit_points_if_displacements_are_finite() {
+    let search = "kind = \"optimise\"\n[optimise]\nparameter = \"scene.width\"\nfrom = 1.0\nto = 1.1\nscan = 3\ntolerance = 0.9\n";
+    let study = |more: &str| changed(RING, "name = \"ring\"\n", &format!("name = \"ring\"\n{search}{more}"));
+    for (more, key) in [("", "first_limit_point"), ("result = \"load_factor\"\n", "load_factor")] {
+        let found: Value = serde_json::from_str(&file(&run(&study(more)), "results.json")).expect("JSON");
+        let optimum = &found["optima"][0];
+        let cases = found["cases"].as_array().expect("cases");
+        let own = cases.iter().find(|case| case["id"] == optimum["case"]).expect("its case");
+        assert_eq!(optimum["result"], own[key], "{more}");
+        assert_ne!(own["first_limit_point"], own["load_factor"]);
+    }
+}
+
+/// A wide rigid block on a soft pad, pressed down: the load grows with the displacement and has no limit point.
+const PAD: &str = r#"
+name = "pad"
+[scene]
+scene = "blocks"
+width = 1.0
+material = "stone"
+joint = "pad"
+blocks = [
+  { name = "ground", vertices = [[-2.0, -0.2], [2.0, -0.2], [2.0, 0.0], [-2.0, 0.0]], fixed = true },
+  { name = "a", vertices = [[-2.0, 0.0], [2.0, 0.0], [2.0, 0.1], [-2.0, 0.1]] },
+]
+[materials.stone]
+law = "rigid"
+density = 2000.0
+[joints.pad]
+law = "coulomb"
+friction = 0.6
+normal_stiffness = 1e6
+shear_stiffness = 1e6
+[[stages]]
+name = "dead"
+gravity = 10.0
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{ kind = "point", block = "a", point = [0.0, 0.1], force = [0.0, -1000.0] }]
+[solver]
+solver = "newton_path"
+kinematics = "finite"
+"#;
+
+#[test]
+fn a_load_without_a_limit_point_in_its_range_is_open_or_stands_at_factor_max() {
+    let case = first_case(PAD);
+    assert_eq!(case["status"], "open");
+    let failures = case["certificate"]["failures"].to_string();
+    assert!(failures.contains("no_limit_point_in_range") && failures.contains("the range is 0.300 m"), "{failures}");
+    assert_eq!((&case["first_limit_point"], &case["limit_points"]), (&Value::Null, &Value::Null));
+    // The load grows with the displacement: 4 MN/m.
+    let [end, lower] = [number(&case["followed_to"]["displacement"]), number(&case["bounds"][0])];
+    assert!((lower - 4000.0 * end).abs() < 0.01 * lower, "{lower} {end}");
+    let bounded = changed(PAD, "until = \"collapse\"", "until = \"collapse\"\nfactor_max = 500.0");
+    assert_eq!(first_case(&bounded)["status"], "stands");
+}
