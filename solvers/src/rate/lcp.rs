@@ -43,6 +43,8 @@ struct Free {
     facets: Vec<(usize, usize)>,
     /// By the pairs' z and, last, by λ̇.
     multipliers: DMatrix<f64>,
+    /// Multipliers of their rows by those of the pairs' rows.
+    rows: DMatrix<f64>,
 }
 
 fn facet<'a>(problem: &RateProblem<'a>, (k, f): (usize, usize)) -> &'a Facet {
@@ -52,6 +54,19 @@ fn facet<'a>(problem: &RateProblem<'a>, (k, f): (usize, usize)) -> &'a Facet {
 fn flow(problem: &RateProblem, at: (usize, usize), associated: bool) -> [f64; 2] {
     let facet = facet(problem, at);
     if associated { facet.normal } else { facet.flow }
+}
+
+impl RateLcp {
+    /// (point, facet) of all rows, those of eliminated multipliers last.
+    pub fn all_rows(&self) -> Vec<(usize, usize)> {
+        [&self.facets[..], &self.free.facets].concat()
+    }
+
+    /// Multipliers of the rows of eliminated multipliers by those of the pairs, so that the sum does not contain the
+    /// eliminated multipliers.
+    pub fn eliminated_rows(&self, y: &[f64]) -> Vec<f64> {
+        (&self.free.rows * DVector::from_column_slice(y)).iter().copied().collect()
+    }
 }
 
 /// With the laws' own flow or an associated one. `None` where nothing holds points that are open with a strength.
@@ -76,10 +91,11 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     let (n, o) = (facets.len(), opened.len());
     let mut m = DMatrix::from_fn(n, n, |i, j| entry(facets[i], facets[j]));
     let mut q = DVector::from_fn(n, |i, _| by_load(facets[i]));
-    let mut multipliers = DMatrix::zeros(0, n + 1);
+    let (mut multipliers, mut rows) = (DMatrix::zeros(0, n + 1), DMatrix::zeros(0, n));
     if o > 0 {
         let own = DMatrix::from_fn(o, o, |i, j| entry(opened[i], opened[j]));
         let by = |i: usize, j: usize| if j < n { entry(opened[i], facets[j]) } else { by_load(opened[i]) };
+        rows = -own.transpose().lu().solve(&DMatrix::from_fn(o, n, |i, j| entry(facets[j], opened[i])))?;
         multipliers = -own.lu().solve(&DMatrix::from_fn(o, n + 1, by))?;
         let onto = DMatrix::from_fn(n, o, |i, j| entry(facets[i], opened[j]));
         m += &onto * multipliers.columns(0, n);
@@ -90,7 +106,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(least).sqrt()).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
     let constant = DVector::from_fn(n, |i, _| q[i] / unit[i]);
-    Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant }, free: Free { facets: opened, multipliers } })
+    Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant }, free: Free { facets: opened, multipliers, rows } })
 }
 
 /// ġ of multipliers with a λ̇.

@@ -7,11 +7,14 @@
 //! ```
 //!
 //! A mode of a point sets some of its w and z to zero: in the mode *facet i*, w_i = 0 and the other z are zero; *stick*
-//! sets all its z to zero; *open* sets all its w to zero. A leaf holds multipliers y of the rows (Farkas 1902): y·w −
-//! (yᵀM + y_c c)·z + y_c e = λ̇ y·q − y_c, in which no coefficient of a variable that may be positive is negative while
-//! the right-hand side is. For associated flow without softening the root is a leaf: one dual vector.
+//! sets all its z to zero; *vertex* sets all its w to zero. A leaf holds multipliers y of the rows (Farkas 1902):
+//! y·w − (yᵀM + y_c c)·z + y_c e = λ̇ y·q − y_c, in which no coefficient of a variable that may be positive is negative
+//! while the right-hand side is. For associated flow without softening the root is a leaf: one dual vector.
+//!
+//! With α = −Σ y_i a_i at each point this is α·ṙ + β·ġ = λ̇ s·α, β = −Sᵀα: the form that the certificate checks.
 
-use crate::contact::mode::ContactMode;
+use super::problem::RateProblem;
+use voussoir_core::path::{FarkasVector, ModeTree as CertifiedTree, PointMode};
 
 /// A node of the tree.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,13 +22,13 @@ pub enum ModeTree {
     /// Multipliers y of the rows that contradict each other in the modes above, and last y_c for λ̇ = 0.
     Contradiction(Vec<f64>),
     /// A rate in these modes, which does not continue the path.
-    Rate(Vec<ContactMode>),
+    Rate(Vec<PointMode>),
     /// All modes of a point, each with the tree below it.
     Point {
         /// Index of the point.
         point: usize,
         /// Its modes.
-        modes: Vec<(ContactMode, ModeTree)>,
+        modes: Vec<(PointMode, ModeTree)>,
     },
 }
 
@@ -34,7 +37,8 @@ pub enum ModeTree {
 pub struct NoRate {
     /// The sense of λ: 1, 0 or −1.
     pub factor: f64,
-    /// (point, facet) of each row.
+    /// (point, facet) of each row. The opening facets of points that are open with a strength are last: their w is zero
+    /// and their z has any sign.
     pub rows: Vec<(usize, usize)>,
     /// The tree.
     pub tree: ModeTree,
@@ -68,6 +72,52 @@ impl ModeTree {
 }
 
 impl NoRate {
+    /// The proof in the form of the certificate, over the contact points `contacts` of the structure. `None` if it is not
+    /// a proof that no rate rises.
+    ///
+    /// `vector` completes gap multipliers α of the points to multipliers of the whole structure. If the structure is
+    /// symmetric, they are the negative response of the structure to the gap rates α at a held load: y = −q̇, β = −ṙ.
+    // Until a path solver hands its proofs over.
+    #[allow(dead_code)]
+    pub fn certified(
+        &self,
+        problem: &RateProblem,
+        contacts: &[usize],
+        vector: &impl Fn(&[[f64; 2]]) -> FarkasVector,
+    ) -> Option<CertifiedTree> {
+        if self.factor <= 0.0 { None } else { self.certified_tree(&self.tree, problem, contacts, vector) }
+    }
+
+    fn certified_tree(
+        &self,
+        tree: &ModeTree,
+        problem: &RateProblem,
+        contacts: &[usize],
+        vector: &impl Fn(&[[f64; 2]]) -> FarkasVector,
+    ) -> Option<CertifiedTree> {
+        match tree {
+            ModeTree::Rate(_) => None,
+            ModeTree::Contradiction(y) => Some(CertifiedTree::Leaf(vector(&self.force_multipliers(problem, y)))),
+            ModeTree::Point { point, modes } => {
+                let branch = |(mode, tree): &(PointMode, ModeTree)| {
+                    self.certified_tree(tree, problem, contacts, vector).map(|tree| (*mode, tree))
+                };
+                let branches: Option<Vec<_>> = modes.iter().map(branch).collect();
+                Some(CertifiedTree::Split { contact: contacts[*point], branches: branches? })
+            }
+        }
+    }
+
+    /// α = −Σ y_i a_i of each point.
+    fn force_multipliers(&self, problem: &RateProblem, y: &[f64]) -> Vec<[f64; 2]> {
+        let mut alpha = vec![[0.0; 2]; problem.points.len()];
+        for (&(k, f), y) in self.rows.iter().zip(y) {
+            let normal = problem.points[k].facets[f].normal;
+            (0..2).for_each(|i| alpha[k][i] -= y * normal[i]);
+        }
+        alpha
+    }
+
     /// The proof over points in another order: point k becomes `to[k]`.
     pub(super) fn renumbered(self, to: &[usize]) -> NoRate {
         let rows = self.rows.into_iter().map(|(point, facet)| (to[point], facet)).collect();

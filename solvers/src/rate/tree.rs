@@ -9,9 +9,12 @@ use super::lcp::{RateLcp, gaps_of, rate_lcp};
 use super::neighbours::add;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
+use crate::contact::active_point::ActivePoint;
+use crate::contact::facet::{across, dot, norm};
 use crate::contact::mode::ContactMode;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use nalgebra::{DMatrix, DVector};
+use voussoir_core::path::PointMode;
 
 /// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
 /// rounding of zero are weighed with it.
@@ -20,6 +23,8 @@ const LARGEST: f64 = 1e6;
 const ROUNDING: f64 = 1e-14;
 /// Product of w and z, relative to the greatest of each, up to which it is zero.
 const COMPLEMENTARY: f64 = 1e-9;
+/// Cosine up to which directions are at a right angle.
+const ALONG: f64 = 1e-12;
 /// Linear programs for each leaf of the budget.
 const PROGRAMS: u64 = 4;
 
@@ -44,7 +49,7 @@ pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64)
     let Some(lcp) = rate_lcp(problem, false) else {
         return Searched::undecided("the points that are open with a strength are held by nothing");
     };
-    let rows = lcp.facets.clone();
+    let rows = lcp.all_rows();
     let Some(program) = Program::new(problem, &lcp, factor) else {
         let tree = ModeTree::Contradiction([vec![0.0; rows.len()], vec![1.0]].concat());
         return Searched { rates: Vec::new(), proof: Some(NoRate { factor, rows, tree }), open: None };
@@ -71,25 +76,65 @@ pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64)
         Err(why) => Searched { rates, proof: None, open: Some(why) },
         Ok(_) if doubtful => Searched { rates, proof: None, open: Some("a combination is decided by rounding".into()) },
         Ok((tree, _)) => {
-            let proof = NoRate { factor, rows, tree: program.in_own_units(tree, &lcp.unit) };
+            let proof = NoRate { factor, rows, tree: program.in_own_units(tree, &lcp) };
             Searched { rates, proof: Some(proof), open: None }
         }
     }
 }
 
 /// A mode of a point and the variables that it sets to zero: i for w_i, n + i for z_i.
-type Choice = (ContactMode, Vec<usize>);
+type Choice = (PointMode, Vec<usize>);
 
-/// The modes of each point.
+/// The modes of each point, those that the certificate expects.
 fn choices(problem: &RateProblem, lcp: &RateLcp) -> Vec<Vec<Choice>> {
     let n = lcp.facets.len();
-    let of_mode = |k: usize, mode: ContactMode| {
+    let of_mode = |k: usize, mode: PointMode| {
         let own = lcp.facets.iter().enumerate().filter(|(_, at)| at.0 == k);
-        let fixed = own.map(|(i, at)| if mode == ContactMode::Open || mode.flows_on(at.1) { i } else { n + i });
-        (mode, fixed.collect())
+        let stays = |f: usize| mode == PointMode::Vertex || mode == PointMode::Facet(f);
+        (mode, own.map(|(i, at)| if stays(at.1) { i } else { n + i }).collect())
     };
     let points = problem.points.iter().enumerate();
-    points.map(|(k, point)| point.candidates().into_iter().map(|mode| of_mode(k, mode)).collect()).collect()
+    points.map(|(k, point)| point_modes(point).into_iter().map(|mode| of_mode(k, mode)).collect()).collect()
+}
+
+/// The modes of a point. A facet on which no force rate but zero stays has no mode.
+pub(super) fn point_modes(point: &ActivePoint) -> Vec<PointMode> {
+    let vertex = point.active.iter().any(|f| point.active.first() != Some(f) || point.open.is_some_and(|o| o != *f));
+    let vertex = vertex.then_some(PointMode::Vertex);
+    if let Some(open) = point.open {
+        return std::iter::once(PointMode::Facet(open)).chain(vertex).collect();
+    }
+    let stays = |f: &&usize| {
+        let along = across(point.facets[**f].normal);
+        let admissible = |sense: f64| {
+            point
+                .active
+                .iter()
+                .all(|j| sense * dot(point.facets[*j].normal, along) <= ALONG * norm(point.facets[*j].normal))
+        };
+        admissible(1.0) || admissible(-1.0)
+    };
+    let facets = point.active.iter().filter(stays).map(|f| PointMode::Facet(*f));
+    std::iter::once(PointMode::Stick).chain(facets).chain(vertex).collect()
+}
+
+/// The mode of a contact point in a cell, by its gap rate.
+fn contact_mode(point: &ActivePoint, mode: PointMode, gap: [f64; 2]) -> ContactMode {
+    match mode {
+        PointMode::Stick => ContactMode::Stick,
+        PointMode::Facet(f) => ContactMode::Facet(f as u8),
+        PointMode::Open => ContactMode::Open,
+        PointMode::Vertex => {
+            let least = |mode: &ContactMode| {
+                let signed = |(k, v): (usize, f64)| if k == 0 && point.open.is_some() { 0.0 } else { v };
+                let unknowns = mode.unknowns(point.facets, gap);
+                unknowns.into_iter().enumerate().map(signed).fold(f64::INFINITY, f64::min)
+            };
+            let corners = point.candidates().into_iter().filter(|mode| matches!(mode, ContactMode::Corner(..)));
+            if point.apex { None } else { corners.max_by(|a, b| least(a).total_cmp(&least(b))) }
+                .unwrap_or(ContactMode::Open)
+        }
+    }
 }
 
 /// The linear program: w = constant + matrix z, one row more for λ̇ = 0.
@@ -160,17 +205,16 @@ impl Program {
     }
 
     /// The tree with multipliers of the rows in physical units.
-    fn in_own_units(&self, tree: ModeTree, unit: &[f64]) -> ModeTree {
+    fn in_own_units(&self, tree: ModeTree, lcp: &RateLcp) -> ModeTree {
         match tree {
-            ModeTree::Contradiction(mut y) => {
-                y.iter_mut().zip(unit).for_each(|(y, unit)| *y /= unit);
-                if self.factor == 0.0 {
-                    y[unit.len()] /= self.size;
-                }
-                ModeTree::Contradiction(y)
+            ModeTree::Contradiction(y) => {
+                let mut own: Vec<f64> = y.iter().zip(&lcp.unit).map(|(y, unit)| y / unit).collect();
+                own.extend(lcp.eliminated_rows(&own));
+                own.extend(y.get(lcp.unit.len()).map(|work| work / self.size));
+                ModeTree::Contradiction(own)
             }
             ModeTree::Point { point, modes } => {
-                let own = |(mode, tree)| (mode, self.in_own_units(tree, unit));
+                let own = |(mode, tree)| (mode, self.in_own_units(tree, lcp));
                 ModeTree::Point { point, modes: modes.into_iter().map(own).collect() }
             }
             rate => rate,
@@ -185,7 +229,7 @@ struct Search<'a> {
     dictionary: Dictionary,
     choices: Vec<Vec<Choice>>,
     /// The mode of each point on the present branch.
-    decided: Vec<Option<ContactMode>>,
+    decided: Vec<Option<PointMode>>,
     rates: Vec<Rate>,
     doubtful: bool,
     leaves: usize,
@@ -262,7 +306,7 @@ impl Search<'_> {
     /// All points have their modes and the program has a point, or was not decided.
     fn cell(&mut self, feasible: bool) -> Explained {
         self.leaves += 1;
-        let modes: Vec<ContactMode> = self.decided.iter().map(|mode| mode.unwrap_or_default()).collect();
+        let modes: Vec<PointMode> = self.decided.iter().map(|mode| mode.unwrap_or(PointMode::Stick)).collect();
         let found = if feasible { self.rate_of_cell(&modes) } else { None };
         match found {
             Some(rate) => add(&mut self.rates, rate),
@@ -271,20 +315,18 @@ impl Search<'_> {
         (ModeTree::Rate(modes), (0..self.choices.len()).collect())
     }
 
-    fn rate_of_cell(&self, modes: &[ContactMode]) -> Option<Rate> {
+    fn rate_of_cell(&self, modes: &[PointMode]) -> Option<Rate> {
         let n = self.lcp.facets.len();
-        let factor = self.program.factor;
-        if factor != 0.0
-            && let Some(rate) = self.problem.exactly(modes.to_vec(), factor)
-        {
-            return Some(rate);
-        }
+        let (factor, problem) = (self.program.factor, self.problem);
         let size = if factor == 0.0 { 1.0 } else { self.program.size };
         let z: Vec<f64> = (n..2 * n).map(|x| self.dictionary.value(x).max(0.0) * size).collect();
-        let gaps = gaps_of(self.problem, self.lcp, &z, factor, false);
-        let near = if factor == 0.0 { self.problem.mechanism_near(modes, &gaps) } else { None };
-        let rate = near.unwrap_or_else(|| Rate { factor, modes: modes.to_vec(), gaps });
-        let leads_on = factor != 0.0 || self.problem.leads_on(&rate);
-        (leads_on && self.problem.admits(&rate)).then_some(rate)
+        let gaps = gaps_of(problem, self.lcp, &z, factor, false);
+        let points = problem.points.iter().zip(modes).zip(&gaps);
+        let modes: Vec<ContactMode> = points.map(|((point, mode), gap)| contact_mode(point, *mode, *gap)).collect();
+        let exact =
+            if factor == 0.0 { problem.mechanism_near(&modes, &gaps) } else { problem.exactly(modes.clone(), factor) };
+        let rate = exact.unwrap_or(Rate { factor, modes, gaps });
+        let leads_on = factor != 0.0 || problem.leads_on(&rate);
+        (leads_on && problem.admits(&rate)).then_some(rate)
     }
 }

@@ -3,19 +3,20 @@
 use super::*;
 use crate::contact::facet::dot;
 use crate::rate::proof::{ModeTree, NoRate};
-use crate::rate::tree::search;
+use crate::rate::tree::{point_modes, search};
+use voussoir_core::path::{FarkasVector, ModeTree as CertifiedTree, PointMode};
 
-/// Checks a proof; panics if it does not hold. Points that are open with a strength are not covered.
+/// Checks a proof; panics if it does not hold.
 pub fn check(problem: &RateProblem, proof: &NoRate) {
     walk(problem, proof, &proof.tree, &mut vec![None; problem.points.len()]);
 }
 
-fn walk(problem: &RateProblem, proof: &NoRate, tree: &ModeTree, modes: &mut Vec<Option<ContactMode>>) {
+fn walk(problem: &RateProblem, proof: &NoRate, tree: &ModeTree, modes: &mut Vec<Option<PointMode>>) {
     match tree {
         ModeTree::Point { point, modes: children } => {
             assert!(modes[*point].is_none());
-            let all: Vec<ContactMode> = children.iter().map(|child| child.0).collect();
-            assert_eq!(all, problem.points[*point].candidates());
+            let all: Vec<PointMode> = children.iter().map(|child| child.0).collect();
+            assert_eq!(all, point_modes(&problem.points[*point]));
             for (mode, child) in children {
                 modes[*point] = Some(*mode);
                 walk(problem, proof, child, modes);
@@ -27,7 +28,7 @@ fn walk(problem: &RateProblem, proof: &NoRate, tree: &ModeTree, modes: &mut Vec<
     }
 }
 
-fn contradicts(problem: &RateProblem, proof: &NoRate, y: &[f64], modes: &[Option<ContactMode>]) {
+fn contradicts(problem: &RateProblem, proof: &NoRate, y: &[f64], modes: &[Option<PointMode>]) {
     let rows = &proof.rows;
     let facet = |i: usize| &problem.points[rows[i].0].facets[rows[i].1];
     let block = |i: usize, j: usize, v: [f64; 2]| {
@@ -41,10 +42,12 @@ fn contradicts(problem: &RateProblem, proof: &NoRate, y: &[f64], modes: &[Option
     assert!(size > 0.0 && work >= 0.0);
     for (j, (k, f)) in rows.iter().enumerate() {
         // The mode of its point sets w_j or z_j to zero.
-        let flows = modes[*k].map(|mode| mode == ContactMode::Open || mode.flows_on(*f));
+        let flows = modes[*k].map(|mode| mode == PointMode::Vertex || mode == PointMode::Facet(*f));
+        let open = problem.points[*k].open == Some(*f);
         let of_z = -(0..rows.len()).map(|i| y[i] * dot(facet(i).normal, block(i, j, facet(j).flow))).sum::<f64>()
             - work * dot(facet(j).flow, load(j));
-        assert!(flows == Some(true) || y[j] >= -1e-9 * size, "w of {j}: {} of {size}", y[j]);
+        assert!(open || flows == Some(true) || y[j] >= -1e-9 * size, "w of {j}: {} of {size}", y[j]);
+        assert!(!open || of_z <= 1e-9 * size, "free z of {j}: {of_z} of {size}");
         assert!(flows == Some(false) || of_z >= -1e-9 * size, "z of {j}: {of_z} of {size}");
         right -= proof.factor * y[j] * dot(facet(j).normal, load(j));
     }
@@ -144,4 +147,53 @@ fn a_neutral_mechanism_is_excluded_by_the_work_of_the_load() {
     let found = search(&case.problem, 0.0, 100, &mut 0);
     assert!(found.rates.is_empty());
     check(&case.problem, &found.proof.expect("complete"));
+}
+
+/// In the form of the certificate a leaf has α·s < 0 and β = −Sᵀα, over the contact points of the structure.
+#[test]
+fn a_certified_tree_names_contact_points() {
+    let laws = dry(0.5, 0.0);
+    #[rustfmt::skip]
+    let s = [
+        10.0, 2.5, 0.0, 1.0,
+        2.5, 1.0, 0.0, 0.0,
+        0.0, 0.0, 10.0, 2.5,
+        0.0, 0.0, 2.5, 1.0,
+    ];
+    let case = Case::slipping(&laws, 2, &s, &[0.0, 1.0, 0.0, 1.0]);
+    let proof = search(&case.problem, 1.0, 100, &mut 0).proof.expect("complete");
+    let vector = |alpha: &[[f64; 2]]| {
+        let alpha = DVector::from_iterator(4, alpha.iter().flatten().copied());
+        assert!(alpha.dot(&case.problem.load_rate) < 0.0);
+        let beta = -case.problem.s.tr_mul(&alpha);
+        FarkasVector { equilibrium: Vec::new(), gap: beta.as_slice().chunks(2).map(|b| [b[0], b[1]]).collect() }
+    };
+    let tree = proof.certified(&case.problem, &[7, 9], &vector).expect("a tree");
+    assert_eq!(tree.leaves(100), proof.tree.leaves());
+    if let CertifiedTree::Split { contact, .. } = tree {
+        assert!([7, 9].contains(&contact));
+    }
+}
+
+/// A point that is open with a tensile strength has a multiplier of any sign: its row is kept.
+#[test]
+fn an_open_point_with_strength_keeps_its_row() {
+    let laws = [vec![Facet::opening(0.4)], Facet::friction(0.5, 1.0, 0.0).to_vec()].concat();
+    #[rustfmt::skip]
+    let s = [
+        10.0, 2.5, 0.5, 0.0,
+        2.5, 1.0, 0.0, 0.0,
+        0.5, 0.0, 3.0, 0.0,
+        0.0, 0.0, 0.0, 1.0,
+    ];
+    let mut case = Case::new(&laws, &[(&[1], [1.0, 0.5]), (&[0], [-0.4, 0.0])], &s, &[0.0, 1.0, 0.0, 0.0])
+        .arriving(0, ContactMode::Stick, true)
+        .arriving(1, ContactMode::Facet(0), false);
+    case.problem.points[1].open = Some(0);
+    let answer = case.answer();
+    let proof = answer.none_rises.expect("a proof");
+    assert_eq!(proof.rows, [(0, 1), (1, 0)]);
+    check(&case.problem, &proof);
+    let Continuation::Goes { rate, .. } = answer.continuation else { panic!() };
+    assert!(rate.factor == -1.0 && rate.modes[0] == SLIP && case.problem.admits(&rate));
 }
