@@ -15,6 +15,8 @@ use voussoir_core::law::{Facet, FacetMode};
 
 /// Relative tolerance of what pivoting finds.
 pub const PIVOTING: f64 = 1e-7;
+/// Share of the greatest diagonal entry of M up to which another one is rounding.
+const ROUNDING: f64 = 1e-10;
 /// Facets above which it is not pivoted.
 const MOST: usize = 900;
 
@@ -102,8 +104,9 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
         q += &onto * multipliers.column(n);
     }
     let largest = m.diagonal().amax();
-    let least = if largest > 0.0 { 1e-12 * largest } else { 1.0 };
-    let unit: Vec<f64> = m.diagonal().iter().map(|d| d.abs().max(least).sqrt()).collect();
+    // A diagonal entry that is rounding is no unit.
+    let scale = |d: f64| if d > ROUNDING * largest { d.sqrt() } else { largest.max(1e-300).sqrt() };
+    let unit: Vec<f64> = m.diagonal().iter().map(|d| scale(d.abs())).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
     let constant = DVector::from_fn(n, |i, _| q[i] / unit[i]);
     Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant }, free: Free { facets: opened, multipliers, rows } })

@@ -45,14 +45,12 @@ pub enum RateOutcome {
     Undecided(usize),
 }
 
-/// Share of a singular value below which a combination of modes is a mechanism.
+/// Pivot, in the units of the points, up to which a combination of modes is a mechanism.
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
 pub const INEQUALITY: f64 = 1e-10;
 /// Share of the forces of closed points on a moving support below which forces are not compared with themselves.
 const CANCELLED: f64 = 0.1;
-/// Unknowns above which linear algebra is that of large systems.
-const LARGE: usize = 30;
 
 /// The rate problem: ṙ = `s` ġ + `load_rate` λ̇ over the points.
 #[derive(Debug)]
@@ -130,42 +128,29 @@ impl RateProblem<'_> {
     pub fn attempt(&self, modes: &[ContactMode], factor: f64) -> Option<Attempt> {
         let (flows, rows) = self.flows_and_rows(modes);
         let n = flows.len();
-        let mut singular = false;
-        let scaled: Vec<f64> = if n == 0 {
-            Vec::new()
+        if n == 0 {
+            return self.completed(&flows, &[], factor, false);
+        }
+        let lu = self.matrix(&flows, &rows).full_piv_lu();
+        let u = lu.u();
+        let singular = match u.diagonal().iter().filter(|pivot| pivot.abs() <= SINGULAR).count() {
+            0 => false,
+            1 => true,
+            _ => return None,
+        };
+        let solved = if singular {
+            // The null vector: the last unknown, in the order of the pivots, is one.
+            let last = u.view((0, n - 1), (n - 1, 1)) * -1.0;
+            let mut null = u.view((0, 0), (n - 1, n - 1)).solve_upper_triangular(&last)?.resize_vertically(n, 1.0);
+            lu.q().inv_permute_rows(&mut null);
+            null
         } else {
-            let matrix = self.matrix(&flows, &rows);
-            let right = DVector::from_fn(n, |i, _| {
+            lu.solve(&DMatrix::from_fn(n, 1, |i, _| {
                 let (k, a) = &rows[i];
                 -(a[0] * self.load_rate[2 * k] + a[1] * self.load_rate[2 * k + 1]) * factor
-            });
-            if n > LARGE {
-                let lu = matrix.lu();
-                let solved: Vec<f64> = lu.solve(&right)?.iter().copied().collect();
-                let pivots = lu.u().diagonal().abs();
-                if pivots.min() <= SINGULAR * 1e-3 * pivots.max() {
-                    return None;
-                }
-                return self.completed(&flows, &solved, factor, false);
-            }
-            let svd = matrix.svd(true, true);
-            let (u, v_t) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
-            let null = svd.singular_values.iter().filter(|s| **s <= SINGULAR).count();
-            match null {
-                0 => {
-                    let projected = u.transpose() * right;
-                    let weighted = DVector::from_fn(n, |i, _| projected[i] / svd.singular_values[i]);
-                    (v_t.transpose() * weighted).iter().copied().collect()
-                }
-                1 => {
-                    singular = true;
-                    let least = svd.singular_values.imin();
-                    v_t.row(least).iter().copied().collect()
-                }
-                _ => return None,
-            }
+            }))?
         };
-        self.completed(&flows, &scaled, factor, singular)
+        self.completed(&flows, solved.as_slice(), factor, singular)
     }
 
     /// Gaps, forces and unknowns of an attempt from the scaled unknowns.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::optimise::lcg::Lcg;
 use crate::rate::enumerate::enumerate_modes;
+use crate::rate::tree::search;
 
 /// A random structure; points are at the apex or pressed and about to slip, the first two in the event.
 pub fn case<'a>(laws: &'a [Facet], count: usize, random: &mut Lcg, number: usize) -> Case<'a> {
@@ -69,4 +70,63 @@ fn answers_agree_with_every_combination() {
         kinds[found.map_or(3, |factor| (factor + 1) as usize)] += 1;
     }
     assert!(kinds[2] > 100 && kinds[0] > 5 && kinds[3] > 5, "{kinds:?}");
+}
+
+/// Mirror-symmetric structures have equal pivots and singular values in pairs: their problems are decided all the same.
+#[test]
+fn mirror_symmetric_problems_are_decided() {
+    let laws = dry(0.6, 0.0);
+    let mut random = Lcg::new(31);
+    for number in 0..60 {
+        let half = 1 + number % 3;
+        let (s, load) = mirrored(half, &mut random);
+        let active = |k: usize| match (number + k.min(2 * half - 1 - k)) % 3 {
+            0 => (&[0, 1, 2][..], [0.0; 2]),
+            _ if k < half => (&[1][..], [1.0, 0.6]),
+            _ => (&[2][..], [1.0, -0.6]),
+        };
+        let points: Vec<(&[usize], [f64; 2])> = (0..2 * half).map(active).collect();
+        let mut case = Case::new(&laws, &points, s.as_slice(), load.as_slice());
+        case = case.arriving(0, ContactMode::Stick, true).arriving(2 * half - 1, ContactMode::Stick, true);
+        if let Continuation::Open(why) = case.answer().continuation {
+            panic!("{number}: {why}");
+        }
+        for factor in [1.0, -1.0] {
+            assert_eq!(search(&case.problem, factor, 10_000, &mut 0).open, None, "{number}");
+        }
+    }
+}
+
+/// S and s of a structure that its mirror image equals: tangential rates change their sign.
+fn mirrored(half: usize, random: &mut Lcg) -> (DMatrix<f64>, DVector<f64>) {
+    let n = 4 * half;
+    let image = |i: usize| (n - 2 - i / 2 * 2 + i % 2, if i % 2 == 0 { 1.0 } else { -1.0 });
+    let root = DMatrix::from_fn(n, n, |_, _| random.next());
+    let s = &root * root.transpose();
+    let push = DVector::from_fn(n, |_, _| random.next());
+    let both = |i: usize, j: usize| {
+        let ((k, a), (l, b)) = (image(i), image(j));
+        s[(i, j)] + a * b * s[(k, l)]
+    };
+    (DMatrix::from_fn(n, n, both), DVector::from_fn(n, |i, _| push[i] + image(i).1 * push[image(i).0]))
+}
+
+/// A stiffness that is rounding makes a mechanism: the load does work on it, and none rises.
+#[test]
+fn a_stiffness_that_is_rounding_is_none() {
+    let laws = dry(0.6, 0.0);
+    #[rustfmt::skip]
+    let s = [
+        6.6e-16, -9.3e-15, -3.0e-15, 5.6e-15,
+        -9.3e-15, 1.8, -5.8e-5, -1.7e-4,
+        -3.0e-15, -5.8e-5, 0.92, 2.2e-8,
+        5.6e-15, -1.7e-4, 2.2e-8, 2.45,
+    ];
+    let case = Case::new(&laws, &[(&[0, 1, 2], [0.0; 2]), (&[1], [1.0, 0.6])], &s, &[-0.0323, 6.2e-4, -5.9e-3, 3.9e-4])
+        .arriving(0, ContactMode::Stick, true)
+        .arriving(1, SLIP, false);
+    let answer = case.answer();
+    let Continuation::Goes { rate, .. } = answer.continuation else { panic!("{answer:?}") };
+    assert!(rate.factor == 0.0 && rate.modes[0] == ContactMode::Open, "{rate:?}");
+    assert!(answer.none_rises.is_some());
 }
