@@ -45,7 +45,7 @@ struct Free {
     facets: Vec<(usize, usize)>,
     /// By the pairs' z and, last, by λ̇.
     multipliers: DMatrix<f64>,
-    /// Multipliers of their rows by those of the pairs' rows.
+    /// Multipliers of their rows by the multipliers of the pairs' rows.
     rows: DMatrix<f64>,
 }
 
@@ -64,8 +64,8 @@ impl RateLcp {
         [&self.facets[..], &self.free.facets].concat()
     }
 
-    /// Multipliers of the rows of eliminated multipliers by those of the pairs, so that the sum does not contain the
-    /// eliminated multipliers.
+    /// Multipliers of the eliminated rows, so that the sum with multipliers y of the pairs' rows does not contain the
+    /// eliminated variables.
     pub fn eliminated_rows(&self, y: &[f64]) -> Vec<f64> {
         (&self.free.rows * DVector::from_column_slice(y)).iter().copied().collect()
     }
@@ -105,7 +105,8 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     }
     let largest = m.diagonal().amax();
     // A diagonal entry that is rounding is no unit.
-    let scale = |d: f64| if d > ROUNDING * largest { d.sqrt() } else { largest.max(1e-300).sqrt() };
+    let common = if largest > 0.0 { largest } else { 1.0 };
+    let scale = |d: f64| if d > ROUNDING * largest { d.sqrt() } else { common.sqrt() };
     let unit: Vec<f64> = m.diagonal().iter().map(|d| scale(d.abs())).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
     let constant = DVector::from_fn(n, |i, _| q[i] / unit[i]);

@@ -5,6 +5,9 @@ use super::problem::{Rate, RateProblem};
 /// Real eigenvalue of AᵀSD, relative to the greatest entry, above which it is not negative.
 const NEGATIVE: f64 = -1e-9;
 
+/// Second-order energy relative to the greatest stiffness up to which it is rounding.
+const ROUNDING: f64 = 1e-9;
+
 impl RateProblem<'_> {
     /// Euclidean norm of the gap rates in the units of the points.
     pub fn step(&self, rate: &Rate) -> f64 {
@@ -12,10 +15,14 @@ impl RateProblem<'_> {
         rate.gaps.iter().enumerate().map(size).sum::<f64>().sqrt()
     }
 
-    /// Second-order energy ½ ġ·S ġ at a held load, per unit step squared.
+    /// Second-order energy ½ ġ·S ġ at a held load, per unit step squared. It is zero if it is rounding: a mechanism.
     pub fn second_order_energy(&self, rate: &Rate) -> f64 {
         let gaps = nalgebra::DVector::from_iterator(self.s.nrows(), rate.gaps.iter().flatten().copied());
-        0.5 * gaps.dot(&(&self.s * &gaps)) / self.step(rate).powi(2).max(1e-300)
+        let energy = gaps.dot(&(&self.s * &gaps));
+        if energy.abs() <= ROUNDING * self.s.amax() * gaps.norm_squared() {
+            return 0.0;
+        }
+        0.5 * energy / self.step(rate).powi(2).max(1e-300)
     }
 
     /// True if a rate is stable while the load point or the settlement is held.

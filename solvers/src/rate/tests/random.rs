@@ -100,7 +100,7 @@ fn mirror_symmetric_problems_are_decided() {
 /// S and s of a structure that its mirror image equals: tangential rates change their sign.
 fn mirrored(half: usize, random: &mut Lcg) -> (DMatrix<f64>, DVector<f64>) {
     let n = 4 * half;
-    let image = |i: usize| (n - 2 - i / 2 * 2 + i % 2, if i % 2 == 0 { 1.0 } else { -1.0 });
+    let image = |i: usize| (n - 2 - i / 2 * 2 + i % 2, if i.is_multiple_of(2) { 1.0 } else { -1.0 });
     let root = DMatrix::from_fn(n, n, |_, _| random.next());
     let s = &root * root.transpose();
     let push = DVector::from_fn(n, |_, _| random.next());

@@ -150,3 +150,18 @@ fn three_points_have_two_twins() {
     assert_eq!((rate.factor, twins.len()), (1.0, 2));
     assert_eq!(rate.modes.iter().filter(|mode| **mode == SLIP).count(), 1);
 }
+
+/// Two blocks may slide, each alone or both: mechanisms without dissipation and without energy are twins.
+#[test]
+fn mechanisms_without_resistance_are_twins() {
+    let laws = dry(1e-12, 0.0);
+    let s = tangential(2, 0.0, |_, _| 0.0);
+    let mut case = Case::slipping(&laws, 2, &s, &[0.0, 1.0, 0.0, 1.0]).arriving(0, ContactMode::Stick, true).arriving(
+        1,
+        ContactMode::Stick,
+        true,
+    );
+    case.arrival.points.iter_mut().for_each(|point| point.force = [1.0, 0.0]);
+    let (rate, twins) = case.goes();
+    assert!(rate.factor == 0.0 && !twins.is_empty(), "{rate:?} {twins:?}");
+}
