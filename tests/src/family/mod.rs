@@ -144,6 +144,19 @@ impl FamilyScene {
         self
     }
 
+    /// The scene with rigid blocks on compliant joints without slip, and finite displacements.
+    pub fn on_springs(mut self) -> FamilyScene {
+        (self.law, self.finite) = (Law::Stuck, true);
+        self.stiffness = self.stiffness.or_else(|| self.moduli.first().map(|modulus| [*modulus, 0.5 * modulus]));
+        self.moduli.clear();
+        self
+    }
+
+    /// Returns true if all loads are forces at points.
+    pub fn has_point_loads(&self) -> bool {
+        self.loads.iter().all(|load| matches!(load, Load::Point { .. }))
+    }
+
     /// The scene with small displacements.
     pub fn small(self) -> FamilyScene {
         FamilyScene { finite: false, ..self }

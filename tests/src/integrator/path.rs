@@ -4,6 +4,7 @@ use super::balance::{Balance, Loads, balance, load_rate};
 use super::law::{Memory, Mode};
 use super::scene::Scene;
 use nalgebra::{DMatrix, DVector};
+use std::collections::VecDeque;
 
 /// Largest unbalanced force, by the weight.
 const TOLERANCE: f64 = 1e-11;
@@ -19,8 +20,26 @@ const LOAD_LENGTH: f64 = 0.01;
 const STEP_ERROR: f64 = 3e-10;
 /// Longest step in which a contact point takes another mode.
 const EVENT_STEP: f64 = 1e-5;
+/// Searches at a corner, one after the other: forces by the weight within which a point is at the edge of its mode, the
+/// length of the steps that confirm, the cosine between rate and step, and combinations of modes.
+const SEARCHES: [Search; 3] = [
+    Search { edge: 1e-5, length: 20.0 * TURNING_STEP, straight: 0.99, combinations: 400 },
+    Search { edge: 1e-4, length: 200.0 * TURNING_STEP, straight: 0.95, combinations: 2000 },
+    Search { edge: 1e-3, length: 2000.0 * TURNING_STEP, straight: 0.9, combinations: 4000 },
+];
+/// Least distance to the earlier state that identifies unloading.
+const LENGTH_BEHIND: f64 = 40.0 * TURNING_STEP;
 /// Steps of a path.
 const STEPS: usize = 12_000;
+
+/// A search for continuations at a corner.
+#[derive(Debug, Clone, Copy)]
+struct Search {
+    edge: f64,
+    length: f64,
+    straight: f64,
+    combinations: usize,
+}
 
 /// A state of equilibrium.
 #[derive(Debug, Clone)]
@@ -192,10 +211,15 @@ impl Path<'_> {
 
     /// The directions in which equilibrium continues from a corner: rates for all modes of the
     /// points at the edge of theirs, each confirmed by a step.
-    fn continuations(&self, previous: &State, state: &State, along: &DVector<f64>) -> Vec<(f64, State)> {
+    fn continuations(
+        &self,
+        (previous, state): (&State, &State),
+        along: &DVector<f64>,
+        search: Search,
+    ) -> Vec<(f64, State)> {
         let (at, rate) = self.balance(&state.x, &state.memory, None);
         let modes: Vec<Mode> = (0..at.points.len()).map(|k| state.mode[k]).collect();
-        let edges = self.edges(state);
+        let edges = self.edges(state, search);
         let mut found: Vec<(f64, State, DVector<f64>)> = Vec::new();
         let mut counter = vec![0; edges.len()];
         loop {
@@ -207,7 +231,7 @@ impl Path<'_> {
             if let Some(direction) = self.bordered(&forced, &rate, along).lu().solve(&right) {
                 for sense in [1.0, -1.0] {
                     let direction = direction.normalize() * sense;
-                    self.confirm((previous, state), &direction, &mut found);
+                    self.confirm((previous, state), &direction, search, &mut found);
                 }
             }
             let Some(next) = (0..edges.len()).find(|&k| counter[k] + 1 < edges[k].1.len()) else { break };
@@ -221,14 +245,22 @@ impl Path<'_> {
         &self,
         (previous, state): (&State, &State),
         direction: &DVector<f64>,
+        search: Search,
         found: &mut Vec<(f64, State, DVector<f64>)>,
     ) {
-        let length = 20.0 * TURNING_STEP;
-        let Some((next, _)) = self.step(state, direction, length) else { return };
+        let Some((next, _)) = self.step(state, direction, search.length) else { return };
         let moved = (&next.x - &state.x).normalize();
         let back = (&previous.x - &state.x).normalize();
-        if moved.dot(direction) < 0.99 || moved.dot(&back) > 0.99 || self.existed_before(previous, &moved) {
+        if moved.dot(&back) > 0.99 || self.existed_before(previous, &moved) {
             return;
+        }
+        // If another event lies within the step, the next step is straight.
+        if moved.dot(direction) < search.straight {
+            let second = self.step(&next, &moved, search.length);
+            let goes_on = second.is_some_and(|(end, _)| (&end.x - &next.x).normalize().dot(&moved) > search.straight);
+            if !goes_on {
+                return;
+            }
         }
         if found.iter().all(|(_, _, other)| other.dot(&moved) < 0.99) {
             found.push((self.dissipated(state, &next), next, moved));
@@ -248,8 +280,8 @@ impl Path<'_> {
     }
 
     /// Contact points at the edge of their mode, with the modes that they may take.
-    fn edges(&self, state: &State) -> Vec<(usize, Vec<Mode>)> {
-        let small = 1e-5 * self.scene.weight;
+    fn edges(&self, state: &State, search: Search) -> Vec<(usize, Vec<Mode>)> {
+        let small = search.edge * self.scene.weight;
         let mut all: Vec<(f64, usize, Vec<Mode>)> = Vec::new();
         for (index, contact) in self.scene.contacts.iter().enumerate() {
             let [normal, shear] = state.force[index];
@@ -267,7 +299,7 @@ impl Path<'_> {
         let mut combinations = 1;
         let fits = |edge: &(f64, usize, Vec<Mode>)| {
             combinations *= edge.2.len();
-            combinations <= 400
+            combinations <= search.combinations
         };
         all.into_iter().take_while(fits).map(|(_, index, modes)| (index, modes)).collect()
     }
@@ -289,12 +321,20 @@ impl Path<'_> {
                 *length *= 0.4;
                 continue;
             }
-            let mut ways = self.continuations(previous, state, along);
-            ways.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let forks = ways.len();
-            let next = match ways.into_iter().next() {
-                Some((_, next)) => next,
-                None => self.longer_step((previous, state), along)?,
+            let ways_of = |search| {
+                let mut ways = self.continuations((previous, state), along, search);
+                ways.sort_by(|a, b| b.0.total_cmp(&a.0));
+                (!ways.is_empty()).then_some(ways)
+            };
+            let (forks, next) = match ways_of(SEARCHES[0]) {
+                Some(ways) => (ways.len(), ways.into_iter().next()?.1),
+                None => match self.longer_step((previous, state), along) {
+                    Some(next) => (0, next),
+                    None => {
+                        let ways = SEARCHES[1..].iter().find_map(|search| ways_of(*search))?;
+                        (ways.len(), ways.into_iter().next()?.1)
+                    }
+                },
             };
             let moved = (&next.x - &state.x).normalize();
             *length = 20.0 * TURNING_STEP;
@@ -447,6 +487,8 @@ struct Position {
 
 /// A path while it is followed.
 struct Run {
+    /// The states since `previous`.
+    trail: VecDeque<State>,
     previous: State,
     state: State,
     along: DVector<f64>,
@@ -462,6 +504,7 @@ struct Run {
 impl Run {
     fn new(state: State, along: DVector<f64>, longest: f64) -> Run {
         Run {
+            trail: VecDeque::new(),
             previous: state.clone(),
             state,
             along,
@@ -481,7 +524,12 @@ impl Run {
     }
 
     fn take(&mut self, advance: Advance) {
-        self.previous = std::mem::replace(&mut self.state, advance.next);
+        self.trail.push_back(std::mem::replace(&mut self.state, advance.next));
+        let far = |state: &State, from: &State| (&state.x - &from.x).norm() >= LENGTH_BEHIND;
+        while self.trail.len() > 1 && far(&self.trail[1], &self.state) {
+            self.trail.pop_front();
+        }
+        self.previous = self.trail[0].clone();
         self.along = advance.moved;
         self.steps += 1;
     }

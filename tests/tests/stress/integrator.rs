@@ -3,6 +3,8 @@
 //! ```sh
 //! CASES=60 FIRST=0 cargo test --release -p voussoir-tests --test stress -- --ignored --nocapture integrator_of_many
 //! ```
+//!
+//! `FLOW=associated` gives all scenes associated friction.
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
@@ -15,14 +17,21 @@ use voussoir_tests::{first_case, keep};
 const SAME_LOAD: f64 = 1e-5;
 /// Longest step of the integrator.
 const LONGEST_STEP: f64 = 1e-3;
+/// Relative difference of two loads at which a joint is lost: the integrator asks after each step whether it is.
+const JOINT_LOST: f64 = 1e-3;
 /// Maxima behind which the load falls by a smaller share of itself are not compared.
 const SMALLEST_FALL: f64 = 1e-7;
 
 /// The outcome of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Outcome {
+    /// The greatest load is a maximum behind which the integrator falls.
     Agrees,
+    /// The integrator ends at the greatest load without a step behind it.
+    AgreesUpToItsEnd,
     FirstPeakDiffers,
+    /// The load rises until a joint is lost; the program ends at this load, open or with a limit point.
+    JointLost,
     ProgramOpen,
     ProgramStalled,
     IntegratorLost,
@@ -31,6 +40,18 @@ enum Outcome {
 
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME_LOAD * a.abs().max(b.abs())
+}
+
+/// Returns true if the load falls behind the greatest maximum.
+fn falls_behind(found: &Found) -> bool {
+    let falls = |[load, fall]: &[f64; 2]| fall.is_finite() && *fall > SMALLEST_FALL * load.abs();
+    found.peaks.iter().any(|peak| same(peak[0], found.greatest) && falls(peak))
+}
+
+/// Returns true if the integrator loses a joint at its greatest load, and this load is near `load`.
+fn lost_together(found: &Found, load: f64) -> bool {
+    let near = (load - found.greatest).abs() <= JOINT_LOST * found.greatest.abs();
+    near && found.end == End::JointLost && !falls_behind(found)
 }
 
 /// Compares a result with the integrator's path.
@@ -43,15 +64,19 @@ fn compared(result: &CaseResult, found: Option<&Found>) -> Outcome {
             let first = found.peaks.iter().find(|[load, fall]| *fall > SMALLEST_FALL * load.abs());
             match (first, result.path.first_limit_point) {
                 (Some([one, _]), Some(other)) if !same(*one, other) => Outcome::FirstPeakDiffers,
-                _ => Outcome::Agrees,
+                _ if falls_behind(found) => Outcome::Agrees,
+                _ => Outcome::AgreesUpToItsEnd,
             }
         }
+        (Status::LimitPoint, Some(load)) if lost_together(found, load) => Outcome::JointLost,
         // A greater load of the integrator contradicts, wherever its path ends.
         (Status::Collapse | Status::LimitPoint, Some(load)) if load < found.greatest => Outcome::Contradicts,
         (Status::Collapse | Status::LimitPoint, Some(_)) => lost_or(Outcome::Contradicts),
         (Status::Open, _) => {
             let lower = result.bounds.and_then(|bounds| bounds[0]).unwrap_or(0.0);
-            if lower <= found.greatest * (1.0 + SAME_LOAD) {
+            if lost_together(found, lower) {
+                Outcome::JointLost
+            } else if lower <= found.greatest * (1.0 + SAME_LOAD) {
                 Outcome::ProgramOpen
             } else {
                 lost_or(Outcome::Contradicts)
@@ -62,8 +87,9 @@ fn compared(result: &CaseResult, found: Option<&Found>) -> Outcome {
 }
 
 /// The outcomes of a scene and of its mirror image, with a line for the table.
-fn outcomes(seed: u64) -> ([Outcome; 2], String) {
-    let scene = SmallScene::of_seed(seed);
+fn outcomes(seed: u64, associated: bool) -> ([Outcome; 2], String) {
+    let mut scene = SmallScene::of_seed(seed);
+    scene.associated = associated;
     let texts = [scene.study(""), scene.mirrored().study("")];
     let found = integrate(&first_case(&texts[0]), LONGEST_STEP);
     let mut line = format!("{seed} {}: ", scene.family);
@@ -84,8 +110,9 @@ fn outcomes(seed: u64) -> ([Outcome; 2], String) {
 #[test]
 fn integrator_of_some() {
     let found: Vec<_> = std::thread::scope(|scope| {
-        let work = [vec![2], vec![1, 20, 23]]
-            .map(|seeds: Vec<u64>| scope.spawn(move || seeds.into_iter().map(outcomes).collect::<Vec<_>>()));
+        let work = [vec![2], vec![1, 20, 23]].map(|seeds: Vec<u64>| {
+            scope.spawn(move || seeds.into_iter().map(|seed| outcomes(seed, false)).collect::<Vec<_>>())
+        });
         work.into_iter().flat_map(|part| part.join().expect("no panic")).collect()
     });
     for (outcomes, line) in found {
@@ -99,9 +126,10 @@ fn integrator_of_some() {
 fn integrator_of_many() {
     let number = |key: &str, default: u64| std::env::var(key).ok().and_then(|s| s.parse().ok()).unwrap_or(default);
     let first = number("FIRST", 0);
+    let associated = std::env::var("FLOW").is_ok_and(|flow| flow == "associated");
     let mut counts = std::collections::BTreeMap::new();
     for seed in first..first + number("CASES", 60) {
-        let (outcomes, line) = outcomes(seed);
+        let (outcomes, line) = outcomes(seed, associated);
         println!("{line}");
         outcomes.into_iter().for_each(|outcome| *counts.entry(outcome).or_insert(0) += 1);
     }

@@ -3,6 +3,7 @@
 mod bridges;
 mod cap;
 mod conic;
+mod energy;
 mod extremes;
 mod families;
 mod imperfections;
