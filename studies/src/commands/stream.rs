@@ -31,6 +31,8 @@ struct Tally {
     certified: usize,
     statuses: BTreeMap<&'static str, usize>,
     least: Option<(f64, String)>,
+    /// Cases whose first limit point is not their load factor.
+    snapping: usize,
 }
 
 impl Tally {
@@ -38,6 +40,7 @@ impl Tally {
         self.count += 1;
         self.certified += usize::from(case.certificate.passed);
         *self.statuses.entry(status_word(case.status)).or_default() += 1;
+        self.snapping += usize::from(case.snaps_from().is_some());
         let Some(factor) = case.load_factor.filter(|_| case.status != Status::Unbounded) else { return };
         if self.least.as_ref().is_none_or(|(least, _)| factor < *least) {
             let swept = case.label.parameters.iter().map(|(key, value)| format!(", {key} = {}", format_value(value)));
@@ -52,6 +55,12 @@ impl Tally {
         text += &format!("; {} certified\n", self.certified);
         if let Some((factor, place)) = &self.least {
             text += &format!("least load factor: {} ({place})\n", format_number(*factor, 7));
+        }
+        if self.snapping > 0 {
+            text += &format!(
+                "{} snap before they reach their load factor: first_limit_point in results.csv\n",
+                self.snapping
+            );
         }
         text
     }

@@ -1,7 +1,7 @@
 //! The figure of a comparison: for each scene the ratios of all variants to the reference.
 
 use super::axes::{Axis, COLOURS, Canvas};
-use super::format::{format_number, status_word};
+use super::format::{format_number, snap_words, status_word};
 use super::text_layout::{text_width, wrapped};
 use crate::results::{Comparison, ComparisonCell, ComparisonRow};
 use crate::study::SweptKeys;
@@ -162,9 +162,15 @@ pub fn comparison_svg(study: &str, comparison: &Comparison, keys: &SweptKeys) ->
 /// The load factor of the reference, and what variants without a collapse say.
 fn row_remarks(comparison: &Comparison, row: &ComparisonRow) -> String {
     let reference = comparison.variants.iter().position(|variant| *variant == comparison.reference);
-    let base = reference
-        .and_then(|i| row.cells.get(i)?.load_factor)
-        .map(|x| format!("{} = {}", comparison.reference, format_number(x, 4)));
+    let base = reference.and_then(|i| {
+        let cell = row.cells.get(i)?;
+        let digits = |x: f64| format_number(x, 4);
+        let snaps = snap_words(cell.load_factor, cell.first_limit_point, digits);
+        snaps.map(|words| format!("{} {words}", comparison.reference)).or_else(|| {
+            let factor = cell.load_factor.map(digits)?;
+            Some(format!("{} = {factor}", comparison.reference))
+        })
+    });
     let others = row.cells.iter().zip(&comparison.variants).filter_map(|(cell, variant)| {
         let words = remark(cell);
         (!words.is_empty()).then(|| format!("{variant}: {words}"))

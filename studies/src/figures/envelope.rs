@@ -3,6 +3,7 @@
 use super::chart::chart_svg;
 use super::format::format_number;
 use super::series::{Marker, Series, Spot};
+use crate::results::other_limit_point;
 use crate::study::SweptKeys;
 use crate::writers::StudyOutput;
 use serde_json::Value as Json;
@@ -30,11 +31,29 @@ pub fn envelope_chart(study: &StudyOutput) -> Option<String> {
             spots.push(Spot { at: (x, y), kind: "worst place", marker: Marker::Dot, label });
         }
     }
+    let first: Vec<Series> =
+        series.iter().filter_map(|line| first_limit_points(&line.name, curve, &study.keys)).collect();
+    series.extend(first);
     series.retain(|line| !line.points.is_empty());
     let key = worsts.first().and_then(|worst| worst["parameter"].as_str());
     let label = key.map_or("place".into(), |key| study.keys.title(key));
     let title = format!("{}: load factor at collapse over the place of the load", study.name);
     (!series.is_empty()).then(|| chart_svg(&title, &label, "load factor at collapse [-]", &series, &[]))
+}
+
+/// The line of first limit points beside a line of load factors, if they differ at any place.
+fn first_limit_points(name: &str, curve: &[Json], keys: &SweptKeys) -> Option<Series> {
+    let number = |place: &Json, key: &str| place[key].as_f64();
+    let own: Vec<&Json> = curve.iter().filter(|place| line_name(place, keys) == name).collect();
+    let differs =
+        |place: &&&Json| other_limit_point(number(place, "result"), number(place, "first_limit_point")).is_some();
+    own.iter().find(differs)?;
+    let place = |place: &&Json| {
+        let first = number(place, "first_limit_point").or(number(place, "result"))?;
+        Some((number(place, "value")?, first))
+    };
+    let points = own.iter().filter_map(place).collect();
+    Some(Series { name: format!("{name}, first limit point"), points, spots: Some(Vec::new()), ..Series::default() })
 }
 
 /// Vehicle, way, variant and swept values of an entry.

@@ -3,7 +3,7 @@
 use super::displaced::displaced;
 use super::drawing::{extent, outline_width, supports};
 use super::envelope::line_name;
-use super::format::format_number;
+use super::format::{format_number, snap_words};
 use super::hinge_closure::close_hinges;
 use super::svg_canvas::SvgCanvas;
 use super::symbols::{LOAD, OUTLINE, STONE, Symbol};
@@ -118,7 +118,9 @@ fn surroundings(canvas: &mut SvgCanvas, assembly: &Assembly) {
 
 /// The load at one place, and how the blocks move there.
 fn frame(canvas: &mut SvgCanvas, place: &Place) {
-    let factor = place.case.load_factor.map_or("none".into(), |factor| format_number(factor, 4));
+    let digits = |factor: f64| format_number(factor, 4);
+    let snaps = snap_words(place.case.load_factor, place.case.path.first_limit_point, digits);
+    let factor = snaps.or(place.case.load_factor.map(digits)).unwrap_or_else(|| "none".into());
     canvas.last_title(&format!("x = {:.3} m, load factor at collapse: {factor}", place.value));
     let width = outline_width(canvas, place.assembly);
     canvas.outlines(place.moved.iter().map(Vec::as_slice), STONE, OUTLINE, width, "");

@@ -198,7 +198,11 @@ fn path_record(
     let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
     let entry = |(body, displacement)| DisplacementEntry { body: name(body), displacement };
     let (first, continuation) = (first_limit_point(&solved), limit_point_end(input.settings, problem, &solved));
-    let limit_points = limit_points(input.stages, problem, &solved.limit_points, history);
+    let mut limit_points = limit_points(input.stages, problem, &solved.limit_points, history);
+    if let Some(last) = limit_points.last_mut().filter(|_| continuation.is_some()) {
+        // The states just beyond the end of a path depend on the length of its last step.
+        (last.released_energy, last.next_state) = (None, None);
+    }
     let followed_to = followed_to(input.stages, problem, history);
     let branches = solved.branchings.iter().map(|branching| branch(input.stages, problem, branching)).collect();
     PathRecord {

@@ -138,6 +138,8 @@ fn until_first_limit_point_ends_where_load_control_ends() {
         }
         let listed = case["limit_points"].as_array().expect("limit points");
         assert_eq!(listed.len(), 1, "{word}");
+        // Nothing that follows belongs to the range.
+        assert!(listed[0]["released_energy"].is_null() && listed[0]["next_state"].is_null(), "{word}: {}", listed[0]);
     }
     assert_eq!(whole["continuation"], Value::Null, "a collapse has no reason to end at a limit point");
 }
@@ -162,6 +164,18 @@ fn a_chart_of_a_sweep_has_both_curves_if_they_differ() {
     assert!(both.contains("first limit point"), "no second curve");
     let alone = changed(RING, "until = \"collapse\"", "until = \"first_limit_point\"");
     assert!(!file(&run(&swept(&alone)), "figures/sweep.svg").contains("first limit point"));
+}
+
+#[test]
+fn an_envelope_has_both_numbers_and_both_curves() {
+    let search = "kind = \"envelope\"\nenvelope = { parameter = \"stages.1.loads.0.span_fraction\", from = 0.178, to = 0.1785, scan = 3, \
+                  tolerance = 0.5 }\n";
+    let output = run(&changed(RING, "name = \"ring\"\n", &format!("name = \"ring\"\n{search}")));
+    let results: Value = serde_json::from_str(&file(&output, "results.json")).expect("JSON");
+    let worst = &results["worsts"][0];
+    assert!(number(&worst["first_limit_point"]) < number(&worst["result"]), "{worst}");
+    assert!(output.table.contains("worst: carries"), "{}", output.table);
+    assert!(file(&output, "report.html").contains("first limit point"));
 }
 
 #[test]
