@@ -245,7 +245,6 @@ fn fuzzed_rate_problems_are_solved() {
             }
         }
     }
-    println!("{tallies:#?}");
     assert!(tallies.values().all(|tally| tally.unlike_enumeration.is_empty()), "{tallies:#?}");
     assert!(tallies.values().all(|tally| tally.at_once > 0 && 10 * tally.undecided <= tally.problems), "{tallies:#?}");
 }

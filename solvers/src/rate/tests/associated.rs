@@ -66,7 +66,6 @@ fn pivoting_decides_if_the_active_set_does_not() {
         let found = answer(&case.problem, &case.arrival, &Budget::default(), &mut counts);
         assert!(matches!(found.continuation, Continuation::Goes { .. }), "{seed}");
     }
-    println!("{:?}", counts.decided);
     assert!(counts.decided.contains_key(&Algorithm::Neighbours));
 }
 
