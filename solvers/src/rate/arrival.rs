@@ -2,7 +2,8 @@
 //!
 //! Two kinds of rates exist on every piece before its event, and prove nothing at the event:
 //!
-//! - *unloading*: λ falls, every point that slipped stops, and no point of the event changes its mode;
+//! - *unloading*: λ falls, and no point of the event takes a mode that the event makes possible: one that slipped and stops
+//!   could have stopped before, unless the event is the end of its slip;
 //! - *going back* on a piece that does not rise: λ rises, and no point of the event changes its mode.
 
 use super::problem::{Rate, RateProblem};
@@ -16,6 +17,8 @@ pub struct ArrivalPoint {
     pub mode: ContactMode,
     /// True if it is a point of the event.
     pub hit: bool,
+    /// True if the event is the end of its slip.
+    pub stops: bool,
     /// Its contact force at the event \[N\].
     pub force: [f64; 2],
 }
@@ -42,10 +45,11 @@ impl Arrival {
         }
         let sliding = |k: usize| slides(problem, k, self.points[k].mode);
         let each = || self.points.iter().zip(&rate.modes).enumerate();
-        let stops = each().all(|(k, (_, mode))| !sliding(k) || *mode == ContactMode::Stick);
         let kept = |k: usize, was: ContactMode, is: ContactMode| was == is || sliding(k) && is == ContactMode::Stick;
-        let old = each().all(|(k, (point, mode))| !point.hit || kept(k, point.mode, *mode));
-        let existed = if rate.factor < 0.0 { stops } else { rate.factor > 0.0 && self.factor <= 0.0 };
+        let old = each().all(|(k, (point, mode))| {
+            !point.hit || kept(k, point.mode, *mode) && !(point.stops && *mode == ContactMode::Stick)
+        });
+        let existed = rate.factor < 0.0 || (rate.factor > 0.0 && self.factor <= 0.0);
         !(existed && old)
     }
 

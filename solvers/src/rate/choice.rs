@@ -1,12 +1,11 @@
 //! The one rule that chooses if several rates continue.
 //!
 //! 1. The present modes, if they go on and are stable under control.
-//! 2. Otherwise the rates that are stable under control, or all rates if no rate is stable. Of these
-//!    - the one with the greatest dissipation per unit step, if any dissipates;
-//!    - otherwise the one with the least second-order energy per unit step.
+//! 2. Otherwise the rate with the greatest dissipation per unit step, if any dissipates.
+//! 3. Otherwise the rate with the least second-order energy per unit step.
 //!
-//! Rates within a relative 1e-6 are twins. A unit step has a Euclidean norm of gap rates of one, in units of √k with
-//! the stiffness k of each point.
+//! Rates within a relative 1e-6 are twins. A unit step has a length of one
+//! ([`RateProblem::step`](super::problem::RateProblem::step)).
 //!
 //! *Stable under control*: with the modes m of a rate, flows D and rows A, the matrix AᵀSD has no negative real
 //! eigenvalue (stable under load); or it has one, λ falls and the load point moves on (a softening branch that is
@@ -15,6 +14,7 @@
 use super::arrival::Arrival;
 use super::neighbours::forward_modes;
 use super::problem::{Rate, RateProblem};
+use crate::contact::mode::ContactMode;
 
 /// Relative difference up to which rates are twins.
 const TWINS: f64 = 1e-6;
@@ -26,23 +26,25 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     if rates.len() < 2 {
         return rates.into_iter().next().map(|rate| (rate, Vec::new()));
     }
-    let (stable, unstable): (Vec<Rate>, Vec<Rate>) =
-        rates.into_iter().partition(|rate| problem.stable_under_control(rate));
     let present = [arrival.modes(), forward_modes(problem, arrival)];
-    if let Some(rate) = present.iter().find_map(|modes| stable.iter().find(|rate| rate.modes == *modes)) {
+    let goes_on =
+        |modes: &Vec<ContactMode>| rates.iter().find(|rate| rate.modes == *modes && problem.stable_under_control(rate));
+    if let Some(rate) = present.iter().find_map(goes_on) {
         return Some((rate.clone(), Vec::new()));
     }
-    let pool = if stable.is_empty() { unstable } else { stable };
-    let dissipation: Vec<f64> = pool.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
+    // The present modes are unstable: another rate leads on, if there is one.
+    let (own, others): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(|rate| present.contains(&rate.modes));
+    let rates = if others.is_empty() { own } else { others };
+    let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
     let most = dissipation.iter().copied().fold(0.0, f64::max);
     let merit: Vec<f64> = if most > NO_DISSIPATION * force_size(problem, arrival) {
         dissipation
     } else {
-        pool.iter().map(|rate| -problem.second_order_energy(rate)).collect()
+        rates.iter().map(|rate| -problem.second_order_energy(rate)).collect()
     };
     let best = merit.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let size = merit.iter().fold(0.0, |a: f64, m| a.max(m.abs()));
-    let mut tied = pool.into_iter().zip(merit).filter(|(_, m)| best - m <= TWINS * size).map(|(rate, _)| rate);
+    let mut tied = rates.into_iter().zip(merit).filter(|(_, m)| best - m <= TWINS * size).map(|(rate, _)| rate);
     tied.next().map(|rate| (rate, tied.collect()))
 }
 

@@ -55,6 +55,7 @@ pub fn line_search(problem: &RateProblem, guess: &[ContactMode], trials: &mut u6
         load_rate: problem.load_rate.clone(),
         from_nothing: false,
         load_flexibility: problem.load_flexibility,
+        metric: None,
         settles: problem.settles,
     };
     let mut gaps = match softer.attempt(guess, 1.0) {

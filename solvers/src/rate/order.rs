@@ -26,10 +26,16 @@ impl<'a> Ordered<'a> {
         };
         original.sort_by(compare);
         let at = |i: usize| 2 * original[i / 2] + i % 2;
+        // λ̇ stays last.
+        let of = |i: usize| if i < 2 * n { at(i) } else { i };
         let ordered = RateProblem {
             points: original.iter().map(|k| problem.points[*k].clone()).collect(),
             s: DMatrix::from_fn(2 * n, 2 * n, |i, j| problem.s[(at(i), at(j))]),
             load_rate: DVector::from_fn(2 * n, |i, _| problem.load_rate[at(i)]),
+            metric: problem
+                .metric
+                .as_ref()
+                .map(|metric| DMatrix::from_fn(2 * n + 1, 2 * n + 1, |i, j| metric[(of(i), of(j))])),
             ..*problem
         };
         let points = original.iter().map(|k| arrival.points[*k]).collect();

@@ -66,6 +66,9 @@ pub struct RateProblem<'a> {
     pub from_nothing: bool,
     /// p·q̇ for a unit of λ̇ if all points are held; 0 if it is not known.
     pub load_flexibility: f64,
+    /// Products of the motions (and factors) of the structure for unit gap rates and, last, for λ̇ = 1: the square of the
+    /// length of a rate. If it is not known, gap rates measure a rate.
+    pub metric: Option<DMatrix<f64>>,
     /// Whether a support moves: then forces may stand still while λ goes on, and their rates are rounding of what
     /// cancels.
     pub settles: bool,

@@ -9,8 +9,14 @@ const NEGATIVE: f64 = -1e-9;
 const ROUNDING: f64 = 1e-9;
 
 impl RateProblem<'_> {
-    /// Euclidean norm of the gap rates in the units of the points.
+    /// Length of a rate: by the motions of the structure, or else the Euclidean norm of the gap rates in the units of the
+    /// points.
     pub fn step(&self, rate: &Rate) -> f64 {
+        if let Some(metric) = &self.metric {
+            let all = rate.gaps.iter().flatten().copied().chain([rate.factor]);
+            let v = nalgebra::DVector::from_iterator(metric.nrows(), all);
+            return v.dot(&(metric * &v)).max(0.0).sqrt();
+        }
         let size = |(k, gap): (usize, &[f64; 2])| self.points[k].stiffness * (gap[0] * gap[0] + gap[1] * gap[1]);
         rate.gaps.iter().enumerate().map(size).sum::<f64>().sqrt()
     }

@@ -363,8 +363,10 @@ pub(super) fn displacements(
 ) -> Vec<[f64; 3]> {
     let of_block = |block: usize| {
         let body = problem.body_of[block];
-        let u = carried(motion[body], problem.bodies[body].pole, assembly.inertia(block).centroid, finite);
-        [u.x, u.y, motion[body][2]]
+        // A path that has not begun has no motion.
+        let own = motion.get(body).copied().unwrap_or_default();
+        let u = carried(own, problem.bodies[body].pole, assembly.inertia(block).centroid, finite);
+        [u.x, u.y, own[2]]
     };
     (0..assembly.bodies.len()).map(of_block).collect()
 }

@@ -165,7 +165,9 @@ fn outcome(k: u64) -> Option<(Outcome, String)> {
 #[test]
 fn energy_of_some() {
     let found: Vec<_> = (0..6).filter_map(outcome).collect();
-    assert!(found.iter().filter(|(outcome, _)| *outcome == Outcome::Agrees).count() >= 3, "{found:?}");
+    // Energy ends earlier than some paths: there the first limit points agree.
+    let agrees = |outcome: &Outcome| matches!(outcome, Outcome::Agrees | Outcome::FirstAgrees);
+    assert!(found.iter().filter(|(outcome, _)| agrees(outcome)).count() >= 3, "{found:?}");
     assert!(found.iter().all(|(outcome, _)| *outcome != Outcome::Contradicts), "{found:?}");
 }
 

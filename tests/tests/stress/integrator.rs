@@ -116,7 +116,9 @@ fn integrator_of_some() {
         work.into_iter().flat_map(|part| part.join().expect("no panic")).collect()
     });
     for (outcomes, line) in found {
-        assert_eq!(outcomes, [Outcome::Agrees; 2], "{line}");
+        // The loads agree; the integrator may end without a step behind the greatest one.
+        let agrees = |outcome: &Outcome| matches!(outcome, Outcome::Agrees | Outcome::AgreesUpToItsEnd);
+        assert!(outcomes.iter().all(agrees), "{line}");
     }
 }
 

@@ -117,7 +117,8 @@ fn peaks_do_not_depend_on_the_strategy_or_the_side() {
     let turning = ["arc_length", "dissipation"];
     let near = "stop = { displacement = 1e-3 }";
     for (scene, peak, tolerance, strategies, stop) in [
-        (include_str!("peaks/137.toml"), 0.0687179, 1e-6, &all[..], ""),
+        // 0.0687179 by steps: under the symmetric dead load they let one springing stick and the other slide.
+        (include_str!("peaks/137.toml"), 0.0686854221, 1e-8, &all[..], ""),
         (include_str!("peaks/162.toml"), 0.6433313, 1e-8, &all, ""),
         (include_str!("peaks/158.toml"), 319.163, 5e-6, &turning, ""),
         (include_str!("peaks/167.toml"), 0.5891709, 1e-6, &all, near),

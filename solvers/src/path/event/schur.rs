@@ -68,6 +68,7 @@ impl<'a> SchurComplement<'a> {
             load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
             load_flexibility: 0.0,
+            metric: None,
             settles: load.settles,
         };
         Some(SchurComplement { rate, system, points, open: m, response, epsilon })

@@ -1,6 +1,7 @@
 //! What fixes a step: a factor, a continuation strategy, weighted gaps, or a mixed control.
 
 use super::state::State;
+use std::rc::Rc;
 use std::sync::Arc;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Continuation, Increment};
@@ -12,6 +13,8 @@ pub(super) enum Control {
     Factor(f64),
     /// c(increment) = length.
     Strategy { strategy: Arc<dyn Continuation>, previous: Option<Increment>, length: f64 },
+    /// Along a row over the scaled unknowns: row · (x − x_start) = length.
+    Along { row: Rc<Vec<f64>>, length: f64 },
     /// Weighted gaps.
     Gaps { local: LocalControl, length: f64 },
     /// weight × Δλ + the displacement that λ works on = length, in units (small displacements).

@@ -41,6 +41,9 @@ pub(super) fn control_row(
             add_by_motion(system, body, by_motion(system, state, body, point, direction), *by, &mut row);
         }
     }
+    if let Control::Along { row: along, .. } = control {
+        row.iter_mut().zip(along.iter()).for_each(|(row, value)| *row += value);
+    }
     if let Control::Gaps { local, .. } = control {
         by_gap.iter_mut().zip(&local.by_gap).for_each(|(w, local)| *w += local);
     }
@@ -151,6 +154,7 @@ pub(super) fn control_value(system: &StepSystem, start: &State, state: &State, c
             let c = strategy.constraint(&increment_between(system, start, state), previous.as_ref());
             (c.value - length, c)
         }
+        Control::Along { row, length } => (along(system, start, state, row) - length, Constraint::default()),
         Control::Gaps { local, length } => (local.value(start, state) - length, Constraint::default()),
         Control::Mixed { weight, length } => {
             let derivative = Increment { factor: *weight, ..Increment::default() };
@@ -159,6 +163,20 @@ pub(super) fn control_value(system: &StepSystem, start: &State, state: &State, c
             (value - length, Constraint { value, derivative })
         }
     }
+}
+
+/// row · (x − x_start) over the scaled motions and the scaled factor.
+fn along(system: &StepSystem, start: &State, state: &State, row: &[f64]) -> f64 {
+    let u = system.units();
+    let first = 2 * system.scaled.contacts;
+    let of_body = |(body, free): (usize, &Option<usize>)| -> f64 {
+        let Some(free) = free else { return 0.0 };
+        let unit = u.motion();
+        let moved = |k: usize| (state.motion[body][k] - start.motion[body][k]) / unit[k];
+        (0..3).map(|k| row[first + 3 * free + k] * moved(k)).sum()
+    };
+    let motions: f64 = system.scaled.free.iter().enumerate().map(of_body).sum();
+    motions + row[row.len() - 1] * (state.factor - start.factor) / u.factor
 }
 
 /// ∂Π/∂λ of differences of forces and motions, in units: p·Δq + g_p·Δr (small displacements).

@@ -124,7 +124,7 @@ pub(super) fn iterate(
 }
 
 /// Where the equations of an iteration are linearised: those of a place serve near it, as long as they take residuals down.
-struct LinearisedAt {
+pub(super) struct LinearisedAt {
     /// The place; `None` where the equations are always those of the state itself.
     place: Option<State>,
     /// Whether they are not those of the state itself.
@@ -132,8 +132,24 @@ struct LinearisedAt {
 }
 
 impl LinearisedAt {
+    /// For steps from a start.
+    pub(super) fn of(system: &StepSystem, start: &State) -> Self {
+        let may_lag = system.finite() && system.solves_nearby();
+        LinearisedAt { place: may_lag.then(|| start.clone()), lags: false }
+    }
+
+    /// Whether the last equations were not those of the state itself.
+    pub(super) fn lags(&self) -> bool {
+        self.lags
+    }
+
+    /// Whether a residual is small enough for the equations that it was reached with.
+    pub(super) fn is_fine(&self, norm: f64, found: f64) -> bool {
+        !self.lags || norm <= FINE * found
+    }
+
     /// Equations for a state; `slow` where those of the last iteration have not done enough.
-    fn equations(&mut self, system: &mut StepSystem, state: &State, slow: bool) -> Rc<Equations> {
+    pub(super) fn equations(&mut self, system: &mut StepSystem, state: &State, slow: bool) -> Rc<Equations> {
         let Some(place) = &mut self.place else { return system.equations(state) };
         self.lags = !(slow && self.lags) && turned_between(place, state) <= TURNED;
         if !self.lags {
@@ -144,7 +160,12 @@ impl LinearisedAt {
 }
 
 /// Whether a state whose residual has settled holds: equilibrium, gaps, strengths and laws of tractions.
-fn holds_at(system: &StepSystem, residual: &[f64], state: &State, (inner, rounding, stays): (f64, f64, bool)) -> bool {
+pub(super) fn holds_at(
+    system: &StepSystem,
+    residual: &[f64],
+    state: &State,
+    (inner, rounding, stays): (f64, f64, bool),
+) -> bool {
     // Rounding of positions excuses gaps, not equilibrium.
     let balanced = !system.finite() || (inner <= INNER && unbalanced_share(system, residual, state) <= BALANCED);
     let held = !system.finite() || {
@@ -157,7 +178,7 @@ fn holds_at(system: &StepSystem, residual: &[f64], state: &State, (inner, roundi
 }
 
 /// The guess as a state of the step, with what the loads, blocks and laws say there.
-fn first_state(
+pub(super) fn first_state(
     system: &mut StepSystem,
     start: &State,
     guess: State,
@@ -175,7 +196,7 @@ fn first_state(
 
 /// Residual that is rounding. Small displacements round by their own size, which the residual is relative to; a law of
 /// tractions from gaps must hold to that.
-fn rounding(system: &StepSystem) -> f64 {
+pub(super) fn rounding(system: &StepSystem) -> f64 {
     match (system.finite(), system.laws.responses.is_empty()) {
         (true, _) => 400.0 * f64::EPSILON * system.units().length / system.units().displacement,
         (false, true) => 0.0,
@@ -190,7 +211,7 @@ fn turned_between(start: &State, state: &State) -> f64 {
 }
 
 /// Share of an iteration with finite displacements whose rotations stay where the linearisation means something.
-fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
+pub(super) fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
     if !system.finite() {
         return 1.0;
     }
@@ -298,7 +319,7 @@ fn is_gap_row(system: &StepSystem, state: &State, row: usize) -> bool {
 /// Greatest residual of the gaps of facets, relative to the greatest unknown (rounding of positions, which excuses as
 /// much in units of a displacement, is no share of what has moved much further), and the force that the joint would make
 /// of it, relative to the greatest one. Laws of tractions have an error of their own.
-fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64) {
+pub(super) fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64) {
     let u = system.units();
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * u.force, f64::max);
     let (mut greatest, mut force) = (0.0_f64, 0.0_f64);
@@ -323,13 +344,13 @@ fn is_admissible(system: &StepSystem, state: &State) -> bool {
 }
 
 /// Greatest residual of equilibrium, relative to the greatest force.
-fn unbalanced_share(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
+pub(super) fn unbalanced_share(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
     let force = state.force.iter().flatten().map(|r| (r / system.units().force).abs()).fold(0.0, f64::max);
     let rows = &residual[2 * state.gap.len()..residual.len() - 1];
     rows.iter().map(|x| x.abs()).fold(0.0, f64::max) / force.max(1e-6)
 }
 
-fn largest_unknown(system: &StepSystem, state: &State) -> f64 {
+pub(super) fn largest_unknown(system: &StepSystem, state: &State) -> f64 {
     let u = system.units();
     let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
     let motion = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * u.length));

@@ -11,6 +11,9 @@ use super::tangent::tangent_from;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
+use crate::linear::inner;
+use crate::rate::answer::{Budget, Continuation, answer};
+use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::branching::{RisingRate, rising_rate};
 use crate::rate::enumerate::enumerate_modes;
 use crate::rate::problem::{Rate, RateOutcome, RateProblem};
@@ -20,7 +23,7 @@ use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
 /// Slack, relative to the greatest force, up to which a facet may yield in a rate.
-const ACTIVE: f64 = 1e-8;
+const ACTIVE: f64 = 3e-8;
 /// Multiplier of opening, relative to the unit of displacement, above which a point is open.
 const OPEN: f64 = 1e-9;
 /// Residual of a response, relative to what it is made of.
@@ -54,7 +57,7 @@ pub(super) enum LimitPointTest {
 
 /// Looks for a rate with λ growing in the sense `direction` at a converged state, or proves that there is none.
 pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) -> LimitPointTest {
-    let active = active_set(system, state);
+    let active = active_set(system, state, &[]);
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
     system.count("factorisations", 1);
     let equations = system.equations(state);
@@ -80,7 +83,7 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
 /// All rates that start at a converged state, with their modes: the factor rises, stands still or falls on them. `None`
 /// where there are too many combinations of modes, or their stiffness was not found.
 pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(Tangent, Vec<ContactMode>)>> {
-    let active = active_set(system, state);
+    let active = active_set(system, state, &[]);
     system.count("factorisations", 1);
     let equations = system.equations(state);
     let responses = responses_of(system, &active, &equations, 1.0)?;
@@ -106,7 +109,7 @@ pub(super) fn falling_rate(
     state: &State,
     direction: f64,
 ) -> Option<(Tangent, Vec<ContactMode>)> {
-    let active = active_set(system, state);
+    let active = active_set(system, state, &[]);
     system.count("factorisations", 1);
     let equations = system.equations(state);
     let responses = responses_of(system, &active, &equations, direction)?;
@@ -124,6 +127,78 @@ pub(super) fn falling_rate(
     let x = unknowns_of(&responses, &rate.gaps, rate.factor, direction);
     let modes = modes_of(system, &active, rate.modes);
     Some((tangent_from(system, &x, state, &equations), modes))
+}
+
+/// What continues a path after an event.
+pub(super) enum AfterEvent {
+    /// A rate with its modes.
+    Goes {
+        rate: Tangent,
+        modes: Vec<ContactMode>,
+        /// Number of other rates that the rule does not tell from it.
+        twins: usize,
+        /// Set if it is proved that no rate has a growing factor.
+        none_rises: bool,
+    },
+    /// Nothing: proved. `none_rises` holds.
+    Nothing,
+    /// Not decided, and why; whether it is proved that no rate has a growing factor.
+    Unknown(String, bool),
+}
+
+/// What continues a path after an event at the points `hits`, of which some are `stopping`: the event is the end of their
+/// slip. `direction`: the sense in which the factor is to grow; `sense`: 1
+/// if it has grown up to the event, 0 if it stood still, −1 if it fell.
+pub(super) fn rate_after_event(
+    system: &mut StepSystem,
+    state: &State,
+    [hits, stopping]: [&[usize]; 2],
+    (direction, sense): (f64, f64),
+) -> AfterEvent {
+    let active = active_set(system, state, hits);
+    system.count("factorisations", 1);
+    let equations = system.equations(state);
+    let Some(responses) = responses_of(system, &active, &equations, direction) else {
+        return AfterEvent::Unknown("the stiffness of the active set was not found".into(), false);
+    };
+    let mut problem = rate_problem(system, &active, &responses);
+    let load = responses[2 * active.contacts.len()].iter().zip(&equations.factor);
+    problem.load_flexibility = load.map(|(x, p)| x * p * direction).sum();
+    problem.metric = Some(metric(system, &responses));
+    let point = |c: &usize| ArrivalPoint {
+        mode: state.mode[*c],
+        hit: hits.contains(c),
+        stops: stopping.contains(c),
+        force: state.force[*c],
+    };
+    let arrival = Arrival { factor: sense, points: active.contacts.iter().map(point).collect() };
+    let mut counts = RateCounts::default();
+    let found = answer(&problem, &arrival, &Budget::default(), &mut counts);
+    drop(problem);
+    system.count("rate_combinations", counts.trials);
+    let none_rises = found.none_rises.is_some();
+    match found.continuation {
+        Continuation::Goes { rate, twins } => {
+            let x = unknowns_of(&responses, &rate.gaps, rate.factor, direction);
+            let modes = modes_of(system, &active, rate.modes);
+            AfterEvent::Goes {
+                rate: tangent_from(system, &x, state, &equations),
+                modes,
+                twins: twins.len(),
+                none_rises,
+            }
+        }
+        Continuation::NoneContinues(_) => AfterEvent::Nothing,
+        Continuation::Open(why) => AfterEvent::Unknown(why, none_rises),
+    }
+}
+
+/// Products of the motions for unit gap rates and, last, of motions and factor for λ̇ = 1.
+fn metric(system: &StepSystem, responses: &[Vec<f64>]) -> DMatrix<f64> {
+    let first = 2 * system.scaled.contacts;
+    let n = responses.len();
+    let own = |i: usize, j: usize| if i == n - 1 && j == n - 1 { 1.0 } else { 0.0 };
+    DMatrix::from_fn(n, n, |i, j| inner(&responses[i][first..], &responses[j][first..]) + own(i, j))
 }
 
 /// The unknowns of a rate by its gap rates over the active set and λ̇ in the sense `direction`.
@@ -150,7 +225,8 @@ fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) ->
     all
 }
 
-fn active_set(system: &StepSystem, state: &State) -> ActiveSet {
+/// Points that may change their modes: those with a facet without slack or at the tip of opening, and `hits`.
+fn active_set(system: &StepSystem, state: &State, hits: &[usize]) -> ActiveSet {
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.mode.clone() };
     for c in 0..active.modes.len() {
@@ -159,11 +235,11 @@ fn active_set(system: &StepSystem, state: &State) -> ActiveSet {
         let is_open = law.opens(state.mode[c]) && opening > OPEN * system.units().displacement;
         let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
         let strength = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0);
-        if is_open && strength.is_none() {
+        if is_open && strength.is_none() && !hits.contains(&c) {
             continue;
         }
         active.modes[c] = ContactMode::Stick;
-        let open = strength.filter(|_| is_open);
+        let open = strength.filter(|_| is_open && !hits.contains(&c));
         let tight = |i: &usize| slack(&law.facets[*i], r, area) <= ACTIVE * largest;
         let facets: Vec<usize> = (0..law.facets.len()).filter(tight).collect();
         if !facets.is_empty() || open.is_some() {
@@ -250,6 +326,7 @@ fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec
         load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
         from_nothing: false,
         load_flexibility: 0.0,
+        metric: None,
         settles: false,
     }
 }

@@ -4,6 +4,7 @@ use super::follow::follow;
 use super::load_to_factor::load_to_factor;
 use super::loads::StagedLoads;
 use super::monitors::resolve;
+use super::pieces;
 use super::recorded::{recorded, work_state};
 use super::second_order::{StateStability, second_order_work, stability};
 use super::stable_branch::{Departure, leave_unstable};
@@ -15,10 +16,50 @@ use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability};
+use voussoir_core::path::{
+    LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, StageStability,
+};
 
-/// Follows all load steps.
+/// Follows all load steps: piece by piece if the path has pieces, and by steps if it has none or is lost on one of them.
 pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
+    if let Some(answer) = by_pieces(problem, settings, observer) {
+        return answer;
+    }
+    traced(problem, settings, observer, false)
+}
+
+/// The states of a path that is not yet known to be followed to its end.
+#[derive(Default)]
+struct Kept(Vec<PathState>);
+
+impl PathObserver for Kept {
+    fn state(&mut self, _problem: &PathProblem, state: &PathState) -> bool {
+        self.0.push(state.clone());
+        true
+    }
+}
+
+/// The answer of a path that is followed piece by piece to its end. `None` if it has no pieces, or is lost.
+fn by_pieces(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> Option<PathAnswer> {
+    let system = StepSystem::new(problem, settings.finite).ok()?;
+    if !system.follows_pieces() {
+        return None;
+    }
+    let mut kept = Kept::default();
+    let answer = traced(problem, settings, &mut kept, true);
+    if answer.status == Status::Stalled {
+        return None;
+    }
+    let goes_on = kept.0.iter().all(|state| observer.state(problem, state));
+    Some(if goes_on { answer } else { stalled(problem, "stopped by the observer".into()) })
+}
+
+fn traced(
+    problem: &PathProblem,
+    settings: &PathSettings,
+    observer: &mut dyn PathObserver,
+    by_pieces: bool,
+) -> PathAnswer {
     let system = match StepSystem::new(problem, settings.finite) {
         Ok(system) => system,
         Err(why) => return stalled(problem, why),
@@ -31,6 +72,8 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
     let mut tracer = Tracer {
         system,
         settings,
+        by_pieces,
+        in_pieces: by_pieces,
         strategy: Arc::new(ArcLength::default()),
         observer,
         load_step: 0,
@@ -45,7 +88,7 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
             stability: Vec::new(),
             branchings: Vec::new(),
         },
-        ending: Ending { status: Status::Stalled, motion: None, ray: None },
+        ending: Ending { status: Status::Stalled, motion: None, ray: None, limit_point_end: None },
         limit: LimitPoint::default(),
         post_peak: PostPeak::default(),
     };
@@ -58,6 +101,8 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     let mut earlier = Vec::new();
     for (index, load_step) in problem.load_steps.iter().enumerate() {
         tracer.load_step = index;
+        // Settled structures leave symmetric states, which the stepping of their supports finds.
+        tracer.in_pieces = tracer.by_pieces && load_size(problem, &load_step.loading) > 0.0;
         tracer.state.factor = load_step.start;
         tracer.strategy =
             tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
@@ -71,6 +116,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {
+            LoadStepEnd::Collapse(most) if tracer.in_pieces => pieces::driver::follow(tracer, load_step, most),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
             LoadStepEnd::Collapse(most) => follow(tracer, load_step, most),
         };
@@ -209,9 +255,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         notes,
         ..PathRecord::default()
     };
-    Outcome::at(tracer.ending.status, factor).moving(motion).carried_by(tracer.ending.ray).answer(
-        tracer.system.problem,
-        tracer.system.finite(),
-        record,
-    )
+    let outcome =
+        Outcome { limit_point_end: tracer.ending.limit_point_end, ..Outcome::at(tracer.ending.status, factor) };
+    outcome.moving(motion).carried_by(tracer.ending.ray).answer(tracer.system.problem, tracer.system.finite(), record)
 }

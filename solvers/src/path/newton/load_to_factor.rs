@@ -8,6 +8,7 @@ use super::homotopy::by_homotopy;
 use super::iteration::iterate;
 use super::measure::motion_size;
 use super::peak::scaled_motion;
+use super::pieces;
 use super::response::tractions_dissipate;
 use super::second_order::second_order_work;
 use super::state::{State, Tangent, in_proportion};
@@ -26,6 +27,11 @@ const NO_START: &str = "the first load has no state that Newton's method or pivo
 
 /// To a factor: in one step where nothing irreversible happens in it, else in steps.
 pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
+    // From nothing a load grows in proportion; later a point may slide and come to rest within any step.
+    let from_nothing = tracer.state.force.iter().flatten().all(|r| *r == 0.0);
+    if tracer.in_pieces && !from_nothing {
+        return pieces::driver::follow(tracer, load_step, factor);
+    }
     let control = Control::Factor(factor);
     let whole = solve_step(&mut tracer.system, &tracer.state, tracer.state.clone(), &control);
     let small = !tracer.system.finite();
@@ -51,6 +57,9 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
     }
     if small && is_proportional(tracer) {
         return start_proportional(tracer, load_step, factor);
+    }
+    if tracer.in_pieces {
+        return pieces::driver::follow(tracer, load_step, factor);
     }
     follow(tracer, load_step, factor)
 }

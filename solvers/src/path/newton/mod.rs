@@ -35,6 +35,7 @@ mod nearby;
 mod orientation;
 mod passed_over;
 mod peak;
+mod pieces;
 mod plastic_plateau;
 mod recorded;
 mod relaxation;

@@ -51,6 +51,8 @@ struct Nearby<'k> {
 pub(super) enum Accuracy {
     /// To what Newton's method and signs of rates need.
     Rough,
+    /// To rounding, by whatever factors are near.
+    Fine,
     /// To rounding; by factors of the state itself where its second-order work will be asked of them.
     Rounding,
 }
@@ -66,7 +68,7 @@ pub(super) fn solve(
     if accuracy == Accuracy::Rounding && system.rules.oriented {
         factorised(system, state, equations, control)?;
     }
-    let left = if accuracy == Accuracy::Rounding { ROUNDING } else { ROUGH };
+    let left = if accuracy == Accuracy::Rough { ROUGH } else { ROUNDING };
     let found = solve_nearby(system, state, equations, (control, right), left);
     found.map(|x| (x, true)).or_else(|| solve_linear(system, state, equations, control, right))
 }

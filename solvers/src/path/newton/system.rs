@@ -191,6 +191,11 @@ impl<'a> StepSystem<'a> {
         self.laws.responses.is_empty() && self.blocks.iter().all(Option::is_none)
     }
 
+    /// Whether the path is followed piece by piece: finite displacements, laws of facets, blocks that do not yield.
+    pub fn follows_pieces(&self) -> bool {
+        self.finite() && self.piecewise_linear()
+    }
+
     /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.
     pub fn solves_nearby(&self) -> bool {
         self.piecewise_linear() && self.scaled.chain.is_some() && self.geometry.pattern.couples()

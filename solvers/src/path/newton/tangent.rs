@@ -95,7 +95,18 @@ pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State)
 /// Tangent of a converged state with its modes held, per unit of the control's gradient.
 pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
     let RateEquations { equations, control } = RateEquations::new(system, start, (state, state), control);
-    tangent_of_modes(system, state, &equations, &control)
+    tangent_of_modes(system, state, &equations, &control, Accuracy::Rounding)
+}
+
+/// The same by whatever factors are near.
+pub(super) fn tangent_nearby(
+    system: &mut StepSystem,
+    start: &State,
+    state: &State,
+    control: &Control,
+) -> Option<Tangent> {
+    let RateEquations { equations, control } = RateEquations::new(system, start, (state, state), control);
+    tangent_of_modes(system, state, &equations, &control, Accuracy::Fine)
 }
 
 /// The same roughly, by factors that are near if there are any, with the equations of a place near the state's.
@@ -155,7 +166,7 @@ pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes:
     add_weighted_gaps(system, &mut row, &by_gap, &equations);
     let mut other = state.clone();
     other.mode = modes.to_vec();
-    tangent_of_modes(system, &other, &equations, &row)
+    tangent_of_modes(system, &other, &equations, &row, Accuracy::Rounding)
 }
 
 /// The right-hand side of a rate per unit of the last row.
@@ -166,9 +177,15 @@ fn per_row(system: &StepSystem) -> Vec<f64> {
 }
 
 /// Tangent of a state with its modes held, per unit of `row`.
-fn tangent_of_modes(system: &mut StepSystem, state: &State, equations: &Rc<Equations>, row: &[f64]) -> Option<Tangent> {
+pub(super) fn tangent_of_modes(
+    system: &mut StepSystem,
+    state: &State,
+    equations: &Rc<Equations>,
+    row: &[f64],
+    accuracy: Accuracy,
+) -> Option<Tangent> {
     let right = per_row(system);
-    let (x, _) = solve(system, state, equations, (row, &right), Accuracy::Rounding).filter(|(_, solved)| *solved)?;
+    let (x, _) = solve(system, state, equations, (row, &right), accuracy).filter(|(_, solved)| *solved)?;
     Some(tangent_from(system, &x, state, equations))
 }
 

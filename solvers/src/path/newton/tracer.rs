@@ -12,7 +12,8 @@ use crate::path::stability::regains_limit_point;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    Branching, Continuation, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak, StageStability,
+    Branching, Contact, Continuation, LimitPointEnd, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState,
+    ProvenPeak, StageStability,
 };
 
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
@@ -58,6 +59,8 @@ pub(super) struct Ending {
     pub status: Status,
     pub motion: Option<Vec<[f64; 3]>>,
     pub ray: Option<Vec<[f64; 2]>>,
+    /// Why it ends at a limit point, if the question does not give the reason.
+    pub limit_point_end: Option<LimitPointEnd>,
 }
 
 /// The greatest limit point, with small displacements the first, and what is known of it.
@@ -93,6 +96,10 @@ pub(super) struct PostPeak {
 pub(super) struct Tracer<'a, 'o> {
     pub system: StepSystem<'a>,
     pub settings: &'a PathSettings,
+    /// Whether pieces are followed from event to event.
+    pub by_pieces: bool,
+    /// Whether the present load step is followed so.
+    pub in_pieces: bool,
     pub strategy: Arc<dyn Continuation>,
     pub observer: &'o mut dyn PathObserver,
     pub load_step: usize,
@@ -232,14 +239,21 @@ fn left_its_pairing(tracer: &Tracer) -> Option<(bool, String)> {
     let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
     let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
     let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
-    let (apart, why) = match c.sliding.corners {
+    Some(lost_joint(tracer, c, gap[1]))
+}
+
+/// Whether the blocks have come apart where a contact point has slipped as far as its pairing holds, and what has happened.
+pub(super) fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, String) {
+    let (apart, why) = match contact.sliding.corners {
         [low, high] if low != high => (true, "it has lost half of its height"),
-        [0.5, 0.5] if c.sliding.passing == 0.0 => (false, "a contact point away from all corners is paired for less"),
+        [0.5, 0.5] if contact.sliding.passing == 0.0 => {
+            (false, "a contact point away from all corners is paired for less")
+        }
         [0.5, 0.5] => (true, "it has lost half of its height"),
         _ => (true, "its contact point leaves the face that it slides on"),
     };
-    let (joint, factor) = (c.joint, tracer.state.factor);
-    Some((apart, format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", gap[1].abs())))
+    let (joint, factor) = (contact.joint, tracer.state.factor);
+    (apart, format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", slip.abs()))
 }
 
 /// The present state a share of a rate on.

@@ -45,6 +45,7 @@ fn branching_agrees_with_every_combination() {
             load_rate: DVector::from_fn(2 * count, |_, _| random.next()),
             from_nothing: false,
             load_flexibility: 0.0,
+            metric: None,
             settles: false,
         };
         let all = enumerate_modes(&problem, &mut 0);
@@ -215,7 +216,15 @@ fn fuzzed_rate_problems_are_solved() {
             0 => &root * push,
             _ => DVector::from_fn(2 * count, |_, _| random.next()),
         };
-        let problem = RateProblem { points, s, load_rate, from_nothing: false, load_flexibility: 0.0, settles: false };
+        let problem = RateProblem {
+            points,
+            s,
+            load_rate,
+            from_nothing: false,
+            load_flexibility: 0.0,
+            metric: None,
+            settles: false,
+        };
         let tally = tallies.entry(family).or_default();
         tally.problems += 1;
         let outcome = solve(&problem, false, &mut tally.order);

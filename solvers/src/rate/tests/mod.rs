@@ -45,8 +45,12 @@ impl<'a> Case<'a> {
             hit: false,
             stiffness: 1.0,
         };
-        let arrived =
-            |(_, force): &(&[usize], [f64; 2])| ArrivalPoint { mode: ContactMode::Stick, hit: false, force: *force };
+        let arrived = |(_, force): &(&[usize], [f64; 2])| ArrivalPoint {
+            mode: ContactMode::Stick,
+            hit: false,
+            stops: false,
+            force: *force,
+        };
         Case {
             problem: RateProblem {
                 points: points.iter().map(point).collect(),
@@ -54,6 +58,7 @@ impl<'a> Case<'a> {
                 load_rate: DVector::from_column_slice(load_rate),
                 from_nothing: false,
                 load_flexibility: 0.0,
+                metric: None,
                 settles: false,
             },
             arrival: Arrival { factor: 1.0, points: points.iter().map(arrived).collect() },

@@ -12,6 +12,7 @@ fn permuted<'a>(case: &Case<'a>, order: &[usize]) -> Case<'a> {
             points: order.iter().map(|k| case.problem.points[*k].clone()).collect(),
             s: DMatrix::from_fn(n, n, |i, j| case.problem.s[(at(i), at(j))]),
             load_rate: DVector::from_fn(n, |i, _| case.problem.load_rate[at(i)]),
+            metric: None,
             ..case.problem
         },
         arrival: Arrival {

@@ -1,0 +1,551 @@
+//! Pieces one after the other, from the start of a load step to its end.
+
+use super::super::events::events;
+use super::super::measure::{increment_along, motion_size};
+use super::super::orientation::Orientation;
+use super::super::peak::{note_peak, peak_at};
+use super::super::stable_branch::{Departure, leave_unstable};
+use super::super::state::{State, Tangent};
+use super::super::step_energy::step_energy;
+use super::super::tracer::{LoadStepEnding, Tracer, commit, end_path, is_above, lost_joint};
+use super::advance::{Advance, StepEnd, Watched, advance, state_at};
+use super::begin::begin;
+use super::end::{end_of_range, end_unfollowed};
+use super::monitors::{Monitor, What};
+use super::piece::Piece;
+use super::plateau::{Plateau, plateau, stands_still};
+use super::switch::{Following, after_event};
+use crate::contact::mode::ContactMode;
+use crate::path::continuation::LARGEST_FINITE_STEP;
+use crate::path::energy::load_size;
+use crate::path::stability::SecondOrderWork;
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd};
+
+/// Greatest number of pieces and steps of a load step.
+const MOST_STEPS: u64 = 6000;
+/// Greatest number of iterations of Newton's method of a load step.
+const MOST_ITERATIONS: u64 = 20_000;
+/// Distance of a state from the predictor, relative to the step, at which the next step is as long.
+const WANTED_ERROR: f64 = 0.02;
+/// The same above which the step is repeated.
+const MOST_ERROR: f64 = 0.1;
+/// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
+const TELLING: f64 = 0.1;
+/// Length, relative to the first step, below which there is no step.
+const SHORTEST: f64 = 1e-10;
+/// Pieces of next to no length one after the other at which the path is lost.
+const MOST_SHORT_PIECES: u32 = 50;
+/// Rate of the factor, in units, relative to that of motions, at which it stands still.
+const STILL: f64 = 1e-10;
+/// Width, relative to a step, of the bracket of the first unstable state.
+const PLACED: f64 = 1e-9;
+/// Share of a settlement by which it goes on beyond a limit point from which it snaps.
+const SNAP: f64 = 1e-7;
+
+/// A load step that is followed.
+struct Run<'d> {
+    load_step: &'d LoadStep,
+    target: f64,
+    /// Sense of λ.
+    direction: f64,
+    piece: Piece,
+    /// Length of the next step.
+    length: f64,
+    /// Greatest length by the strategy.
+    longest: f64,
+    /// Length of the first step.
+    first: f64,
+    /// Whether the factor goes in its sense.
+    rises: bool,
+    /// Displacement of the load at the start.
+    from: f64,
+    cluster: Cluster,
+    /// Whether the present modes are known to be unstable under their loads, and no stable equilibrium is near.
+    unstable: bool,
+    /// Whether the path moves on under a constant load.
+    on_plateau: bool,
+}
+
+/// Events at one place: the path has hardly moved since the first of them.
+#[derive(Default)]
+struct Cluster {
+    /// Monitors that have ended.
+    hits: Vec<Monitor>,
+    /// Modes, piece and sense before the first event.
+    arrival: Option<(Vec<ContactMode>, Piece, bool)>,
+    /// Number of pieces of next to no length.
+    pieces: u32,
+}
+
+/// By the strategy, up to a factor or the end of the path.
+pub(in super::super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
+    let direction = if target < load_step.start { -1.0 } else { 1.0 };
+    if target == tracer.state.factor {
+        return LoadStepEnding::Reached;
+    }
+    let mut run = match Run::begin(tracer, load_step, target, direction) {
+        Ok(run) => run,
+        Err(ending) => return ending,
+    };
+    let iterations = |tracer: &Tracer| tracer.system.counters.get("newton_iterations").copied().unwrap_or(0);
+    let before = iterations(tracer);
+    for _ in 0..MOST_STEPS {
+        if let Some(ending) = run.step(tracer) {
+            return ending;
+        }
+        if iterations(tracer) - before > MOST_ITERATIONS {
+            break;
+        }
+    }
+    let why = format!("the budget of steps is used up; the last state is at factor {}", tracer.state.factor);
+    end_unfollowed(tracer, direction, why)
+}
+
+impl<'d> Run<'d> {
+    fn begin(
+        tracer: &mut Tracer,
+        load_step: &'d LoadStep,
+        target: f64,
+        direction: f64,
+    ) -> Result<Self, LoadStepEnding> {
+        let piece = begin(tracer, target, direction)?;
+        let mut run = Run {
+            load_step,
+            target,
+            direction,
+            piece,
+            length: 0.0,
+            longest: 0.0,
+            first: 0.0,
+            rises: true,
+            from: tracer.record.state.displacement,
+            cluster: Cluster::default(),
+            unstable: false,
+            on_plateau: false,
+        };
+        run.first = run.by_strategy(tracer);
+        run.length = run.first;
+        run.longest = run.greatest_step(tracer);
+        Ok(run)
+    }
+
+    /// Length along the tangent of a first step of the strategy.
+    fn by_strategy(&self, tracer: &Tracer) -> f64 {
+        let along = increment_along(&tracer.system, &tracer.state, &self.piece.tangent);
+        let measured = tracer.strategy.constraint(&along, None).value.abs();
+        let length = tracer.strategy.first_step() / measured.max(1e-3 * along.motion.max(along.factor.abs()));
+        let whole = (self.target - self.load_step.start).abs() / 16.0;
+        let share = self.piece.tangent.factor.abs();
+        match self.load_step.end {
+            LoadStepEnd::Factor(_) if share > 0.0 => length.min(whole / share),
+            _ => length,
+        }
+    }
+
+    /// Greatest length along the tangent.
+    fn greatest_step(&self, tracer: &Tracer) -> f64 {
+        let u = tracer.system.units();
+        let most = match tracer.strategy.largest_step() {
+            step if step.is_finite() => step,
+            _ => LARGEST_FINITE_STEP,
+        };
+        most * u.length / u.displacement
+    }
+
+    /// One step, and how the load step ends in it.
+    fn step(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
+        let length = self.length.min(self.longest / moves.max(1e-300));
+        let slope = self.piece.tangent.factor / tracer.system.units().factor;
+        let watched = Watched {
+            sense: (slope.abs() > STILL).then(|| slope.signum()),
+            target: self.target.is_finite().then_some((self.target, self.direction)),
+        };
+        let start = tracer.state.clone();
+        let advance = advance(&mut tracer.system, &start, &self.piece, length, watched);
+        if let Some((end, work)) = advance.end().and_then(|end| self.instability(tracer, &start, end)) {
+            return self.leave(tracer, end, &work);
+        }
+        match advance {
+            Advance::Failed => self.shorten(tracer, 0.3 * length),
+            Advance::Whole(end) => self.whole(tracer, end),
+            Advance::Turn(end) => self.turn(tracer, end),
+            Advance::Target(end) => self.arrive(tracer, end),
+            Advance::Event(end, hits) => {
+                let hits: Vec<Monitor> = hits.into_iter().map(|i| self.piece.monitors.0[i]).collect();
+                self.event(tracer, end, hits)
+            }
+        }
+    }
+
+    fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
+        tracer.system.count("cutbacks", 1);
+        self.length = length;
+        (length < SHORTEST * self.first).then(|| {
+            let why = format!("no state of the piece was found beyond factor {}", tracer.state.factor);
+            end_unfollowed(tracer, self.direction, why)
+        })
+    }
+
+    /// Takes a state of the piece over. `None` if the step is to be repeated or the path ends.
+    fn take(&mut self, tracer: &mut Tracer, end: StepEnd) -> Result<(), Option<LoadStepEnding>> {
+        if end.error > MOST_ERROR && end.length > 1e-6 * self.first {
+            return Err(self.shorten(tracer, end.length * (WANTED_ERROR / end.error).clamp(0.1, 0.5)));
+        }
+        let energy = step_energy(tracer, &end.state);
+        if !energy.holds && end.length > 1e-3 * self.first {
+            return Err(self.shorten(tracer, end.length * energy.growth.clamp(0.25, 0.7)));
+        }
+        // An event that cuts a step short says nothing of how long the next one may be: its error is rounding.
+        if end.length >= TELLING * self.length {
+            let by_error = (WANTED_ERROR / end.error.max(1e-300)).max(0.3) * end.length;
+            let by_energy = energy.growth.max(0.25) * end.length;
+            self.length = by_error.min(by_energy).min(2.0 * self.length.max(end.length));
+        }
+        let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
+            return Err(self.shorten(tracer, 0.3 * end.length));
+        };
+        if !commit(tracer, end.state) {
+            return Err(Some(LoadStepEnding::Ended));
+        }
+        self.piece = piece;
+        Ok(())
+    }
+
+    fn whole(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
+        let far = end.length > 1e-9 * self.first;
+        if let Err(ending) = self.take(tracer, end) {
+            return ending;
+        }
+        if far {
+            self.cluster = Cluster::default();
+        }
+        if let Some(ending) = self.plateau(tracer) {
+            return Some(ending);
+        }
+        self.after(tracer)
+    }
+
+    /// The end at a mechanism under a constant load, if there is one at the present state. If the stage asks for a
+    /// displacement beyond its limit point, the path goes on.
+    fn plateau(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        if self.on_plateau || !stands_still(tracer, &self.piece) {
+            return None;
+        }
+        let found = plateau(tracer, &self.piece.clone(), self.direction)?;
+        if found.unproved.is_none() && tracer.settings.stop(self.load_step.stage)[0].is_some() {
+            note_peak(tracer, &self.piece.tangent, self.direction);
+            self.on_plateau = true;
+            return None;
+        }
+        Some(self.end_at_plateau(tracer, found))
+    }
+
+    /// What is looked at behind each step.
+    fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        end_of_range(tracer, self.load_step, self.direction, self.from)
+    }
+
+    /// The state at the target.
+    fn arrive(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
+        let control = super::super::control::Control::Factor(self.target);
+        let mut end = end;
+        let start = tracer.state.clone();
+        if let Some(state) = super::corrector::correct(&mut tracer.system, &start, end.state.clone(), &control) {
+            end.state = state;
+        }
+        match self.take(tracer, end) {
+            Ok(()) => Some(LoadStepEnding::Reached),
+            Err(ending) => ending,
+        }
+    }
+
+    /// Past a state at which the factor turns.
+    fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
+        let was = self.rises;
+        let length = end.length;
+        if let Err(ending) = self.take(tracer, end) {
+            return ending;
+        }
+        self.length = self.length.max(length);
+        // Beyond the turn the rate goes in the other sense; at it the rate is rounding.
+        self.rises = !was;
+        let slope = STILL.max(self.piece.tangent.factor.abs() / tracer.system.units().factor);
+        self.piece.tangent.factor =
+            if self.rises { slope } else { -slope } * self.direction * tracer.system.units().factor;
+        self.at_turn(tracer, was)
+    }
+
+    /// Notes a peak or a trough at the present state, from which the piece leads on.
+    fn at_turn(&mut self, tracer: &mut Tracer, was: bool) -> Option<LoadStepEnding> {
+        if was && !self.rises {
+            return self.peak(tracer);
+        }
+        if !was && self.rises {
+            let state = tracer.state.clone();
+            let lower =
+                tracer.post_peak.trough.as_ref().is_none_or(|t| (t.factor - state.factor) * self.direction > 0.0);
+            if tracer.limit.peak.is_some() && lower {
+                let beyond = self.piece.tangent.clone();
+                tracer.post_peak.trough = Some(peak_at(tracer, state, &beyond));
+            }
+        }
+        self.after(tracer)
+    }
+
+    /// At a limit point.
+    fn peak(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        if settles && matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
+            return self.snap(tracer);
+        }
+        note_peak(tracer, &self.piece.tangent, self.direction);
+        if !tracer.strategy.passes_limit_points() || tracer.settings.ends_at_first_limit_point(self.load_step.stage) {
+            return Some(end_path(tracer, Status::LimitPoint, String::new()));
+        }
+        self.after(tracer)
+    }
+
+    /// Beyond a limit point of a settlement: to the equilibrium that damped descent reaches.
+    fn snap(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        let mut pushed = tracer.state.clone();
+        let orientation = Orientation::of(&mut tracer.system, &pushed, true);
+        pushed.factor += SNAP * (self.target - self.load_step.start);
+        let departure = match &orientation {
+            Some(orientation) => leave_unstable(tracer, &pushed, &orientation.work, true),
+            None => Departure::Falls,
+        };
+        match departure {
+            Departure::Stopped => Some(LoadStepEnding::Ended),
+            Departure::Stable => self.anew(tracer),
+            Departure::Falls => {
+                note_peak(tracer, &self.piece.tangent, self.direction);
+                let why = format!(
+                    "at factor {} no equilibrium follows as the settlement goes on, and damped descent reaches none",
+                    tracer.state.factor
+                );
+                Some(end_path(tracer, Status::LimitPoint, why))
+            }
+        }
+    }
+
+    /// Goes on from another state than the last one of the piece.
+    fn anew(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        match Run::begin(tracer, self.load_step, self.target, self.direction) {
+            Ok(run) => {
+                *self = Run { from: self.from, ..run };
+                None
+            }
+            Err(ending) => Some(ending),
+        }
+    }
+
+    /// The first state of a step that is unstable under its loads, on a rising branch above all limit points, with its
+    /// second-order work.
+    fn instability(&self, tracer: &mut Tracer, start: &State, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork)> {
+        let factor = end.state.factor;
+        let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.load_step);
+        let above = own.all(|peak| (factor - peak.factor) * self.direction > 0.0);
+        if self.unstable || !self.rises || !above || end.length == 0.0 {
+            return None;
+        }
+        let unstable = |tracer: &mut Tracer, state: &State| {
+            Orientation::of(&mut tracer.system, state, true).filter(|found| found.unstable)
+        };
+        let mut work = unstable(tracer, &end.state)?.work;
+        let (mut low, mut high) = (0.0, end.length);
+        let mut found = None;
+        while high - low > PLACED * end.length {
+            let middle = 0.5 * (low + high);
+            let state = state_at(&mut tracer.system, start, &self.piece, middle)?;
+            match unstable(tracer, &state.state) {
+                Some(orientation) => {
+                    work = orientation.work;
+                    high = middle;
+                    found = Some(state);
+                }
+                None => low = middle,
+            }
+        }
+        let found = found.or_else(|| state_at(&mut tracer.system, start, &self.piece, high))?;
+        Some((found, work))
+    }
+
+    /// Leaves an equilibrium that has become unstable under its loads.
+    fn leave(&mut self, tracer: &mut Tracer, end: StepEnd, work: &SecondOrderWork) -> Option<LoadStepEnding> {
+        if let Err(ending) = self.take(tracer, end) {
+            return ending;
+        }
+        let here = tracer.state.clone();
+        match leave_unstable(tracer, &here, work, false) {
+            Departure::Stopped => Some(LoadStepEnding::Ended),
+            Departure::Stable => self.anew(tracer),
+            // The present modes go on under control.
+            Departure::Falls => {
+                let (load_step, factor) = (tracer.load_step, here.factor);
+                self.unstable = true;
+                tracer.record.branchings.push(Branching {
+                    load_step,
+                    factor,
+                    snaps: false,
+                    released: 0.0,
+                    twins: false,
+                });
+                tracer.record.notes.push(format!(
+                    "at factor {factor} the equilibrium becomes unstable under its loads, and no stable one is near: a bifurcation"
+                ));
+                self.after(tracer)
+            }
+        }
+    }
+
+    /// An event: the next piece, and what the path does at it.
+    fn event(&mut self, tracer: &mut Tracer, end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
+        tracer.system.count("events", 1);
+        let moved = end.length > 1e-9 * self.first;
+        let length = self.length;
+        if end.length > 0.0
+            && let Err(ending) = self.take(tracer, end)
+        {
+            return ending;
+        }
+        self.length = self.length.max(0.1 * length);
+        if let Some(lost) = hits.iter().find(|hit| matches!(hit.what, What::Face { .. })) {
+            return Some(self.lose_joint(tracer, lost.contact));
+        }
+        if moved {
+            self.cluster = Cluster { pieces: self.cluster.pieces, ..Cluster::default() };
+        } else {
+            self.cluster.pieces += 1;
+        }
+        if self.cluster.pieces > MOST_SHORT_PIECES {
+            let why = format!("at factor {} events follow each other without end", tracer.state.factor);
+            return Some(end_unfollowed(tracer, self.direction, why));
+        }
+        let hits = self.all_hits(tracer, hits);
+        let state = tracer.state.clone();
+        let was = self.rises;
+        let found = after_event(&mut tracer.system, &state, &self.piece, &hits, (self.direction, was));
+        let (piece, modes, open) = match found {
+            Following::Piece { piece, modes, twins, open } => {
+                self.note_twins(tracer, twins);
+                (piece, modes, open)
+            }
+            Following::Nothing { why, none_rises, proved } => {
+                return Some(self.end_at_event(tracer, &why, none_rises, proved));
+            }
+        };
+        self.enter(tracer, piece, modes);
+        self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
+        if let Some(ending) = self.plateau(tracer) {
+            return Some(ending);
+        }
+        match was == self.rises {
+            true => self.after(tracer),
+            false => {
+                if was {
+                    tracer.limit.unproven = open.or(tracer.limit.unproven.take());
+                }
+                self.at_turn(tracer, was)
+            }
+        }
+    }
+
+    /// The monitors that end at the present state. After a piece of no length a point was missing from the event: the path is
+    /// taken back to its arrival, and all of them are looked at together.
+    fn all_hits(&mut self, tracer: &mut Tracer, hits: Vec<Monitor>) -> Vec<Monitor> {
+        let known = self.cluster.hits.len();
+        for hit in hits {
+            if !self.cluster.hits.iter().any(|known| known.contact == hit.contact) {
+                self.cluster.hits.push(hit);
+            }
+        }
+        let more = self.cluster.hits.len() > known;
+        match &self.cluster.arrival {
+            Some((modes, piece, rises)) if more => {
+                tracer.state.mode.clone_from(modes);
+                (self.piece, self.rises) = (piece.clone(), *rises);
+            }
+            Some(_) => {}
+            None => self.cluster.arrival = Some((tracer.state.mode.clone(), self.piece.clone(), self.rises)),
+        }
+        self.cluster.hits.clone()
+    }
+
+    /// The end where a contact point leaves the face that it slides on.
+    fn lose_joint(&mut self, tracer: &mut Tracer, contact: usize) -> LoadStepEnding {
+        let slip = tracer.state.gap[contact][1];
+        let (apart, why) = lost_joint(tracer, &tracer.system.problem.contacts[contact], slip);
+        let factor = tracer.state.factor;
+        let greatest = tracer.limit.peak.as_ref().is_none_or(|peak| is_above(self.direction, peak.factor, factor));
+        let status = match (apart, greatest) {
+            (false, _) => return end_unfollowed(tracer, self.direction, why),
+            (true, false) => Status::Collapse,
+            (true, true) => {
+                note_peak(tracer, &self.piece.tangent, self.direction);
+                tracer.ending.limit_point_end = Some(LimitPointEnd::JointLost);
+                Status::LimitPoint
+            }
+        };
+        end_path(tracer, status, why)
+    }
+
+    /// Names other rates at an event that the rule does not tell from the one that is followed.
+    fn note_twins(&self, tracer: &mut Tracer, twins: usize) {
+        if twins > 0 {
+            let (load_step, factor) = (tracer.load_step, tracer.state.factor);
+            tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: true });
+            tracer
+                .record
+                .notes
+                .push(format!("at factor {factor} {twins} other rate(s) are twins of the one that is followed"));
+        }
+    }
+
+    /// The end at an event from which no rate leads on.
+    fn end_at_event(&mut self, tracer: &mut Tracer, why: &str, none_rises: bool, proved: bool) -> LoadStepEnding {
+        let factor = tracer.state.factor;
+        if self.rises && none_rises {
+            tracer.limit.proven = Some(factor);
+            note_peak(tracer, &self.piece.tangent, self.direction);
+        }
+        let proved = proved && tracer.limit.peak.is_some();
+        tracer.ending.limit_point_end = proved.then_some(LimitPointEnd::None);
+        let why = format!("at factor {factor} {why}");
+        if !proved || tracer.post_peak.far {
+            return end_unfollowed(tracer, self.direction, why);
+        }
+        end_path(tracer, Status::LimitPoint, why)
+    }
+
+    /// Takes the modes of the next piece over.
+    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, modes: Vec<ContactMode>) {
+        let before = tracer.state.clone();
+        let after = State { mode: modes, ..before.clone() };
+        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &after));
+        tracer.state = after;
+        self.piece = piece;
+    }
+
+    fn goes_up(&self, tracer: &Tracer, rate: &Tangent) -> bool {
+        rate.factor * self.direction > STILL * tracer.system.units().factor * motion_size(&tracer.system, rate)
+    }
+
+    /// The end at a mechanism under a constant load.
+    fn end_at_plateau(&mut self, tracer: &mut Tracer, found: Plateau) -> LoadStepEnding {
+        note_peak(tracer, &self.piece.tangent, self.direction);
+        if let Some(why) = found.unproved {
+            tracer.limit.unproven = Some(why);
+            return end_path(
+                tracer,
+                Status::Stalled,
+                "the load stands still, which is not proved to be its greatest".into(),
+            );
+        }
+        if !commit(tracer, found.moved) {
+            return LoadStepEnding::Ended;
+        }
+        end_path(tracer, Status::Collapse, "the structure moves on under a constant load".into())
+    }
+}

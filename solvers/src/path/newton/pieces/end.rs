@@ -1,0 +1,68 @@
+//! Where a path ends: the range that a stage asks for.
+
+use super::super::tracer::{LoadStepEnding, MOVED_ON, Tracer, end_path, is_above};
+use crate::path::energy::load_size;
+use voussoir_core::limit::Status;
+use voussoir_core::path::LoadStep;
+
+/// Share of the greatest limit point to which the load falls.
+const HALF: f64 = 0.5;
+
+/// The ending of a path that has gone as far as its stage asks for.
+pub(super) fn end_of_range(
+    tracer: &mut Tracer,
+    load_step: &LoadStep,
+    direction: f64,
+    from: f64,
+) -> Option<LoadStepEnding> {
+    let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
+    if let Some(last) = tracer.limit.proven_peaks.last_mut()
+        && (last.lowest - factor) * direction > 0.0
+    {
+        last.lowest = factor;
+    }
+    let span = tracer.system.problem.span.max(tracer.system.units().length);
+    let gone = (displacement - from).abs() >= span;
+    let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
+        return gone.then(|| {
+            let why = format!("no limit point up to a displacement of {displacement} m, at factor {factor}");
+            end_path(tracer, Status::Stalled, why)
+        });
+    };
+    let beyond = (displacement - place).abs();
+    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+    let done = match tracer.settings.stop(load_step.stage) {
+        // A support that goes no further by itself: what follows is a fall.
+        [None, None] if settles => true,
+        [None, None] => {
+            let fallen = (greatest - factor) * direction;
+            let halved = fallen >= HALF * (greatest - load_step.start).abs();
+            tracer.post_peak.far |= halved;
+            (halved && beyond >= MOVED_ON * span) || gone
+        }
+        [most, least] => {
+            // Counted from the last limit point.
+            let from = tracer.limit.proven_peaks.last().map_or(place, |last| last.displacement);
+            most.is_some_and(|most| (displacement - from).abs() >= most)
+                || least.is_some_and(|least| (factor - least) * direction <= 0.0)
+        }
+    };
+    if !done {
+        return None;
+    }
+    if is_above(direction, greatest, factor) {
+        let why =
+            format!("still rising: at the end of its range the load is above all limit points, at factor {factor}");
+        return Some(end_path(tracer, Status::Stalled, why));
+    }
+    Some(end_path(tracer, Status::Collapse, String::new()))
+}
+
+/// The end of a path that is not followed further. Where the load has fallen to half of its greatest limit point the range
+/// has ended already: what comes later is looked at for greater limit points only.
+pub(super) fn end_unfollowed(tracer: &mut Tracer, direction: f64, why: String) -> LoadStepEnding {
+    let factor = tracer.state.factor;
+    let below = tracer.limit.peak.as_ref().is_some_and(|peak| !is_above(direction, peak.factor, factor));
+    let status = if tracer.post_peak.far && below { Status::Collapse } else { Status::Stalled };
+    end_path(tracer, status, why)
+}

@@ -1,0 +1,15 @@
+//! Paths with finite displacements whose joints have laws of facets, as pieces between located events.
+//!
+//! Within a piece the modes of all contact points are fixed, and the state follows smooth equations F(x, λ) = 0
+//! ([`corrector`]). [`Monitors`](monitors::Monitors) find where a mode ends ([`advance`]). There the rate problem
+//! gives the modes of the next piece ([`switch`]). [`driver`] puts pieces together, and [`end`] says where they end.
+
+mod advance;
+mod begin;
+mod corrector;
+pub(super) mod driver;
+mod end;
+mod monitors;
+mod piece;
+mod plateau;
+mod switch;

@@ -1,0 +1,70 @@
+//! A piece: its modes, its tangent and its monitors.
+
+use super::super::control::Control;
+use super::super::state::{State, Tangent};
+use super::super::system::StepSystem;
+use super::super::tangent::tangent_nearby;
+use super::monitors::{Monitors, Reading};
+use crate::contact::mode::ContactMode;
+use std::rc::Rc;
+
+/// Motions and factor of a tangent over the scaled unknowns.
+pub(super) fn scaled_row(system: &StepSystem, tangent: &Tangent) -> Vec<f64> {
+    let u = system.units();
+    let first = 2 * system.scaled.contacts;
+    let mut row = vec![0.0; system.size()];
+    for (body, free) in system.scaled.free.iter().enumerate() {
+        let Some(free) = free else { continue };
+        let unit = u.motion();
+        (0..3).for_each(|k| row[first + 3 * free + k] = tangent.motion[body][k] / unit[k]);
+    }
+    row[system.size() - 1] = tangent.factor / u.factor;
+    row
+}
+
+/// A piece at a state of it.
+#[derive(Clone)]
+pub(super) struct Piece {
+    /// Rate with motions and factor of size 1.
+    pub tangent: Tangent,
+    /// Its motions and factor over the scaled unknowns.
+    pub row: Rc<Vec<f64>>,
+    pub monitors: Rc<Monitors>,
+}
+
+impl Piece {
+    /// Of a rate at a state with these modes.
+    pub fn new(system: &StepSystem, modes: &[ContactMode], tangent: &Tangent) -> Option<Piece> {
+        Piece::along(system, tangent, Rc::new(Monitors::of(system, modes)))
+    }
+
+    /// The same piece with another tangent.
+    pub fn turned(&self, system: &StepSystem, tangent: &Tangent) -> Option<Piece> {
+        Piece::along(system, tangent, self.monitors.clone())
+    }
+
+    fn along(system: &StepSystem, tangent: &Tangent, monitors: Rc<Monitors>) -> Option<Piece> {
+        let mut row = scaled_row(system, tangent);
+        let size = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(size.is_finite() && size > 0.0) {
+            return None;
+        }
+        row.iter_mut().for_each(|x| *x /= size);
+        Some(Piece { tangent: tangent.scaled(1.0 / size), row: Rc::new(row), monitors })
+    }
+
+    /// The control of a step of a length along the tangent.
+    pub fn control(&self, length: f64) -> Control {
+        Control::Along { row: self.row.clone(), length }
+    }
+
+    /// The rate of another state of the piece per unit of the step's length.
+    pub fn rate_at(&self, system: &mut StepSystem, start: &State, state: &State) -> Option<Tangent> {
+        tangent_nearby(system, start, state, &self.control(0.0))
+    }
+
+    /// What the monitors read at a state along a rate.
+    pub fn read(&self, system: &StepSystem, state: &State, rate: &Tangent) -> Vec<Reading> {
+        self.monitors.read(system, state, rate)
+    }
+}

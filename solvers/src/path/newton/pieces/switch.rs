@@ -1,0 +1,216 @@
+//! Which modes follow at an event: the rate problem of the points whose modes end.
+
+use super::super::control_row::add_weighted_gaps;
+use super::super::limit_point_test::{AfterEvent, rate_after_event};
+use super::super::nearby::Accuracy;
+use super::super::state::{State, Tangent};
+use super::super::system::StepSystem;
+use super::super::tangent::tangent_of_modes;
+use super::monitors::{Monitor, Monitors, What};
+use super::piece::Piece;
+use crate::contact::active_point::ActivePoint;
+use crate::contact::facet::slack;
+use crate::contact::mode::ContactMode;
+use voussoir_core::law::FacetMode;
+
+/// Slack, relative to the greatest force, with which a facet takes part in an event.
+const ACTIVE: f64 = 3e-8;
+/// Combinations of the modes of the points of an event that are tried one by one.
+const MOST_COMBINATIONS: usize = 100;
+
+/// A rate with its modes.
+pub(super) type Start = (Tangent, Vec<ContactMode>);
+
+/// What follows an event.
+pub(super) enum Following {
+    /// A piece with its modes.
+    Piece {
+        piece: Piece,
+        modes: Vec<ContactMode>,
+        /// Number of other rates that the rule does not tell from it.
+        twins: usize,
+        /// The reason why it is not decided that no rate has a growing factor, if so.
+        open: Option<String>,
+    },
+    /// Nothing: the reason, whether no rate has a growing factor, and whether nothing at all is proved to continue.
+    Nothing { why: String, none_rises: bool, proved: bool },
+}
+
+/// The modes that a point may take.
+fn candidates(system: &StepSystem, state: &State, contact: usize) -> Vec<ContactMode> {
+    let Some(law) = system.law(contact) else { return Vec::new() };
+    let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let area = system.problem.contacts[contact].area;
+    let tight = |f: &usize| slack(&law.facets[*f], state.force[contact], area) <= ACTIVE * largest;
+    let active: Vec<usize> = (0..law.facets.len()).filter(tight).collect();
+    let apex = ActivePoint::is_apex(&law.facets, &active);
+    let point = ActivePoint {
+        facets: &law.facets,
+        active,
+        open: None,
+        apex,
+        guess: ContactMode::Stick,
+        hit: true,
+        stiffness: 1.0,
+    };
+    point.candidates()
+}
+
+/// Facets that flow in a mode.
+fn flowing(system: &StepSystem, contact: usize, mode: ContactMode) -> Vec<u8> {
+    let facets = system.law(contact).map_or(&[][..], |law| &law.facets);
+    match mode {
+        ContactMode::Stick => Vec::new(),
+        ContactMode::Facet(i) => vec![i],
+        ContactMode::Corner(i, j) => vec![i, j],
+        ContactMode::Open => {
+            (0..facets.len() as u8).filter(|f| facets[*f as usize].mode == FacetMode::Opening).collect()
+        }
+    }
+}
+
+/// Adds what grows when a point goes from one mode into another to a row: the multipliers of facets that begin to flow, the
+/// slack of facets that stop.
+fn add_entering(
+    system: &StepSystem,
+    (force, gap): (&mut [f64], &mut [f64]),
+    contact: usize,
+    [from, to]: [ContactMode; 2],
+) {
+    let facets = system.law(contact).map_or(&[][..], |law| &law.facets);
+    let [before, after] = [from, to].map(|mode| flowing(system, contact, mode));
+    let u = system.units();
+    for f in after.iter().filter(|f| !before.contains(f)) {
+        let d = facets[*f as usize].flow;
+        let square = d[0] * d[0] + d[1] * d[1];
+        (0..2).for_each(|k| gap[2 * contact + k] -= d[k] / square / u.displacement);
+    }
+    for f in before.iter().filter(|f| !after.contains(f)) {
+        let a = facets[*f as usize].normal;
+        (0..2).for_each(|k| force[2 * contact + k] -= a[k]);
+    }
+}
+
+/// The rate with some modes, in the sense in which points that change theirs enter them. `None` if there is none.
+fn entering_rate(
+    system: &mut StepSystem,
+    state: &State,
+    piece: &Piece,
+    monitors: &[Monitor],
+    modes: &[ContactMode],
+) -> Option<Tangent> {
+    let equations = system.equations(state);
+    let mut row = vec![0.0; system.size()];
+    let mut by_gap = vec![0.0; 2 * state.gap.len()];
+    let stops_flowing = |c: usize| monitors.iter().any(|m| m.contact == c && matches!(m.what, What::Flow(_)));
+    for c in (0..modes.len()).filter(|c| modes[*c] != state.mode[*c]) {
+        if !stops_flowing(c) {
+            add_entering(system, (&mut row, &mut by_gap), c, [state.mode[c], modes[c]]);
+        }
+    }
+    add_weighted_gaps(system, &mut row, &by_gap, &equations);
+    if row.iter().all(|x| *x == 0.0) {
+        // A point that stops to flow has the same rate on both sides of the event.
+        row.copy_from_slice(&piece.row);
+    }
+    let turned = State { mode: modes.to_vec(), ..state.clone() };
+    tangent_of_modes(system, &turned, &equations, &row, Accuracy::Fine)
+}
+
+/// Returns true if a rate with its modes leaves none of them at once.
+pub(super) fn is_admissible(system: &StepSystem, state: &State, modes: &[ContactMode], rate: &Tangent) -> bool {
+    let turned = State { mode: modes.to_vec(), ..state.clone() };
+    let monitors = Monitors::of(system, modes);
+    !monitors.read(system, &turned, rate).iter().any(|reading| reading.leaves())
+}
+
+/// The rates that enter new modes at the points of an event, all others as they are.
+fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Monitor]) -> Vec<Start> {
+    let mut contacts: Vec<usize> = hits.iter().map(|m| m.contact).collect();
+    contacts.sort_unstable();
+    contacts.dedup();
+    let options: Vec<Vec<ContactMode>> = contacts.iter().map(|c| candidates(system, state, *c)).collect();
+    let count = options.iter().fold(1usize, |n, o| n.saturating_mul(o.len()));
+    let mut found: Vec<Start> = Vec::new();
+    if count == 0 || count > MOST_COMBINATIONS {
+        return found;
+    }
+    for mut number in 0..count {
+        let mut modes = state.mode.clone();
+        for (c, own) in contacts.iter().zip(&options) {
+            modes[*c] = normalised(system, *c, own[number % own.len()]);
+            number /= own.len();
+        }
+        if modes == state.mode {
+            continue;
+        }
+        if let Some(rate) = entering_rate(system, state, piece, hits, &modes)
+            && is_admissible(system, state, &modes, &rate)
+        {
+            found.push((rate, modes));
+        }
+    }
+    found
+}
+
+/// A corner has one mode, whichever two of its facets flow.
+fn normalised(system: &StepSystem, contact: usize, mode: ContactMode) -> ContactMode {
+    match mode {
+        ContactMode::Corner(i, j) => {
+            system.law(contact).and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode)
+        }
+        other => other,
+    }
+}
+
+/// The piece that follows an event at a state, for the monitors that end there. `direction`: the sense in which the factor
+/// is to grow; `rises`: whether it has grown up to here.
+///
+/// If one point ends its mode, the solution curve crosses into a cell next to the present one, and the rate in it is the
+/// continuation. The whole rate problem is asked if there are several points, if no crossing or several are admissible, and
+/// before the factor turns: another rate may rise.
+pub(super) fn after_event(
+    system: &mut StepSystem,
+    state: &State,
+    piece: &Piece,
+    hits: &[Monitor],
+    (direction, rises): (f64, bool),
+) -> Following {
+    let single = hits.iter().all(|m| m.contact == hits[0].contact);
+    let mut crossing = if single { crossings(system, state, piece, hits) } else { Vec::new() };
+    let goes_up = |start: &Start| start.0.factor * direction > 0.0;
+    if crossing.len() == 1 && (!rises || goes_up(&crossing[0])) {
+        return leading(system, crossing.remove(0), 0, None);
+    }
+    system.count("rate_problems", 1);
+    let mut contacts: Vec<usize> = hits.iter().map(|m| m.contact).collect();
+    contacts.sort_unstable();
+    contacts.dedup();
+    let flows = hits.iter().filter(|m| matches!(m.what, What::Flow(_)));
+    let stopping: Vec<usize> = flows.map(|m| m.contact).collect();
+    let sense = if rises { 1.0 } else { -1.0 };
+    match rate_after_event(system, state, [&contacts, &stopping], (direction, sense)) {
+        AfterEvent::Goes { rate, modes, twins, none_rises } => {
+            let open = (!none_rises).then(|| "it is not decided whether a rate has a growing factor".to_string());
+            leading(system, (rate, modes), twins, open)
+        }
+        AfterEvent::Nothing => Following::Nothing {
+            why: "no rate of equilibrium leads on from the event".into(),
+            none_rises: true,
+            proved: true,
+        },
+        AfterEvent::Unknown(why, none_rises) => match crossing.pop() {
+            Some(start) if crossing.is_empty() => leading(system, start, 0, (!none_rises).then_some(why)),
+            _ => Following::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false },
+        },
+    }
+}
+
+fn leading(system: &StepSystem, (rate, modes): Start, twins: usize, open: Option<String>) -> Following {
+    match Piece::new(system, &modes, &rate) {
+        Some(piece) => Following::Piece { piece, modes, twins, open },
+        None => {
+            Following::Nothing { why: "the rate that leads on does not move".into(), none_rises: false, proved: false }
+        }
+    }
+}
