@@ -31,6 +31,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("flow_rule.md", "Flow rules"),
             ("sensitivities.md", "Sensitivities of limit loads"),
             ("elastic_paths.md", "Elastic paths"),
+            ("paths.md", "Paths: pieces, events, ends"),
             ("finite_displacements.md", "Finite displacements"),
             ("crushing.md", "Crushing"),
             ("softening.md", "Softening joints"),
